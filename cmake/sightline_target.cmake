@@ -1,0 +1,31 @@
+# What every target of the house shares: language level, warnings, include roots.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(SIGHTLINE_CCACHE ccache)
+if(SIGHTLINE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${SIGHTLINE_CCACHE})
+endif()
+
+function(sightline_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_compile_options(${name} PRIVATE
+    -Wall -Wextra -Wpedantic $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>
+    # GCC 12 sees overlaps in std::string concatenation that are not there (its bug 105651).
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    # The same bits on every machine: a fused multiply-add rounds once, mul and add twice.
+    -ffp-contract=off)
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/source)
+endfunction()
+
+# sightline_module(NAME FILES...): one folder of the core, an object library of the folder's name.
+# The core serves engines and WebAssembly that build without exceptions and RTTI, so it does too.
+function(sightline_module folder)
+  add_library(sightline_${folder} OBJECT ${ARGN})
+  sightline_target(sightline_${folder})
+  target_compile_options(sightline_${folder} PRIVATE -fno-exceptions -fno-rtti)
+  target_link_libraries(sightline_${folder} PRIVATE sightline_core_dependencies)
+  set_property(GLOBAL APPEND PROPERTY sightline_core_modules sightline_${folder})
+endfunction()

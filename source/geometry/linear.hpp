@@ -1,0 +1,46 @@
+// Between the public aggregates and GLM, which does the mathematics inside.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <cmath>
+
+#include <sightline/types.hpp>
+
+namespace sightline::geometry {
+
+inline glm::dmat4 to_double(const Mat4& m) noexcept { return glm::dmat4(glm::make_mat4(m.m.data())); }
+inline glm::dvec3 to_double(const Vec3& v) noexcept { return {v.x, v.y, v.z}; }
+inline glm::vec3 to_glm(const Vec3& v) noexcept { return {v.x, v.y, v.z}; }
+
+inline Vec3 to_vec3(const glm::dvec3& v) noexcept {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+inline Vec3 to_vec3(const glm::vec3& v) noexcept { return {v.x, v.y, v.z}; }
+
+inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
+  Mat4 out;
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) out.m[4 * c + r] = static_cast<float>(m[c][r]);
+  }
+  return out;
+}
+
+inline bool is_finite(const Vec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+inline bool is_valid(const Box& box) noexcept {
+  return is_finite(box.min) && is_finite(box.max) && box.min.x <= box.max.x && box.min.y <= box.max.y &&
+         box.min.z <= box.max.z;
+}
+
+/// The largest absolute coordinates of a box.
+inline Vec3 largest(const Box& box) noexcept {
+  return {std::fmax(std::fabs(box.min.x), std::fabs(box.max.x)),
+          std::fmax(std::fabs(box.min.y), std::fabs(box.max.y)),
+          std::fmax(std::fabs(box.min.z), std::fabs(box.max.z))};
+}
+
+}  // namespace sightline::geometry
