@@ -10,7 +10,7 @@ namespace sightline {
 
 /// Bad input or a machine that lacks something; what() is one sentence: what, where, what was expected.
 class Error : public std::runtime_error {
- public:
+public:
   using std::runtime_error::runtime_error;
 };
 

@@ -18,20 +18,20 @@ struct DrawCommand {
 
 /// The work of one cull, in counts. Fields that make no sense for a method stay 0.
 struct CullStats {
-  std::uint64_t objects = 0;           ///< in
-  std::uint64_t tested = 0;            ///< objects tested one by one
-  std::uint64_t nodes_visited = 0;     ///< cells, chunks or tree nodes looked at
-  std::uint64_t cull_vertices = 0;     ///< vertices fed to the culling pass
+  std::uint64_t objects = 0;        ///< in
+  std::uint64_t tested = 0;         ///< objects tested one by one
+  std::uint64_t nodes_visited = 0;  ///< cells, chunks or tree nodes looked at
+  std::uint64_t cull_vertices = 0;  ///< vertices fed to the culling pass
   std::uint64_t culled_frustum = 0;
   std::uint64_t culled_contribution = 0;
   std::uint64_t culled_occlusion = 0;
   std::uint64_t draw_calls = 0;
-  std::uint64_t triangles = 0;         ///< submitted
+  std::uint64_t triangles = 0;  ///< submitted
 };
 
 /// Filled by Method::cull, reused frame after frame so that nothing is allocated once it has grown.
 struct Frame {
-  std::vector<ObjectId> visible;   ///< grouped by mesh as `draws` wants it; each object at most once
+  std::vector<ObjectId> visible;  ///< grouped by mesh as `draws` wants it; each object at most once
   std::vector<DrawCommand> draws;
   CullStats stats;
 

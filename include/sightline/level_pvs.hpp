@@ -1,5 +1,5 @@
-// The potentially visible sets that a game level carries: its BSP tree, the leaves' clusters, and which cluster
-// may see which, computed once by the level's own compiler.
+// The potentially visible sets that a game level carries: its BSP tree, the leaves' clusters, and which
+// cluster may see which, computed once by the level's own compiler.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +29,9 @@ struct LevelPvs {
   std::vector<std::uint32_t> leaf_objects;  ///< object ids, leaf by leaf
   std::uint32_t clusters = 0;
   std::uint32_t bytes_per_cluster = 0;
-  std::vector<std::uint8_t> visibility;     ///< clusters × bytes_per_cluster bits; empty: all see all
-  std::vector<std::uint8_t> in_some_leaf;   ///< one an object: 1 where a leaf of the tree lists it
-  std::vector<std::uint8_t> in_world_model; ///< one an object: 0 for a face of a moving part (door, lift)
+  std::vector<std::uint8_t> visibility;      ///< clusters × bytes_per_cluster bits; empty: all see all
+  std::vector<std::uint8_t> in_some_leaf;    ///< one an object: 1 where a leaf of the tree lists it
+  std::vector<std::uint8_t> in_world_model;  ///< one an object: 0 for a face of a moving part (door, lift)
 
   /// Index of the leaf that holds the point.
   [[nodiscard]] std::uint32_t leaf_at(const Vec3& point) const noexcept;

@@ -24,7 +24,7 @@ std::string_view to_string(Guarantee guarantee) noexcept;
 
 /// One culling method at work on one scene. The scene outlives the method.
 class Method {
- public:
+public:
   virtual ~Method() = default;
   Method() = default;
   Method(const Method&) = delete;

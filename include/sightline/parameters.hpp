@@ -25,13 +25,13 @@ struct ParameterInfo {
 
 /// Parsed parameters: every declared name has a value within its bounds.
 class Parameters {
- public:
+public:
   [[nodiscard]] double number(std::string_view name) const noexcept;
   [[nodiscard]] std::uint32_t count(std::string_view name) const noexcept;
   [[nodiscard]] std::string_view word(std::string_view name) const noexcept;
   void set(std::string name, std::string value) { values_[std::move(name)] = std::move(value); }
 
- private:
+private:
   std::map<std::string, std::string, std::less<>> values_;
 };
 

@@ -12,9 +12,9 @@ namespace sightline {
 struct Projector {
   std::array<Vec4, 4> rows;  ///< of world_to_clip
   Vec3 eye;
-  float width = 0, height = 0;        ///< pixels
-  float pixels_per_metre = 0;         ///< of a thing at eye distance 1 (perspective) or anywhere (orthographic)
-  float metres_per_w = 1;             ///< depth along the view direction is w times this (perspective)
+  float width = 0, height = 0;  ///< pixels
+  float pixels_per_metre = 0;   ///< of a thing at eye distance 1 (perspective) or anywhere (orthographic)
+  float metres_per_w = 1;       ///< depth along the view direction is w times this (perspective)
   bool orthographic = false;
   float coordinate_error = 0;  ///< absolute rounding error bound of a clip coordinate within the extent
 };

@@ -16,7 +16,7 @@ struct Failure {
 /// A value, or the reason why there is none.
 template <class T>
 class [[nodiscard]] Result {
- public:
+public:
   Result(T value) : held_(std::in_place_index<0>, std::move(value)) {}
   Result(Failure failure) : held_(std::in_place_index<1>, std::move(failure)) {}
 
@@ -29,7 +29,7 @@ class [[nodiscard]] Result {
   /// The reason; only where the result is false.
   const Failure& failure() const noexcept { return *std::get_if<1>(&held_); }
 
- private:
+private:
   std::variant<T, Failure> held_;
 };
 

@@ -57,8 +57,8 @@ struct Scene {
   std::string name;
 
   // objects
-  Boxes bounds;                   ///< world space, tight around the transformed vertices
-  std::vector<float> radius;      ///< of the bounding sphere about the centre of the bounds, metres
+  Boxes bounds;               ///< world space, tight around the transformed vertices
+  std::vector<float> radius;  ///< of the bounding sphere about the centre of the bounds, metres
   std::vector<std::uint32_t> mesh;
   std::vector<Affine> transform;  ///< mesh space to world space
   std::vector<Surface> surface;
@@ -76,7 +76,9 @@ struct Scene {
   [[nodiscard]] std::size_t size() const noexcept { return mesh.size(); }
   [[nodiscard]] bool empty() const noexcept { return mesh.empty(); }
   [[nodiscard]] Sphere sphere(ObjectId object) const noexcept;
-  [[nodiscard]] std::uint64_t triangles(ObjectId object) const noexcept { return meshes[mesh[object]].index_count / 3; }
+  [[nodiscard]] std::uint64_t triangles(ObjectId object) const noexcept {
+    return meshes[mesh[object]].index_count / 3;
+  }
 
   /// Appends a mesh; `indices` count from 0 within it.
   std::uint32_t add_mesh(std::span<const Vec3> positions, std::span<const Vec3> normals,

@@ -21,7 +21,8 @@ struct WorldInfo {
 /// The worlds, in the order of the documentation.
 std::span<const WorldInfo> worlds() noexcept;
 
-/// Makes a world from "NAME" or "NAME?key=value&key=value"; refuses unknown names, keys and values out of range.
+/// Makes a world from "NAME" or "NAME?key=value&key=value"; refuses unknown names, keys and values out of
+/// range.
 Result<Scene> generate_world(std::string_view specification);
 
 }  // namespace sightline

@@ -66,7 +66,8 @@ bool overlaps(const Frustum& frustum, const Box& box) noexcept {
 
 bool overlaps(const Frustum& frustum, const Sphere& sphere) noexcept {
   for (const Plane& plane : frustum.planes) {
-    if (signed_distance(plane, sphere.centre.x, sphere.centre.y, sphere.centre.z) < -sphere.radius) return false;
+    if (signed_distance(plane, sphere.centre.x, sphere.centre.y, sphere.centre.z) < -sphere.radius)
+      return false;
   }
   return true;
 }

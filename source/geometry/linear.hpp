@@ -10,14 +10,22 @@
 
 namespace sightline::geometry {
 
-inline glm::dmat4 to_double(const Mat4& m) noexcept { return glm::dmat4(glm::make_mat4(m.m.data())); }
-inline glm::dvec3 to_double(const Vec3& v) noexcept { return {v.x, v.y, v.z}; }
-inline glm::vec3 to_glm(const Vec3& v) noexcept { return {v.x, v.y, v.z}; }
+inline glm::dmat4 to_double(const Mat4& m) noexcept {
+  return glm::dmat4(glm::make_mat4(m.m.data()));
+}
+inline glm::dvec3 to_double(const Vec3& v) noexcept {
+  return {v.x, v.y, v.z};
+}
+inline glm::vec3 to_glm(const Vec3& v) noexcept {
+  return {v.x, v.y, v.z};
+}
 
 inline Vec3 to_vec3(const glm::dvec3& v) noexcept {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
-inline Vec3 to_vec3(const glm::vec3& v) noexcept { return {v.x, v.y, v.z}; }
+inline Vec3 to_vec3(const glm::vec3& v) noexcept {
+  return {v.x, v.y, v.z};
+}
 
 inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
   Mat4 out;

@@ -15,7 +15,9 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Rect kWholePlane{-kInfinity, -kInfinity, kInfinity, kInfinity};
 
-float dot(const Vec4& row, const Vec3& p) { return ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w; }
+float dot(const Vec4& row, const Vec3& p) {
+  return ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
+}
 
 float distance(const Vec3& a, const Vec3& b) {
   const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
@@ -33,8 +35,9 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
     Vec4& row = out.rows[r];
     row = {clip.m[r], clip.m[4 + r], clip.m[8 + r], clip.m[12 + r]};
     if (r != 2) {
-      magnitude = std::max(magnitude, double{std::fabs(row.x)} * reach.x + double{std::fabs(row.y)} * reach.y +
-                                          double{std::fabs(row.z)} * reach.z + std::fabs(row.w));
+      magnitude =
+          std::max(magnitude, double{std::fabs(row.x)} * reach.x + double{std::fabs(row.y)} * reach.y +
+                                  double{std::fabs(row.z)} * reach.z + std::fabs(row.w));
     }
   }
   out.coordinate_error = static_cast<float>(6 * std::numeric_limits<float>::epsilon() * magnitude);
@@ -44,8 +47,9 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
   out.orthographic = is_orthographic(view);
   // Half the height over tan(fov/2); the larger axis, where pixels are not square.
   const float w_per_metre = std::fabs(view.eye_to_clip.m[out.orthographic ? 15 : 11]);
-  out.pixels_per_metre = 0.5f / w_per_metre * std::max(out.width * std::fabs(view.eye_to_clip.m[0]),
-                                                       out.height * std::fabs(view.eye_to_clip.m[5]));
+  out.pixels_per_metre =
+      0.5f / w_per_metre *
+      std::max(out.width * std::fabs(view.eye_to_clip.m[0]), out.height * std::fabs(view.eye_to_clip.m[5]));
   out.metres_per_w = 1 / w_per_metre;
   return out;
 }
@@ -92,8 +96,8 @@ float projected_area(const Projector& p, const Sphere& sphere) noexcept {
 
 float projected_area_bound(const Projector& p, const Sphere& sphere) noexcept {
   if (p.orthographic) return projected_area(p, sphere);
-  // A cone of half angle t, sin t = r/d, its axis at angle a off the view direction, cuts the image plane in an
-  // ellipse of area pi·f²·sin²t·cos t / (cos(a+t)·cos(a-t))^(3/2).
+  // A cone of half angle t, sin t = r/d, its axis at angle a off the view direction, cuts the image plane in
+  // an ellipse of area pi·f²·sin²t·cos t / (cos(a+t)·cos(a-t))^(3/2).
   const float d = distance(p.eye, sphere.centre);
   if (d <= sphere.radius) return kInfinity;
   const float w = dot(p.rows[3], sphere.centre);  // depth along the view direction
@@ -104,7 +108,8 @@ float projected_area_bound(const Projector& p, const Sphere& sphere) noexcept {
   if (cos_axis <= 0 || product <= 0) return kInfinity;
   const float f = p.pixels_per_metre;
   constexpr float kRounding = 1 + 1e-5f;
-  return kRounding * std::numbers::pi_v<float> * f * f * sine * sine * cosine / (product * std::sqrt(product));
+  return kRounding * std::numbers::pi_v<float> * f * f * sine * sine * cosine /
+         (product * std::sqrt(product));
 }
 
 }  // namespace sightline

@@ -28,7 +28,8 @@ Check check_camera(const Camera& c) {
   if (!(lengths > 0) || !(glm::length(glm::cross(forward, up)) > 1e-6 * lengths)) {
     return Failure{"camera: forward and up must not be zero or parallel"};
   }
-  if (!std::isfinite(c.shift_x) || !std::isfinite(c.shift_y)) return Failure{"camera: the shift is not finite"};
+  if (!std::isfinite(c.shift_x) || !std::isfinite(c.shift_y))
+    return Failure{"camera: the shift is not finite"};
   if (c.orthographic_height != 0) {
     if (!(c.orthographic_height > 0) || !std::isfinite(c.orthographic_height)) {
       return Failure{"camera: the orthographic height must be positive and finite"};

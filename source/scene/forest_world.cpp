@@ -23,7 +23,8 @@ constexpr std::array kParameters{
 // A tree of unit height: a trunk and a crown of three stacked cones or one rounded crown.
 Shape conifer(std::uint32_t sides) {
   Shape tree = cone(0.03f, 0.02f, 0, 0.2f, sides);
-  for (const auto& [radius, low, high] : {std::array{0.22f, 0.15f, 0.5f}, {0.17f, 0.4f, 0.75f}, {0.12f, 0.62f, 1.0f}}) {
+  for (const auto& [radius, low, high] :
+       {std::array{0.22f, 0.15f, 0.5f}, {0.17f, 0.4f, 0.75f}, {0.12f, 0.62f, 1.0f}}) {
     tree.append(cone(radius, 0, low, high, sides));
     tree.append(disc(radius, low, sides, false));
   }
@@ -42,7 +43,9 @@ Shape broadleaf(std::uint32_t sides) {
 Result<Scene> make_forest(const Parameters& parameters) {
   Scene scene;
   const std::uint32_t sides = parameters.count("sides");
-  const auto add = [&](const Shape& shape) { return scene.add_mesh(shape.positions, shape.normals, shape.indices); };
+  const auto add = [&](const Shape& shape) {
+    return scene.add_mesh(shape.positions, shape.normals, shape.indices);
+  };
   const std::array species{add(conifer(sides)), add(broadleaf(sides))};
   const float half = 0.5f * static_cast<float>(parameters.number("size"));
   const float transparent = static_cast<float>(parameters.number("transparent"));
@@ -54,7 +57,8 @@ Result<Scene> make_forest(const Parameters& parameters) {
     const float height = random.between(5, 14), heading = random.between(0, 2 * std::numbers::pi_v<float>);
     const std::uint32_t kind = random.below(2);
     const bool blended = random.unit() < transparent;
-    scene.add_object(species[kind], place(at, height, heading), blended ? Surface::transparent : Surface::opaque);
+    scene.add_object(species[kind], place(at, height, heading),
+                     blended ? Surface::transparent : Surface::opaque);
   }
   scene.viewpoints.push_back({"near", {0, kEyeHeight, 0}, {0, 0, -1}});
   scene.viewpoints.push_back({"far", {0, 0.5f * half, 2 * half}, {0, -0.4f, -1}});
@@ -63,6 +67,7 @@ Result<Scene> make_forest(const Parameters& parameters) {
 
 }  // namespace
 
-const WorldInfo kForestWorld{"forest", "trees at random on a square (Le Hoang Minh et al. 2022)", kParameters, make_forest};
+const WorldInfo kForestWorld{"forest", "trees at random on a square (Le Hoang Minh et al. 2022)", kParameters,
+                             make_forest};
 
 }  // namespace sightline::scene

@@ -17,7 +17,8 @@ std::uint32_t LevelPvs::leaf_at(const Vec3& point) const noexcept {
 
 bool LevelPvs::may_see(std::int32_t from, std::int32_t to) const noexcept {
   if (from < 0 || to < 0 || visibility.empty()) return true;
-  const std::size_t byte = static_cast<std::size_t>(from) * bytes_per_cluster + static_cast<std::size_t>(to) / 8;
+  const std::size_t byte =
+      static_cast<std::size_t>(from) * bytes_per_cluster + static_cast<std::size_t>(to) / 8;
   return (visibility[byte] >> (to % 8) & 1) != 0;
 }
 
@@ -43,7 +44,8 @@ Check check(const LevelPvs& level, std::size_t object_count) {
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     for (const std::int64_t child : {level.nodes[i].front, level.nodes[i].back}) {
       // Compilers write parents before children, so a larger index is also what rules out a circle.
-      if (child >= 0 && (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))) {
+      if (child >= 0 &&
+          (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))) {
         return bad("node " + std::to_string(i) + " has a child out of order or range");
       }
       if (child < 0 && -(child + 1) >= static_cast<std::int64_t>(level.leaves.size())) {
@@ -61,7 +63,8 @@ Check check(const LevelPvs& level, std::size_t object_count) {
     }
   }
   for (std::uint32_t object : level.leaf_objects) {
-    if (object >= object_count) return bad("a leaf lists object " + std::to_string(object) + ", out of range");
+    if (object >= object_count)
+      return bad("a leaf lists object " + std::to_string(object) + ", out of range");
   }
   if (!level.visibility.empty() &&
       (level.visibility.size() != std::uint64_t{level.clusters} * level.bytes_per_cluster ||

@@ -99,7 +99,9 @@ Result<Parameters> parse_parameters(std::string_view what, std::string_view spec
     }
     const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
     const ParameterInfo* info = find(declared, key);
-    if (!info) return Failure{subject + "it has no parameter '" + std::string(key) + "', expected " + listed(declared)};
+    if (!info)
+      return Failure{subject + "it has no parameter '" + std::string(key) + "', expected " +
+                     listed(declared)};
     if (Check bad = refuse(*info, value)) return Failure{subject + bad->message};
     out.set(std::string(key), std::string(value));
   }

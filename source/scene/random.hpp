@@ -10,7 +10,7 @@
 namespace sightline::scene {
 
 class Random {
- public:
+public:
   explicit Random(std::uint64_t seed) noexcept : state_(seed) {}
 
   std::uint64_t next() noexcept {
@@ -24,7 +24,9 @@ class Random {
   float unit() noexcept { return static_cast<float>(next() >> 40) * 0x1p-24f; }
   float between(float low, float high) noexcept { return low + (high - low) * unit(); }
   /// In [0, count).
-  std::uint32_t below(std::uint32_t count) noexcept { return static_cast<std::uint32_t>((next() >> 32) * count >> 32); }
+  std::uint32_t below(std::uint32_t count) noexcept {
+    return static_cast<std::uint32_t>((next() >> 32) * count >> 32);
+  }
 
   Vec3 inside(const Box& box) noexcept {
     const float x = between(box.min.x, box.max.x), y = between(box.min.y, box.max.y);
@@ -38,7 +40,7 @@ class Random {
     return {r * std::cos(angle), y, r * std::sin(angle)};
   }
 
- private:
+private:
   std::uint64_t state_;
 };
 

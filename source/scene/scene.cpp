@@ -119,7 +119,8 @@ Check check_geometry(const Scene& s) {
     if (mesh.index_count % 3 != 0) return Failure{name + ": expected three indices a triangle"};
     if (mesh.vertex_count == 0) return Failure{name + ": has no vertex"};
     for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-      if (s.indices[mesh.first_index + i] >= mesh.vertex_count) return Failure{name + ": an index is out of range"};
+      if (s.indices[mesh.first_index + i] >= mesh.vertex_count)
+        return Failure{name + ": an index is out of range"};
     }
   }
   return {};
@@ -131,8 +132,8 @@ Check check(const Scene& s) {
   const std::size_t n = s.size();
   if (n == 0) return Failure{"scene '" + s.name + "': it holds no object, expected at least one"};
   if (n >= kNoObject) return Failure{"scene '" + s.name + "': too many objects for 32-bit ids"};
-  for (const auto* array : {&s.bounds.min_x, &s.bounds.min_y, &s.bounds.min_z, &s.bounds.max_x, &s.bounds.max_y,
-                            &s.bounds.max_z, &s.radius}) {
+  for (const auto* array : {&s.bounds.min_x, &s.bounds.min_y, &s.bounds.min_z, &s.bounds.max_x,
+                            &s.bounds.max_y, &s.bounds.max_z, &s.radius}) {
     if (array->size() != n) return Failure{"scene '" + s.name + "': object arrays differ in length"};
   }
   if (s.transform.size() != n || s.surface.size() != n) {
@@ -141,7 +142,8 @@ Check check(const Scene& s) {
   if (Check bad = check_geometry(s)) return bad;
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_valid(s.bounds[i])) return object_failure(s, i, "bounds must be finite with min <= max");
-    if (!std::isfinite(s.radius[i]) || s.radius[i] < 0) return object_failure(s, i, "radius must be finite and >= 0");
+    if (!std::isfinite(s.radius[i]) || s.radius[i] < 0)
+      return object_failure(s, i, "radius must be finite and >= 0");
     if (s.mesh[i] >= s.meshes.size()) return object_failure(s, i, "its mesh is out of range");
   }
   if (s.level) return check(*s.level, n);

@@ -27,16 +27,28 @@ void Shape::append(const Shape& other) {
 Shape sphere(std::uint32_t subdivisions) {
   constexpr float a = 1, b = std::numbers::phi_v<float>;
   Shape shape;
-  for (const Vec3& v : {Vec3{-a, b, 0}, {a, b, 0}, {-a, -b, 0}, {a, -b, 0}, {0, -a, b}, {0, a, b}, {0, -a, -b},
-                        {0, a, -b}, {b, 0, -a}, {b, 0, a}, {-b, 0, -a}, {-b, 0, a}}) {
+  for (const Vec3& v : {Vec3{-a, b, 0},
+                        {a, b, 0},
+                        {-a, -b, 0},
+                        {a, -b, 0},
+                        {0, -a, b},
+                        {0, a, b},
+                        {0, -a, -b},
+                        {0, a, -b},
+                        {b, 0, -a},
+                        {b, 0, a},
+                        {-b, 0, -a},
+                        {-b, 0, a}}) {
     shape.positions.push_back(normalised(v));
   }
-  shape.indices = {0, 11, 5, 0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11, 4,  11, 10, 2,  10, 7, 6, 7, 1, 8,
-                   3, 9,  4, 3, 4, 2, 3, 2, 6, 3, 6, 8,  3, 8,  9,  4, 9, 5, 2, 4,  11, 6,  2,  10, 8,  6, 7, 9, 8, 1};
+  shape.indices = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                   4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                   6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
   for (std::uint32_t level = 0; level < subdivisions; ++level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t i, std::uint32_t j) {
-      const auto [at, added] = middles.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(shape.positions.size()));
+      const auto [at, added] =
+          middles.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(shape.positions.size()));
       if (added) {
         const Vec3 p = shape.positions[i], q = shape.positions[j];
         shape.positions.push_back(normalised({p.x + q.x, p.y + q.y, p.z + q.z}));
@@ -60,7 +72,8 @@ Shape cone(float base_radius, float top_radius, float base_y, float top_y, std::
   Shape shape;
   const float rise = top_y - base_y, slope = base_radius - top_radius;
   for (std::uint32_t i = 0; i <= sides; ++i) {
-    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i % sides) / static_cast<float>(sides);
+    const float angle =
+        2 * std::numbers::pi_v<float> * static_cast<float>(i % sides) / static_cast<float>(sides);
     const float c = std::cos(angle), s = std::sin(angle);
     shape.positions.push_back({base_radius * c, base_y, base_radius * s});
     shape.positions.push_back({top_radius * c, top_y, top_radius * s});

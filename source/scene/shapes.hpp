@@ -16,7 +16,8 @@ struct Shape {
   void append(const Shape& other);
 };
 
-/// Unit sphere about the origin: an icosahedron, each triangle split in four `subdivisions` times: 20·4ⁿ triangles.
+/// Unit sphere about the origin: an icosahedron, each triangle split in four `subdivisions` times: 20·4ⁿ
+/// triangles.
 Shape sphere(std::uint32_t subdivisions);
 
 /// A cone (top = 0) or frustum of a cone along y, without caps, `sides` sides.

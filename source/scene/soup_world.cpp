@@ -33,7 +33,8 @@ Result<Scene> make_soup(const Parameters& parameters) {
   const float half = 0.5f * static_cast<float>(parameters.number("size"));
   const float edge = static_cast<float>(parameters.number("edge"));
   // Objects as large as their share of the cube, so that together they fill it evenly.
-  const float reach = half * std::cbrt(std::fmin(1.0f, static_cast<float>(per_object) / static_cast<float>(triangles)));
+  const float reach =
+      half * std::cbrt(std::fmin(1.0f, static_cast<float>(per_object) / static_cast<float>(triangles)));
   Random random(parameters.count("seed"));
   Scene scene;
   std::vector<Vec3> positions, normals;

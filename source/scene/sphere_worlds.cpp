@@ -13,7 +13,8 @@ namespace {
 
 constexpr float kEyeHeight = 1.6f;
 
-constexpr ParameterInfo kDetail{"detail", "subdivisions of each sphere: 20·4^detail triangles", "3", 0, 6, true};
+constexpr ParameterInfo kDetail{"detail", "subdivisions of each sphere: 20·4^detail triangles", "3", 0, 6,
+                                true};
 constexpr ParameterInfo kSeed{"seed", "of the random numbers", "1", 0, 4294967295.0, true};
 
 constexpr std::array kRegularParameters{
@@ -83,7 +84,7 @@ Result<Scene> make_irregular(const Parameters& parameters) {
     for (std::uint32_t i = 0; i < members; ++i) {
       const float radius = random.between(0.3f, 1.6f);
       const float along = random.between(-reach, reach), up = random.unit();
-      const float across = kind == 1 ? random.between(-0.5f, 0.5f)                 // a wall
+      const float across = kind == 1 ? random.between(-0.5f, 0.5f)                // a wall
                                      : random.between(-reach, reach) * (1 - up);  // a mound
       const float narrowed = kind == 1 ? along : along * (1 - up);
       const Vec3 at{start.x + narrowed * std::cos(heading) - across * std::sin(heading), radius + up * height,
@@ -99,7 +100,8 @@ Result<Scene> make_irregular(const Parameters& parameters) {
 
 const WorldInfo kRegularWorld{"regular", "equal spheres, evenly spaced (Lee & Shin 2023)", kRegularParameters,
                               make_regular};
-const WorldInfo kIrregularWorld{"irregular", "spheres of uneven size and density, overlapping (Lee & Shin 2023)",
+const WorldInfo kIrregularWorld{"irregular",
+                                "spheres of uneven size and density, overlapping (Lee & Shin 2023)",
                                 kIrregularParameters, make_irregular};
 
 }  // namespace sightline::scene

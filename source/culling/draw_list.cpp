@@ -1,0 +1,89 @@
+#include "culling/draw_list.hpp"
+
+#include <array>
+#include <bit>
+#include <utility>
+
+namespace sightline::culling {
+
+namespace {
+
+// Floats in the order of their values as unsigned integers.
+std::uint32_t sortable(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+ObjectId id_of(std::uint64_t key) noexcept {
+  return static_cast<ObjectId>(key);
+}
+
+void append(const Mesh& mesh, std::uint32_t instances, std::uint32_t first, Frame& frame) noexcept {
+  frame.draws.push_back(
+      {mesh.index_count, instances, mesh.first_index, static_cast<std::int32_t>(mesh.first_vertex), first});
+  frame.stats.triangles += std::uint64_t{mesh.index_count / 3} * instances;
+}
+
+}  // namespace
+
+DrawList::DrawList(const Scene& scene) : instances_(scene.meshes.size(), 0) {
+  for (auto* keys : {&opaque_, &transparent_, &scratch_}) keys->reserve(scene.size());
+  touched_.reserve(scene.meshes.size());
+}
+
+// Radix sort of the keys' high halves, least significant byte first; std::sort would take four times as long.
+void DrawList::sort(std::vector<std::uint64_t>& keys) noexcept {
+  scratch_.resize(keys.size());
+  for (int shift = 32; shift < 64; shift += 8) {
+    std::array<std::uint32_t, 256> start{};
+    for (const std::uint64_t key : keys) ++start[key >> shift & 255];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& bucket : start) sum += std::exchange(bucket, sum);
+    for (const std::uint64_t key : keys) scratch_[start[key >> shift & 255]++] = key;
+    keys.swap(scratch_);
+  }
+}
+
+void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcept {
+  const Vec3 eye = eye_position(view), forward = view_direction(view);
+  const Boxes& b = scene.bounds;
+  opaque_.clear(), transparent_.clear();
+  for (const ObjectId id : frame.visible) {
+    const float depth = (0.5f * (b.min_x[id] + b.max_x[id]) - eye.x) * forward.x +
+                        (0.5f * (b.min_y[id] + b.max_y[id]) - eye.y) * forward.y +
+                        (0.5f * (b.min_z[id] + b.max_z[id]) - eye.z) * forward.z;
+    const std::uint32_t near_first = sortable(depth);
+    const bool blended = scene.surface[id] == Surface::transparent;
+    (blended ? transparent_ : opaque_)
+        .push_back(std::uint64_t{blended ? ~near_first : near_first} << 32 | id);
+  }
+  sort(opaque_);
+  sort(transparent_);
+
+  // Opaque: meshes in the order of their nearest object, their objects near to far.
+  touched_.clear();
+  for (const std::uint64_t key : opaque_) {
+    const std::uint32_t mesh = scene.mesh[id_of(key)];
+    if (instances_[mesh]++ == 0) touched_.push_back(mesh);
+  }
+  std::uint32_t first = 0;
+  frame.draws.clear();
+  for (const std::uint32_t mesh : touched_) {
+    const std::uint32_t count = std::exchange(instances_[mesh], first);
+    append(scene.meshes[mesh], count, first, frame);
+    first += count;
+  }
+  for (const std::uint64_t key : opaque_) frame.visible[instances_[scene.mesh[id_of(key)]]++] = id_of(key);
+  for (const std::uint32_t mesh : touched_) instances_[mesh] = 0;
+
+  for (std::size_t i = 0; i < transparent_.size();) {
+    const std::uint32_t mesh = scene.mesh[id_of(transparent_[i])], run = first;
+    for (; i < transparent_.size() && scene.mesh[id_of(transparent_[i])] == mesh; ++i) {
+      frame.visible[first++] = id_of(transparent_[i]);
+    }
+    append(scene.meshes[mesh], first - run, run, frame);
+  }
+  frame.stats.draw_calls = frame.draws.size();
+}
+
+}  // namespace sightline::culling
