@@ -220,30 +220,72 @@ void EmbreeJudge::move(std::span<const ObjectId> objects) {
   state_->transparent->move(objects);
 }
 
-std::uint32_t EmbreeJudge::confirmed_pixels(const View& view, const ItemBuffer& truth,
-                                            ObjectId object) const {
+namespace {
+
+/// One object's world triangles, and the sphere around them that most rays miss.
+class ObjectTriangles {
+public:
+  ObjectTriangles(const Scene& scene, ObjectId object) {
+    const Mesh& mesh = scene.meshes[scene.mesh[object]];
+    corners_.reserve(mesh.index_count);
+    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+      const std::uint32_t v = mesh.first_vertex + scene.indices[mesh.first_index + i];
+      const Vec3 p = transform_point(scene.transform[object], scene.positions[v]);
+      corners_.emplace_back(p.x, p.y, p.z);
+    }
+    const Sphere sphere = scene.sphere(object);
+    centre_ = {sphere.centre.x, sphere.centre.y, sphere.centre.z};
+    radius_ = 1.001 * static_cast<double>(sphere.radius) + 1e-5 * glm::length(centre_);
+  }
+
+  [[nodiscard]] bool met_by(const PixelRay& ray, Faces faces) const {
+    const glm::dvec3 offset = centre_ - ray.origin;
+    const glm::dvec3 across = offset - glm::dot(offset, ray.direction) * ray.direction;
+    if (glm::dot(across, across) > radius_ * radius_) return false;
+    for (std::size_t i = 0; i + 2 < corners_.size(); i += 3) {
+      if (meets(ray, {corners_[i], corners_[i + 1], corners_[i + 2]}, faces)) return true;
+    }
+    return false;
+  }
+
+private:
+  std::vector<glm::dvec3> corners_;
+  glm::dvec3 centre_;
+  double radius_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const ItemBuffer& truth,
+                                                         std::span<const ObjectId> objects) const {
   const Scene& scene = state_->scene;
-  const Mesh& mesh = scene.meshes[scene.mesh[object]];
-  const bool is_opaque = scene.surface[object] == Surface::opaque;
-  const auto vertex = [&](std::uint32_t i) {
-    const std::uint32_t v = mesh.first_vertex + scene.indices[mesh.first_index + i];
-    const Vec3 p = transform_point(scene.transform[object], scene.positions[v]);
-    return glm::dvec3(p.x, p.y, p.z);
-  };
+  std::vector<std::uint32_t> confirmed(objects.size(), 0);
+  if (objects.empty()) return confirmed;
+  std::vector<ObjectTriangles> triangles;
+  std::vector<std::size_t> place(scene.size(), objects.size()), transparent_places;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    triangles.emplace_back(scene, objects[i]);
+    place[objects[i]] = i;
+    if (scene.surface[objects[i]] == Surface::transparent) transparent_places.push_back(i);
+  }
   const PixelRays rays(view);
-  std::uint32_t confirmed = 0;
+  const auto add = [&](std::size_t i, const PixelRay& ray) {
+    confirmed[i] += triangles[i].met_by(ray, state_->faces);
+  };
   for (std::uint32_t y = 0; y < truth.height; ++y) {
     for (std::uint32_t x = 0; x < truth.width; ++x) {
-      if (is_opaque && truth.ids[std::size_t{y} * truth.width + x] != object) continue;
+      const ObjectId nearest = truth.ids[std::size_t{y} * truth.width + x];
+      const bool asked = nearest != kNoObject && place[nearest] < objects.size();
+      if (!asked && transparent_places.empty()) continue;
       const PixelRay ray = rays.through(x, y);
-      for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
-        if (!meets(ray, {vertex(i), vertex(i + 1), vertex(i + 2)}, state_->faces)) continue;
-        ++confirmed;
-        break;
-      }
+      if (asked) add(place[nearest], ray);
+      for (const std::size_t i : transparent_places) add(i, ray);
     }
   }
-  return is_opaque ? confirmed : std::min(confirmed, truth.pixels[object]);
+  // A transparent object's own rays may meet it behind something opaque, too.
+  for (const std::size_t i : transparent_places)
+    confirmed[i] = std::min(confirmed[i], truth.pixels[objects[i]]);
+  return confirmed;
 }
 
 }  // namespace sightline::lab

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <sightline/scene.hpp>
 #include <sightline/view.hpp>
@@ -32,11 +33,11 @@ public:
   /// Told after Scene::move_object of each of `objects`.
   void move(std::span<const ObjectId> objects);
 
-  /// Of the pixels in which `truth` sees the object, those whose ray meets one of its triangles in double
-  /// precision too. Embree works in single: what it sees on a silhouette alone may be its own rounding, and
-  /// nobody is accused on that.
-  [[nodiscard]] std::uint32_t confirmed_pixels(const View& view, const ItemBuffer& truth,
-                                               ObjectId object) const;
+  /// For each of `objects`: of the pixels in which `truth` sees it, those whose ray meets one of its
+  /// triangles in double precision too. Embree works in single: what it sees on a silhouette alone may be its
+  /// own rounding, and nobody is accused on that.
+  [[nodiscard]] std::vector<std::uint32_t> confirmed_pixels(const View& view, const ItemBuffer& truth,
+                                                            std::span<const ObjectId> objects) const;
 
 private:
   struct State;

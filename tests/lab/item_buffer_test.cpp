@@ -294,7 +294,8 @@ TEST(ItemBuffer, SameAnswerTwiceAndConfirmedByDouble) {
   for (ObjectId object = 0; object < scene.size() && looked_at < 20; ++object) {
     if (first.pixels[object] < 20) continue;
     ++looked_at;
-    EXPECT_NEAR(judge.confirmed_pixels(view, first, object), first.pixels[object], 2);
+    const std::array<ObjectId, 1> one{object};
+    EXPECT_NEAR(judge.confirmed_pixels(view, first, one)[0], first.pixels[object], 2);
   }
   EXPECT_GT(looked_at, 5u);
 }
