@@ -1,4 +1,4 @@
-// Whole files, written under a temporary name and renamed, so that no reader ever meets half of one.
+// Text files, over the readers' and writers' own functions.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,7 @@
 
 namespace sightline::lab {
 
-/// Replaces the file's content. A target that is no regular file (a pipe, a device) is written to directly.
-/// Throws Error, and leaves no file and the old content, where it cannot be written to the end.
+/// Replaces the file's content, all or nothing (io::write_file). Throws Error where it cannot be written.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// The file's content. Throws Error where it cannot be read or holds more than `limit` bytes.

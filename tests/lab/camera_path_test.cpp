@@ -17,11 +17,12 @@
 #include "lab/path_file.hpp"
 #include "lab/random_views.hpp"
 #include "lab/roadmap.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace sightline::lab {
 namespace {
 
+using test::TemporaryFolder;
 using testing::HasSubstr;
 
 std::string refusal_of(const std::string& text) {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace sightline::lab {
+namespace sightline::test {
 
 class TemporaryFolder {
 public:
@@ -36,4 +36,4 @@ private:
   std::filesystem::path path_;
 };
 
-}  // namespace sightline::lab
+}  // namespace sightline::test
