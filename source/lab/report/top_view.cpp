@@ -10,7 +10,7 @@
 namespace sightline::lab::report {
 namespace {
 
-constexpr Colour kFrustum{110, 118, 130, 255};
+constexpr Colour kFrustum{96, 104, 118, 255};
 
 struct Point {
   float x, y;
@@ -79,7 +79,7 @@ void draw_frustum(const Map& map, const View& view, Canvas& canvas) {
   const std::vector<Point> hull = hull_of(std::move(corners));
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Point &a = hull[i], &b = hull[(i + 1) % hull.size()];
-    canvas.line(a.x, a.y, b.x, b.y, 3, kFrustum);
+    canvas.line(a.x, a.y, b.x, b.y, 5, kFrustum);
   }
 }
 
@@ -92,8 +92,8 @@ void draw_eye(const Map& map, const Snapshot& snapshot, Canvas& canvas) {
     canvas.line(at.x, at.y, at.x + size * direction.x / length, at.y + size * direction.z / length, 6,
                 kFrustum);
   }
-  canvas.disc(at.x, at.y, 13, {255, 255, 255, 255});
-  canvas.disc(at.x, at.y, 10, {30, 34, 40, 255});
+  canvas.disc(at.x, at.y, 18, {255, 255, 255, 255});
+  canvas.disc(at.x, at.y, 13, {30, 34, 40, 255});
 }
 
 Colour faded(Colour colour, std::uint8_t alpha) {
