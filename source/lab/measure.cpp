@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include <sightline/version.hpp>
 #include <sightline/error.hpp>
+#include <sightline/version.hpp>
 
 #include "lab/file.hpp"
 #include "lab/loss.hpp"
