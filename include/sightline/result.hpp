@@ -22,8 +22,9 @@ public:
 
   explicit operator bool() const noexcept { return held_.index() == 0; }
   /// The value; only where the result is true.
-  T& operator*() noexcept { return *std::get_if<0>(&held_); }
-  const T& operator*() const noexcept { return *std::get_if<0>(&held_); }
+  T& operator*() & noexcept { return *std::get_if<0>(&held_); }
+  T&& operator*() && noexcept { return std::move(*std::get_if<0>(&held_)); }
+  const T& operator*() const& noexcept { return *std::get_if<0>(&held_); }
   T* operator->() noexcept { return std::get_if<0>(&held_); }
   const T* operator->() const noexcept { return std::get_if<0>(&held_); }
   /// The reason; only where the result is false.

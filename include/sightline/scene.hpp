@@ -48,7 +48,7 @@ enum class Surface : std::uint8_t { opaque, transparent };
 /// A named place to look from: a level's spawn point, a file's camera, a generated world's own view.
 struct Viewpoint {
   std::string name;
-  Vec3 eye;
+  Vec3 eye{};
   Vec3 forward{0, 0, -1};
 };
 

@@ -22,7 +22,7 @@ enum class Depth : std::uint8_t {
 
 /// A camera as people describe it. `make_view` turns it into matrices.
 struct Camera {
-  Vec3 eye;
+  Vec3 eye{};
   Vec3 forward{0, 0, -1};  ///< any length but zero, not along `up`
   Vec3 up{0, 1, 0};
   float vertical_fov = 1.04719755f;  ///< radians, 0 < fov < pi; ignored where `orthographic_height` is set

@@ -1,0 +1,121 @@
+// What every method of the registry keeps to, whatever it is: a new one is tested the day it is added.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include <sightline/method.hpp>
+#include <sightline/worlds.hpp>
+
+#include "support/random_views.hpp"
+
+namespace sightline {
+namespace {
+
+constexpr Box kAround{{-60, -5, -60}, {60, 30, 60}};
+
+void expect_sound(const Scene& scene, const Frame& frame, std::string_view name) {
+  const std::set<ObjectId> unique(frame.visible.begin(), frame.visible.end());
+  ASSERT_EQ(unique.size(), frame.visible.size()) << name << " draws an object twice";
+  if (!unique.empty()) ASSERT_LT(*unique.rbegin(), scene.size()) << name;
+  std::uint64_t drawn = 0;
+  for (const DrawCommand& draw : frame.draws) {
+    ASSERT_EQ(draw.first_instance, drawn) << name;
+    drawn += draw.instance_count;
+  }
+  ASSERT_EQ(drawn, frame.visible.size()) << name;
+  ASSERT_EQ(frame.stats.objects, scene.size()) << name;
+  ASSERT_EQ(frame.stats.draw_calls, frame.draws.size()) << name;
+  const CullStats& s = frame.stats;
+  ASSERT_EQ(s.culled_frustum + s.culled_contribution + s.culled_occlusion + frame.visible.size(),
+            scene.size())
+      << name;
+}
+
+class Conformance : public testing::TestWithParam<std::string> {};
+
+TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
+  const Scene scene = *generate_world(GetParam());
+  for (const MethodInfo& info : cpu_methods()) {
+    if (!info.fits(scene)) continue;
+    const auto method = *create_method(info.name, scene), twin = *create_method(info.name, scene);
+    scene::Random random(11);
+    Frame frame, again;
+    for (int v = 0; v < 50; ++v) {
+      const View view = test::random_view(random, kAround);
+      method->cull(view, frame);
+      expect_sound(scene, frame, info.name);
+      twin->cull(view, again);
+      ASSERT_EQ(frame.visible, again.visible) << info.name;
+    }
+  }
+}
+
+// Conservative and exact methods keep every object with a vertex inside the clip volume that no other hides;
+// the lab's verification does the hiding, this only what needs no picture: a lone object in view is always
+// kept.
+TEST_P(Conformance, ALoneObjectInViewIsKept) {
+  Scene all = *generate_world(GetParam());
+  scene::Random random(12);
+  for (const MethodInfo& info : cpu_methods()) {
+    if (!info.fits(all) || info.guarantee == Guarantee::approximate) continue;
+    for (int v = 0; v < 20; ++v) {
+      Scene lone;
+      const Mesh& mesh = all.meshes[0];
+      lone.add_mesh(std::span(all.positions).subspan(mesh.first_vertex, mesh.vertex_count),
+                    std::span(all.normals).subspan(mesh.first_vertex, mesh.vertex_count),
+                    std::span(all.indices).subspan(mesh.first_index, mesh.index_count));
+      const Vec3 eye = random.inside(kAround), way = random.direction();
+      const float distance = random.between(5, 60);
+      Affine transform;
+      transform.rows[0].w = eye.x + way.x * distance;
+      transform.rows[1].w = eye.y + way.y * distance;
+      transform.rows[2].w = eye.z + way.z * distance;
+      lone.add_object(0, transform);
+      const Vec3 centre = lone.sphere(0).centre;
+      Camera camera{.eye = eye, .forward = {centre.x - eye.x, centre.y - eye.y, centre.z - eye.z}};
+      if (std::fabs(way.y) > 0.9f) camera.up = {1, 0, 0};
+      Frame frame;
+      (*create_method(info.name, lone))->cull(*make_view(camera, 640, 360), frame);
+      ASSERT_EQ(frame.visible.size(), 1u) << info.name;
+    }
+  }
+}
+
+TEST_P(Conformance, MovedObjectsAreFollowed) {
+  for (const MethodInfo& info : cpu_methods()) {
+    Scene scene = *generate_world(GetParam());
+    if (!info.fits(scene)) continue;
+    const auto method = *create_method(info.name, scene);
+    scene::Random random(13);
+    for (int step = 0; step < 10; ++step) {
+      std::vector<ObjectId> moved;
+      for (int i = 0; i < 30; ++i) {
+        const ObjectId object = random.below(static_cast<std::uint32_t>(scene.size()));
+        Affine transform = scene.transform[object];
+        const Vec3 to = random.inside(kAround);
+        transform.rows[0].w = to.x, transform.rows[1].w = to.y, transform.rows[2].w = to.z;
+        scene.move_object(object, transform);
+        moved.push_back(object);
+      }
+      method->update(moved);
+      const auto fresh = *create_method(info.name, scene);
+      const View view = test::random_view(random, kAround);
+      Frame frame, expected;
+      method->cull(view, frame);
+      fresh->cull(view, expected);
+      std::sort(frame.visible.begin(), frame.visible.end());
+      std::sort(expected.visible.begin(), expected.visible.end());
+      ASSERT_EQ(frame.visible, expected.visible) << info.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, Conformance,
+                         testing::Values("regular?columns=20&rows=20&detail=0",
+                                         "irregular?spheres=500&size=120&detail=0",
+                                         "forest?trees=500&size=120", "soup?triangles=3000&size=100"),
+                         [](const auto& info) { return info.param.substr(0, info.param.find('?')); });
+
+}  // namespace
+}  // namespace sightline

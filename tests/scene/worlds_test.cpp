@@ -1,0 +1,69 @@
+#include <sightline/worlds.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace sightline {
+namespace {
+
+// Small versions of every world, so that a new one is tested the day it is added.
+std::string small(std::string_view name) {
+  if (name == "regular") return "regular?columns=7&rows=5";
+  if (name == "irregular") return "irregular?spheres=300";
+  if (name == "forest") return "forest?trees=300";
+  if (name == "soup") return "soup?triangles=2000";
+  return std::string(name);
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST(Worlds, AreSoundAndReproducible) {
+  for (const WorldInfo& world : worlds()) {
+    const Result<Scene> a = generate_world(small(world.name)), b = generate_world(small(world.name));
+    ASSERT_TRUE(a) << a.failure().message;
+    EXPECT_FALSE(check(*a)) << world.name << ": " << check(*a)->message;
+    EXPECT_TRUE(same_bytes(a->transform, b->transform)) << world.name;
+    EXPECT_TRUE(same_bytes(a->positions, b->positions)) << world.name;
+    EXPECT_GE(a->viewpoints.size(), 2u) << world.name;
+  }
+}
+
+TEST(Worlds, HaveThePublishedSizes) {
+  EXPECT_EQ(generate_world("regular")->size(), 9024u);
+  EXPECT_EQ(generate_world("irregular")->size(), 9024u);
+  EXPECT_EQ(generate_world("forest")->size(), 30000u);
+  EXPECT_EQ(triangle_count(*generate_world("soup?triangles=12345")), 12345u);
+  EXPECT_EQ(generate_world("regular?detail=2")->triangles(0), 320u);
+}
+
+TEST(Worlds, AnotherSeedIsAnotherWorld) {
+  const Scene a = *generate_world("forest?trees=50&seed=1"), b = *generate_world("forest?trees=50&seed=2");
+  EXPECT_FALSE(same_bytes(a.transform, b.transform));
+}
+
+TEST(Worlds, TrianglesFaceOutwards) {
+  const Scene scene = *generate_world("regular?columns=1&rows=1&detail=1");
+  for (std::size_t i = 0; i < scene.indices.size(); i += 3) {
+    const Vec3 a = scene.positions[scene.indices[i]], b = scene.positions[scene.indices[i + 1]],
+               c = scene.positions[scene.indices[i + 2]];
+    const Vec3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+    const Vec3 n{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    EXPECT_GT(n.x * a.x + n.y * a.y + n.z * a.z, 0);
+  }
+}
+
+TEST(Worlds, RefuseWhatTheyDoNotKnow) {
+  const Result<Scene> unknown = generate_world("moon");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.failure().message.find("regular, irregular, forest, soup"), std::string::npos);
+  EXPECT_FALSE(generate_world("forest?trees=0"));
+  EXPECT_FALSE(generate_world("forest?trees=many"));
+  EXPECT_FALSE(generate_world(""));
+}
+
+}  // namespace
+}  // namespace sightline
