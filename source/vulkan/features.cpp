@@ -28,6 +28,7 @@ constexpr std::array kFeatures{
     Feature{"scalarBlockLayout", true, nullptr, &Vulkan12::scalarBlockLayout},
     Feature{"dynamicRendering", true, nullptr, nullptr, &Vulkan13::dynamicRendering},
     Feature{"synchronization2", true, nullptr, nullptr, &Vulkan13::synchronization2},
+    Feature{"maintenance4", true, nullptr, nullptr, &Vulkan13::maintenance4},
 };
 
 }  // namespace

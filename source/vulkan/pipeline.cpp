@@ -31,15 +31,16 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
     modules.push_back(module(device, code));
     stages.push_back({{}, stage, *modules.back(), "main"});
   }
-  const std::uint32_t stride = state.input == Input::mesh ? 24 : 28;
-  const vk::VertexInputBindingDescription binding{0, stride};
-  const std::array attributes{vk::VertexInputAttributeDescription{0, 0, vk::Format::eR32G32B32Sfloat, 0},
-                              vk::VertexInputAttributeDescription{1, 0, vk::Format::eR32G32B32Sfloat, 12},
-                              vk::VertexInputAttributeDescription{2, 0, vk::Format::eR32Uint, 24}};
+  const bool mesh = state.input == Input::mesh;
+  const vk::VertexInputBindingDescription binding{0, mesh ? 24u : 32u};
+  const std::array attributes{
+      vk::VertexInputAttributeDescription{0, 0, vk::Format::eR32G32B32Sfloat, 0},
+      vk::VertexInputAttributeDescription{1, 0, vk::Format::eR32G32B32Sfloat, mesh ? 12u : 16u},
+      vk::VertexInputAttributeDescription{2, 0, vk::Format::eR32Uint, 12}};
   vk::PipelineVertexInputStateCreateInfo input;
   if (state.input != Input::none) {
     input.setVertexBindingDescriptions(binding);
-    input.vertexAttributeDescriptionCount = state.input == Input::mesh ? 2 : 3;
+    input.vertexAttributeDescriptionCount = mesh ? 2 : 3;
     input.pVertexAttributeDescriptions = attributes.data();
   }
   const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, state.topology};

@@ -22,7 +22,7 @@ private:
 enum class Input : std::uint8_t {
   none,
   mesh,   ///< position and normal, 24 bytes
-  point,  ///< centre, half extent and object id, 28 bytes
+  point,  ///< centre, object id and half extent, 32 bytes (partition::ChunkVertex)
 };
 
 struct GraphicsState {

@@ -1,6 +1,7 @@
 #version 460
-#include "scan.h"
 #include "vulkan/shared.h"
+
+#include "scan.h"
 layout(local_size_x = 256) in;
 
 // Exclusive prefix sums within blocks of 256 slots (Hillis & Steele 1986), and each block's sum.

@@ -1,6 +1,7 @@
 #version 460
-#include "scan.h"
 #include "vulkan/shared.h"
+
+#include "scan.h"
 layout(local_size_x = 256) in;
 
 void main() {
