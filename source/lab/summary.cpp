@@ -57,7 +57,7 @@ std::string next_best(const std::vector<MethodSummary>& safe) {
                   format_count(next.triangles), format_count(next.draw_calls));
   // Timing alone does not repeat to a few percent.
   if (estimated_frame_ms(next) < 1.05 * estimated_frame_ms(best)) {
-    return fmt::format(" {} is as good within 5 %: {}.", next.method, figures);
+    return fmt::format(" {} comes within 5 % of that frame: {}.", next.method, figures);
   }
   return fmt::format(" Next of the {} that promise and kept as much is {}: {}.", safe.size(), next.method,
                      figures);
