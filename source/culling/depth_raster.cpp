@@ -78,49 +78,75 @@ HWY_INLINE hn::Mask<F> pixels_at(std::uint64_t pixels, std::size_t i) {
   return hn::LoadMaskBits(F(), bytes);
 }
 
+// A tile's first touch: nothing there, and nothing to be waited for beyond the image.
 void touch(DepthTiles& tiles, std::uint32_t tx, std::uint32_t ty) {
+  const F f;
   const std::size_t tile = std::size_t{ty} * tiles.columns + tx;
   tiles.drawn[tile] = 1;
   float* out = &tiles.nearness[tile * 64];
-  for (std::uint32_t i = 0; i < 64; ++i) {
-    const bool inside = tx * kTile + i % 8 < tiles.width && ty * kTile + i / 8 < tiles.height;
-    out[i] = inside ? -kInfinity : kInfinity;
+  const auto columns = hn::Set(f, static_cast<float>(tiles.width) - static_cast<float>(tx * kTile));
+  const auto rows = hn::Set(f, static_cast<float>(tiles.height) - static_cast<float>(ty * kTile));
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
+    const auto inside =
+        hn::And(hn::Lt(hn::Load(f, kColumn + i), columns), hn::Lt(hn::Load(f, kRow + i), rows));
+    hn::Store(hn::IfThenElse(inside, hn::Set(f, -kInfinity), hn::Set(f, kInfinity)), f, out + i);
   }
 }
 
-// The polygon's nearness over a tile's pixels, from the tile's first one.
+// The polygon's nearness over two rows of a tile, from their first pixel.
 struct TilePlanes {
-  alignas(64) std::array<std::array<float, 64>, 3> offset;
-  std::array<float, 3> most{};  // offset within a tile
+  alignas(64) std::array<std::array<float, 16>, 3> offset;
+  std::array<float, 3> most;  // offset within a tile
 };
 
+HWY_INLINE TilePlanes tile_planes(const Convex& polygon) {
+  const F f;
+  TilePlanes out;
+  for (std::size_t p = 0; p < polygon.planes; ++p) {
+    const VF across = hn::Set(f, polygon.across[p]), down = hn::Set(f, polygon.down[p]);
+    for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+      const VF offset =
+          hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i)));
+      hn::Store(offset, f, &out.offset[p][i]);
+    }
+    out.most[p] = std::max(0.0f, 7 * polygon.across[p]) + std::max(0.0f, 7 * polygon.down[p]);
+  }
+  return out;
+}
+
+template <std::size_t kPlanes>
 HWY_INLINE void update_tile(DepthTiles& tiles, const Convex& polygon, const TilePlanes& planes,
                             std::uint32_t tx, std::uint32_t ty, std::uint64_t pixels) {
   const F f;
   const float x = static_cast<float>(tx * kTile) + 0.5f, y = static_cast<float>(ty * kTile) + 0.5f;
-  std::array<float, 3> base;
+  std::array<float, kPlanes> base;
   float nearest = kInfinity;
-  for (std::size_t p = 0; p < polygon.planes; ++p) {
+  for (std::size_t p = 0; p < kPlanes; ++p) {
     base[p] = (polygon.at[p] + x * polygon.across[p]) + y * polygon.down[p];
     nearest = std::min(nearest, base[p] + planes.most[p]);
   }
-  float& farthest = tiles.farthest[std::size_t{ty} * tiles.stride + tx];
-  if (nearest <= farthest) return;
+  const std::size_t flat = std::size_t{ty} * tiles.stride + tx;
+  if (nearest <= tiles.farthest[flat]) return;
   const std::size_t tile = std::size_t{ty} * tiles.columns + tx;
   if (!tiles.drawn[tile]) touch(tiles, tx, ty);
+  tiles.nearest[flat] = std::max(tiles.nearest[flat], nearest + std::fabs(nearest) * 1e-6f);
   float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
   VF least = hn::Set(f, kInfinity);
-  for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
-    VF depth = hn::Add(hn::Set(f, base[0]), hn::Load(f, &planes.offset[0][i]));
-    for (std::size_t p = 1; p < polygon.planes; ++p) {
-      depth = hn::Min(depth, hn::Add(hn::Set(f, base[p]), hn::Load(f, &planes.offset[p][i])));
+  for (std::size_t two_rows = 0; two_rows < 4; ++two_rows) {
+    for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+      VF depth = hn::Set(f, kInfinity);
+      for (std::size_t p = 0; p < kPlanes; ++p) {
+        const float start = base[p] + static_cast<float>(2 * two_rows) * polygon.down[p];
+        depth = hn::Min(depth, hn::Add(hn::Set(f, start), hn::Load(f, &planes.offset[p][i])));
+      }
+      const std::size_t at = 16 * two_rows + i;
+      const VF old = hn::Load(f, out + at);
+      const VF now = hn::IfThenElse(pixels_at(pixels, at), hn::Max(old, depth), old);
+      hn::Store(now, f, out + at);
+      least = hn::Min(least, now);
     }
-    const VF old = hn::Load(f, out + i);
-    const VF now = hn::IfThenElse(pixels_at(pixels, i), hn::Max(old, depth), old);
-    hn::Store(now, f, out + i);
-    least = hn::Min(least, now);
   }
-  farthest = hn::GetLane(hn::MinOfLanes(f, least));
+  tiles.farthest[flat] = hn::GetLane(hn::MinOfLanes(f, least));
 }
 
 // Eight scanlines' spans as columns [begin, end), empty where nothing is covered.
@@ -203,21 +229,9 @@ HWY_INLINE std::uint32_t end_column(const Spans& spans) {
 }
 #endif
 
-void draw_polygon(DepthTiles& tiles, const Convex& polygon) {
-  const F f;
-  const float top = std::max(polygon.top, 0.5f),
-              bottom = std::min(polygon.bottom, static_cast<float>(tiles.height) - 0.5f);
-  if (!(top <= bottom) || polygon.left_edges == 0 || polygon.right_edges == 0) return;
-  TilePlanes planes;
-  for (std::size_t p = 0; p < polygon.planes; ++p) {
-    const VF across = hn::Set(f, polygon.across[p]), down = hn::Set(f, polygon.down[p]);
-    for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
-      const VF offset =
-          hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i)));
-      hn::Store(offset, f, &planes.offset[p][i]);
-    }
-    planes.most[p] = std::max(0.0f, 7 * polygon.across[p]) + std::max(0.0f, 7 * polygon.down[p]);
-  }
+template <std::size_t kPlanes>
+HWY_INLINE void draw_with_planes(DepthTiles& tiles, const Convex& polygon, float top, float bottom) {
+  const TilePlanes planes = tile_planes(polygon);
   const auto first = static_cast<std::uint32_t>(top) / kTile,
              last = static_cast<std::uint32_t>(bottom) / kTile;
   for (std::uint32_t ty = first; ty <= last; ++ty) {
@@ -226,9 +240,18 @@ void draw_polygon(DepthTiles& tiles, const Convex& polygon) {
     const std::uint32_t begin = first_column(spans), end = end_column(spans);
     for (std::uint32_t x = begin & ~(kTile - 1); x < end; x += kTile) {
       const std::uint64_t pixels = pixels_of(spans, x);
-      if (pixels != 0) update_tile(tiles, polygon, planes, x / kTile, ty, pixels);
+      if (pixels != 0) update_tile<kPlanes>(tiles, polygon, planes, x / kTile, ty, pixels);
     }
   }
+}
+
+void draw_polygon(DepthTiles& tiles, const Convex& polygon) {
+  const float top = std::max(polygon.top, 0.5f),
+              bottom = std::min(polygon.bottom, static_cast<float>(tiles.height) - 0.5f);
+  if (!(top <= bottom) || polygon.left_edges == 0 || polygon.right_edges == 0) return;
+  if (polygon.planes == 1) return draw_with_planes<1>(tiles, polygon, top, bottom);
+  if (polygon.planes == 2) return draw_with_planes<2>(tiles, polygon, top, bottom);
+  draw_with_planes<3>(tiles, polygon, top, bottom);
 }
 
 // Whether each pixel centre of the columns and rows, last ones included, has an occluder nearer than
@@ -251,6 +274,7 @@ HWY_INLINE bool hidden(const DepthTiles& tiles, std::uint32_t x0, std::uint32_t 
       for (; bits != 0; bits &= bits - 1) {
         const std::uint32_t t = tx + static_cast<std::uint32_t>(std::countr_zero(bits));
         const std::size_t tile = std::size_t{ty} * tiles.columns + t;
+        if (nearness > tiles.nearest[std::size_t{ty} * tiles.stride + t]) return false;
         if (!tiles.drawn[tile]) return false;
         // The rectangle's pixels within the tile.
         const std::uint32_t left = std::max(x0, t * kTile) - t * kTile,
@@ -287,94 +311,121 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, std::uint32_t x0, std::uin
   return true;
 }
 
-// Eight corners of a box, projected.
-struct Corners {
-  alignas(64) std::array<float, 8> x, y;
+// A vector of boxes, projected: corner c of box i stands at [c][i].
+struct ProjectedBoxes {
+  alignas(64) std::array<std::array<float, 16>, 6> sides;  // about the eye
+  alignas(64) std::array<std::array<float, 16>, 8> x, y;
+  alignas(64) std::array<float, 16> clearance, left, right, top, bottom, nearest;
 };
 
-void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
-  const Row f;
+HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::size_t count,
+                              ProjectedBoxes& out) {
+  const F f;
   const EyeProjection& e = tiles.projection;
-  const PixelRays& rays = tiles.rays;
-  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
-  alignas(64) static constexpr float kX[8] = {0, 1, 0, 1, 0, 1, 0, 1}, kY[8] = {0, 0, 1, 1, 0, 0, 1, 1},
-                                     kZ[8] = {0, 0, 0, 0, 1, 1, 1, 1};
-  for (const Box& box : boxes) {
-    const std::array<float, 3> low{(box.min.x - e.eye_high.x) - e.eye_low.x,
-                                   (box.min.y - e.eye_high.y) - e.eye_low.y,
-                                   (box.min.z - e.eye_high.z) - e.eye_low.z};
-    const std::array<float, 3> high{(box.max.x - e.eye_high.x) - e.eye_low.x,
-                                    (box.max.y - e.eye_high.y) - e.eye_low.y,
-                                    (box.max.z - e.eye_high.z) - e.eye_low.z};
-    if (!(low[0] <= high[0] && low[1] <= high[1] && low[2] <= high[2])) continue;
-    Corners c;
-    auto left = hn::Set(f, kInfinity), top = left, clear = left;
-    auto right = hn::Set(f, -kInfinity), bottom = right, nearest = right;
-    for (std::size_t i = 0; i < 8; i += hn::Lanes(f)) {
-      const auto pick = [&](const float* which, float a, float b) HWY_ATTR {
-        return hn::IfThenElse(hn::Ne(hn::Load(f, which + i), hn::Zero(f)), hn::Set(f, b), hn::Set(f, a));
-      };
-      const auto qx = pick(kX, low[0], high[0]), qy = pick(kY, low[1], high[1]),
-                 qz = pick(kZ, low[2], high[2]);
-      const auto dot = [&](const Vec4& row) HWY_ATTR {
-        return hn::Add(hn::Add(hn::Add(hn::Mul(hn::Set(f, row.x), qx), hn::Mul(hn::Set(f, row.y), qy)),
-                               hn::Mul(hn::Set(f, row.z), qz)),
-                       hn::Set(f, row.w));
-      };
-      clear = hn::Min(clear, dot(rays.near_plane));
-      const auto over_w = hn::Div(hn::Set(f, 1.0f), dot(e.w));
-      const auto x = hn::Mul(dot(e.x), over_w), y = hn::Mul(dot(e.y), over_w);
-      nearest = hn::Max(nearest, e.orthographic ? dot(e.nearness) : over_w);
-      left = hn::Min(left, x), right = hn::Max(right, x), top = hn::Min(top, y), bottom = hn::Max(bottom, y);
-      hn::Store(x, f, &c.x[i]);
-      hn::Store(y, f, &c.y[i]);
-    }
-    const float near_w = hn::GetLane(hn::MinOfLanes(f, clear));
-    const float x0 = hn::GetLane(hn::MinOfLanes(f, left)), x1 = hn::GetLane(hn::MaxOfLanes(f, right));
-    const float y0 = hn::GetLane(hn::MinOfLanes(f, top)), y1 = hn::GetLane(hn::MaxOfLanes(f, bottom));
-    const float most = hn::GetLane(hn::MaxOfLanes(f, nearest));
-    if (!(near_w >= 0)) {
-      draw_clipped_box(tiles, low, high);
-      continue;
-    }
-    if (!(x1 > 0 && x0 < width && y1 > 0 && y0 < height)) continue;
+  for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
+    const Box& box = boxes[std::min(i, count - 1)];
+    out.sides[0][i] = box.min.x, out.sides[1][i] = box.min.y, out.sides[2][i] = box.min.z;
+    out.sides[3][i] = box.max.x, out.sides[4][i] = box.max.y, out.sides[5][i] = box.max.z;
+  }
+  const float high[3] = {e.eye_high.x, e.eye_high.y, e.eye_high.z},
+              low[3] = {e.eye_low.x, e.eye_low.y, e.eye_low.z};
+  VF q[6];
+  for (std::size_t side = 0; side < 6; ++side) {
+    q[side] = hn::Sub(hn::Sub(hn::Load(f, out.sides[side].data()), hn::Set(f, high[side % 3])),
+                      hn::Set(f, low[side % 3]));
+    hn::Store(q[side], f, out.sides[side].data());
+  }
+  VF left = hn::Set(f, kInfinity), top = left, clear = left;
+  VF right = hn::Set(f, -kInfinity), bottom = right, nearest = right;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const VF qx = q[c & 1 ? 3 : 0], qy = q[c & 2 ? 4 : 1], qz = q[c & 4 ? 5 : 2];
+    const auto dot = [&](const Vec4& row) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Add(hn::Mul(hn::Set(f, row.x), qx), hn::Mul(hn::Set(f, row.y), qy)),
+                             hn::Mul(hn::Set(f, row.z), qz)),
+                     hn::Set(f, row.w));
+    };
+    clear = hn::Min(clear, dot(tiles.rays.near_plane));
+    const VF over_w = hn::Div(hn::Set(f, 1.0f), dot(e.w));
+    const VF x = hn::Mul(dot(e.x), over_w), y = hn::Mul(dot(e.y), over_w);
+    nearest = hn::Max(nearest, e.orthographic ? dot(e.nearness) : over_w);
+    left = hn::Min(left, x), right = hn::Max(right, x), top = hn::Min(top, y), bottom = hn::Max(bottom, y);
+    hn::Store(x, f, out.x[c].data());
+    hn::Store(y, f, out.y[c].data());
+  }
+  hn::Store(clear, f, out.clearance.data());
+  hn::Store(nearest, f, out.nearest.data());
+  hn::Store(left, f, out.left.data());
+  hn::Store(right, f, out.right.data());
+  hn::Store(top, f, out.top.data());
+  hn::Store(bottom, f, out.bottom.data());
+}
 
-    // The faces that surely look at the eye.
-    std::uint32_t faces = 0;
-    Convex polygon;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const float margin = 1e-6f + 1e-5f * std::max(std::fabs(low[a]), std::fabs(high[a]));
-      const bool down = e.orthographic ? rays.forward[a] > 1e-5f : low[a] > margin;
-      const bool up = e.orthographic ? rays.forward[a] < -1e-5f : high[a] < -margin;
-      if (!down && !up) continue;
-      faces |= 1u << (2 * a + (up ? 1 : 0));
-      const float at = down ? low[a] : high[a];
-      const float scale = 1 / (e.orthographic ? rays.forward[a] : at);
-      const std::size_t p = polygon.planes++;
-      polygon.across[p] = rays.across[a] * scale;
-      polygon.down[p] = rays.down[a] * scale;
-      polygon.at[p] = (e.orthographic ? rays.at[a] - at : rays.at[a]) * scale;
-      move_back(polygon, p, most);
+// The faces of box i that surely look at the eye, and their planes.
+HWY_INLINE std::uint32_t add_faces(const DepthTiles& tiles, const ProjectedBoxes& boxes, std::size_t i,
+                                   Convex& polygon) {
+  const PixelRays& rays = tiles.rays;
+  const bool orthographic = tiles.projection.orthographic;
+  std::uint32_t faces = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float low = boxes.sides[a][i], high = boxes.sides[a + 3][i];
+    const float margin = 1e-6f + 1e-5f * std::max(std::fabs(low), std::fabs(high));
+    const bool down = orthographic ? rays.forward[a] > 1e-5f : low > margin;
+    const bool up = orthographic ? rays.forward[a] < -1e-5f : high < -margin;
+    // Without branches: which faces look at the eye is anyone's guess.
+    faces |= (std::uint32_t{down} | std::uint32_t{up} << 1) << (2 * a);
+    const float at = down ? low : high;
+    const float scale = 1 / (orthographic ? rays.forward[a] : at);
+    const std::size_t p = polygon.planes;
+    polygon.across[p] = rays.across[a] * scale;
+    polygon.down[p] = rays.down[a] * scale;
+    polygon.at[p] = (orthographic ? rays.at[a] - at : rays.at[a]) * scale;
+    move_back(polygon, p, boxes.nearest[i]);
+    polygon.planes += down | up;
+  }
+  return faces;
+}
+
+void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
+  const F f;
+  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  ProjectedBoxes b;
+  for (std::size_t first = 0; first < boxes.size(); first += hn::Lanes(f)) {
+    const std::size_t count = std::min(hn::Lanes(f), boxes.size() - first);
+    project_boxes(tiles, &boxes[first], count, b);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(b.sides[0][i] <= b.sides[3][i] && b.sides[1][i] <= b.sides[4][i] &&
+            b.sides[2][i] <= b.sides[5][i])) {
+        continue;
+      }
+      if (!(b.clearance[i] >= 0)) {
+        draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
+                         {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
+        continue;
+      }
+      const float x0 = b.left[i], x1 = b.right[i], y0 = b.top[i], y1 = b.bottom[i];
+      if (!(x1 > 0 && x0 < width && y1 > 0 && y0 < height)) continue;
+      // A box behind what is drawn already changes nothing.
+      const auto column = [&](float x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0f, width - 1)); };
+      const auto row = [&](float y) { return static_cast<std::uint32_t>(std::clamp(y, 0.0f, height - 1)); };
+      if (hidden_tiles(tiles, column(x0), row(y0), column(x1), row(y1), b.nearest[i])) continue;
+
+      Convex polygon;
+      const std::uint32_t faces = add_faces(tiles, b, i, polygon);
+      const float farthest_out =
+          std::max(std::max(std::fabs(x0), std::fabs(x1)), std::max(std::fabs(y0), std::fabs(y1)));
+      const float inset = kInset + kInsetGrowth * farthest_out;
+      polygon.left = polygon.top = kInfinity;
+      polygon.right = polygon.bottom = -kInfinity;
+      for (std::uint32_t k = 0; k < kOutlines.count[faces]; ++k) {
+        const std::uint8_t from = kOutlines.from[faces][k], to = kOutlines.to[faces][k];
+        const float ax = b.x[from][i], ay = b.y[from][i], bx = b.x[to][i], by = b.y[to][i];
+        add_edge(polygon, ax, ay, bx, by, (by > ay) == tiles.rays.turns_right, inset);
+        polygon.left = std::min(polygon.left, ax), polygon.right = std::max(polygon.right, ax);
+        polygon.top = std::min(polygon.top, ay), polygon.bottom = std::max(polygon.bottom, ay);
+      }
+      polygon.left += inset, polygon.right -= inset, polygon.top += inset, polygon.bottom -= inset;
+      draw_polygon(tiles, polygon);
     }
-    if (faces == 0) continue;
-    const float inset = kInset + kInsetGrowth * std::max(std::max(std::fabs(x0), std::fabs(x1)),
-                                                         std::max(std::fabs(y0), std::fabs(y1)));
-    polygon.left = polygon.top = kInfinity;
-    polygon.right = polygon.bottom = -kInfinity;
-    for (std::uint32_t k = 0; k < kOutlines.count[faces]; ++k) {
-      const std::uint8_t a = kOutlines.from[faces][k], b = kOutlines.to[faces][k];
-      add_edge(polygon, c.x[a], c.y[a], c.x[b], c.y[b], (c.y[b] > c.y[a]) == rays.turns_right, inset);
-      polygon.left = std::min(polygon.left, c.x[a]), polygon.right = std::max(polygon.right, c.x[a]);
-      polygon.top = std::min(polygon.top, c.y[a]), polygon.bottom = std::max(polygon.bottom, c.y[a]);
-    }
-    polygon.left += inset, polygon.right -= inset, polygon.top += inset, polygon.bottom -= inset;
-    // A box behind what is drawn already changes nothing.
-    const auto column = [&](float x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0f, width - 1)); };
-    const auto row = [&](float y) { return static_cast<std::uint32_t>(std::clamp(y, 0.0f, height - 1)); };
-    if (hidden_tiles(tiles, column(polygon.left), row(polygon.top), column(polygon.right),
-                     row(polygon.bottom), most))
-      continue;
-    draw_polygon(tiles, polygon);
   }
 }
 

@@ -43,6 +43,8 @@ struct DepthTiles {
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
   partition::AlignedVector<float> farthest;
+  /// One a tile: no pixel of it is nearer.
+  partition::AlignedVector<float> nearest;
   /// 64 a tile, row by row; undefined where `drawn` is 0. Pixels beyond the image hold +infinity.
   partition::AlignedVector<float> nearness;
   std::vector<std::uint8_t> drawn;
@@ -57,7 +59,7 @@ struct DepthTiles {
 struct Convex {
   static constexpr std::size_t kMaxEdges = 10;
   std::size_t left_edges = 0, right_edges = 0, planes = 0;
-  std::array<float, kMaxEdges> left_at{}, left_slope{}, right_at{}, right_slope{};  // x = at + slope·y
+  std::array<float, kMaxEdges + 1> left_at, left_slope, right_at, right_slope;  // x = at + slope·y
   float top = 0, bottom = 0;  // pixel centres y with top <= y <= bottom
   float left = 0, right = 0;  // bounds of the same kind
   std::array<float, 3> at{}, across{}, down{};
@@ -74,16 +76,16 @@ inline constexpr float kFlat = 1e-3f;
 inline void add_edge(Convex& polygon, float ax, float ay, float bx, float by, bool interior_left,
                      float inset) noexcept {
   const float dy = by - ay;
-  if (std::fabs(dy) < kFlat) return;
+  const bool steep = std::fabs(dy) >= kFlat;
   const float slope = (bx - ax) / dy, at = ax - ay * slope;
   const float inwards = inset * (1 + std::fabs(slope));
-  if (interior_left) {
-    polygon.right_at[polygon.right_edges] = at - inwards;
-    polygon.right_slope[polygon.right_edges++] = slope;
-  } else {
-    polygon.left_at[polygon.left_edges] = at + inwards;
-    polygon.left_slope[polygon.left_edges++] = slope;
-  }
+  // Written to both lists and counted in one: no branch to guess.
+  polygon.right_at[polygon.right_edges] = at - inwards;
+  polygon.right_slope[polygon.right_edges] = slope;
+  polygon.left_at[polygon.left_edges] = at + inwards;
+  polygon.left_slope[polygon.left_edges] = slope;
+  polygon.right_edges += steep && interior_left;
+  polygon.left_edges += steep && !interior_left;
 }
 
 /// Moves plane p away by what rounding can have brought it nearer: of the numbers, and of the pixel's place

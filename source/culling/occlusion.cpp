@@ -307,6 +307,7 @@ Check OcclusionBuffer::begin(const WorldView& view) {
   for (std::uint32_t row = 0; row < t.rows; ++row) {
     std::fill_n(t.farthest.begin() + std::size_t{row} * t.stride, t.columns, -culling::kInfinity);
   }
+  t.nearest.assign(t.farthest.size(), -culling::kInfinity);
   if (t.nearness.size() < 64 * tiles) t.nearness.resize(64 * tiles);
   t.drawn.assign(tiles, 0);
   return {};
