@@ -82,15 +82,21 @@ HWY_INLINE hn::Mask<F> pixels_at(std::uint64_t pixels, std::size_t i) {
 void touch(DepthTiles& tiles, std::uint32_t tx, std::uint32_t ty) {
   const F f;
   const std::size_t tile = std::size_t{ty} * tiles.columns + tx;
-  tiles.drawn[tile] = 1;
   float* out = &tiles.nearness[tile * 64];
+  std::uint64_t beyond = 0;
   const auto columns = hn::Set(f, static_cast<float>(tiles.width) - static_cast<float>(tx * kTile));
   const auto rows = hn::Set(f, static_cast<float>(tiles.height) - static_cast<float>(ty * kTile));
   for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
     const auto inside =
         hn::And(hn::Lt(hn::Load(f, kColumn + i), columns), hn::Lt(hn::Load(f, kRow + i), rows));
     hn::Store(hn::IfThenElse(inside, hn::Set(f, -kInfinity), hn::Set(f, kInfinity)), f, out + i);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(f, inside, bits);
+    std::uint64_t part;
+    std::memcpy(&part, bits, sizeof part);
+    beyond |= (~part & ((std::uint64_t{1} << hn::Lanes(f)) - 1)) << i;
   }
+  tiles.covered[tile] = beyond;
 }
 
 // The polygon's nearness over two rows of a tile, from their first pixel.
@@ -128,7 +134,8 @@ HWY_INLINE void update_tile(DepthTiles& tiles, const Convex& polygon, const Tile
   const std::size_t flat = std::size_t{ty} * tiles.stride + tx;
   if (nearest <= tiles.farthest[flat]) return;
   const std::size_t tile = std::size_t{ty} * tiles.columns + tx;
-  if (!tiles.drawn[tile]) touch(tiles, tx, ty);
+  if (tiles.covered[tile] == 0) touch(tiles, tx, ty);
+  const std::uint64_t covered = tiles.covered[tile] |= pixels;
   tiles.nearest[flat] = std::max(tiles.nearest[flat], nearest + std::fabs(nearest) * 1e-6f);
   float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
   VF least = hn::Set(f, kInfinity);
@@ -146,7 +153,7 @@ HWY_INLINE void update_tile(DepthTiles& tiles, const Convex& polygon, const Tile
       least = hn::Min(least, now);
     }
   }
-  tiles.farthest[flat] = hn::GetLane(hn::MinOfLanes(f, least));
+  if (covered == ~std::uint64_t{0}) tiles.farthest[flat] = hn::GetLane(hn::MinOfLanes(f, least));
 }
 
 // Eight scanlines' spans as columns [begin, end), empty where nothing is covered.
@@ -275,7 +282,6 @@ HWY_INLINE bool hidden(const DepthTiles& tiles, std::uint32_t x0, std::uint32_t 
         const std::uint32_t t = tx + static_cast<std::uint32_t>(std::countr_zero(bits));
         const std::size_t tile = std::size_t{ty} * tiles.columns + t;
         if (nearness > tiles.nearest[std::size_t{ty} * tiles.stride + t]) return false;
-        if (!tiles.drawn[tile]) return false;
         // The rectangle's pixels within the tile.
         const std::uint32_t left = std::max(x0, t * kTile) - t * kTile,
                             right = std::min(x1, t * kTile + 7) - t * kTile;
@@ -284,6 +290,7 @@ HWY_INLINE bool hidden(const DepthTiles& tiles, std::uint32_t x0, std::uint32_t 
         const std::uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left);
         const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (7 - high))) & (~std::uint64_t{0} << (8 * low));
         const std::uint64_t wanted = columns * 0x0101010101010101u & rows;
+        if ((wanted & ~tiles.covered[tile]) != 0) return false;
         const float* depth = &tiles.nearness[tile * 64];
         for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
           const auto seen = hn::And(hn::Le(hn::Load(f, depth + i), limit), pixels_at(wanted, i));

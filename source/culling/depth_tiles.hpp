@@ -45,9 +45,10 @@ struct DepthTiles {
   partition::AlignedVector<float> farthest;
   /// One a tile: no pixel of it is nearer.
   partition::AlignedVector<float> nearest;
-  /// 64 a tile, row by row; undefined where `drawn` is 0. Pixels beyond the image hold +infinity.
+  /// 64 a tile, row by row; undefined where `covered` is 0. Pixels beyond the image hold +infinity.
   partition::AlignedVector<float> nearness;
-  std::vector<std::uint8_t> drawn;
+  /// One a tile: the pixels that have an occluder, and those beyond the image, once it was touched.
+  std::vector<std::uint64_t> covered;
 
   // scratch of draw_mesh
   std::vector<float> screen_x, screen_y, screen_near, clearance, eye_x, eye_y, eye_z;

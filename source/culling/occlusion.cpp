@@ -309,7 +309,7 @@ Check OcclusionBuffer::begin(const WorldView& view) {
   }
   t.nearest.assign(t.farthest.size(), -culling::kInfinity);
   if (t.nearness.size() < 64 * tiles) t.nearness.resize(64 * tiles);
-  t.drawn.assign(tiles, 0);
+  t.covered.assign(tiles, 0);
   return {};
 }
 
@@ -380,7 +380,7 @@ void OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
     for (std::uint32_t x = 0; x < t.width; ++x) {
       const std::size_t tile = std::size_t{y / kTile} * t.columns + x / kTile;
       pixels[std::size_t{y} * t.width + x] =
-          t.drawn[tile] ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile] : -culling::kInfinity;
+          t.covered[tile] != 0 ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile] : -culling::kInfinity;
     }
   }
 }
