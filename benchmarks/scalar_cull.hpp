@@ -1,0 +1,12 @@
+// The yardstick of flat frustum culling: one box after another, without a branch.
+#pragma once
+
+#include <sightline/culling.hpp>
+
+namespace sightline::benchmarks {
+
+/// As cull_boxes, in scalar code.
+std::size_t cull_boxes_scalar(const Frustum& frustum, const BoxSpan& boxes,
+                              std::span<ObjectId> visible) noexcept;
+
+}  // namespace sightline::benchmarks
