@@ -181,6 +181,7 @@ struct WideBvh::Builder {
 void WideBvh::build(const Boxes& boxes) {
   nodes_.clear();
   depth_ = 0;
+  objects_ = boxes.size();
   if (boxes.size() == 0) return;
   Builder builder{{}, nodes_};
   builder.references.reserve(boxes.size());

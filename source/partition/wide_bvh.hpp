@@ -37,12 +37,14 @@ public:
   /// Nodes, children after their parents. The root is nodes()[0] and always an inner node; empty for no
   /// boxes.
   [[nodiscard]] std::span<const WideNode> nodes() const noexcept { return nodes_; }
+  [[nodiscard]] std::size_t size() const noexcept { return objects_; }  ///< boxes
   /// The most entries that a depth-first walk ever has waiting, itself pushing every child.
   [[nodiscard]] std::uint32_t stack_size() const noexcept { return (kWide - 1) * depth_ + kWide; }
 
 private:
   struct Builder;
   std::vector<WideNode> nodes_;
+  std::size_t objects_ = 0;
   std::uint32_t depth_ = 0;
 };
 

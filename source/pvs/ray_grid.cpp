@@ -1,5 +1,6 @@
 #include "pvs/ray_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,6 +52,18 @@ void RayGrid::make(const View& view, std::uint32_t grid_columns, std::uint32_t g
       rays.push_back(
           view_rays.through((column + 0.5) * view.width / columns, (row + 0.5) * view.height / rows));
       prepared.emplace_back(rays.back());
+    }
+  }
+  constexpr std::uint32_t kTile = 4;
+  order.clear();
+  order.reserve(rays.size());
+  for (std::uint32_t top = 0; top < rows; top += kTile) {
+    for (std::uint32_t left = 0; left < columns; left += kTile) {
+      for (std::uint32_t row = top; row < std::min(top + kTile, rows); ++row) {
+        for (std::uint32_t column = left; column < std::min(left + kTile, columns); ++column) {
+          order.push_back(row * columns + column);
+        }
+      }
     }
   }
 }

@@ -32,6 +32,7 @@ struct RayGrid {
   std::uint32_t columns = 0, rows = 0;
   std::vector<Ray> rays;
   std::vector<PreparedRay> prepared;  ///< the same, as the slab test wants them
+  std::vector<std::uint32_t> order;   ///< all rays, 4 × 4 neighbours after one another
 
   [[nodiscard]] std::size_t size() const noexcept { return rays.size(); }
   /// Rays through the middles of columns × rows equal parts of the viewport. Allocates only to grow.

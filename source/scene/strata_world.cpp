@@ -221,8 +221,8 @@ Result<Scene> make_strata(const Parameters& parameters) {
     moved.rows[2].w -= 0.5f * (all.min.z + all.max.z);
     scene.move_object(object, moved);
   }
-  scene.viewpoints.push_back({"near", {0.2f * kSide, 0.35f * kSide, 0.9f * kSide}, {-0.2f, -0.35f, -0.9f}});
-  scene.viewpoints.push_back({"far", {0.9f * kSide, 0.8f * kSide, 1.5f * kSide}, {-0.9f, -0.8f, -1.5f}});
+  scene.viewpoints.push_back({"near", {0.1f * kSide, 0.25f * kSide, 0.8f * kSide}, {-0.1f, -0.25f, -0.6f}});
+  scene.viewpoints.push_back({"far", {0.6f * kSide, 0.5f * kSide, kSide}, {-0.6f, -0.5f, -1}});
   return scene;
 }
 

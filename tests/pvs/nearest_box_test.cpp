@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numeric>
 
 #include <sightline/io.hpp>
 #include <sightline/worlds.hpp>
@@ -47,8 +48,14 @@ std::uint64_t compare_all(const Boxes& boxes, const Trees& trees, std::span<cons
   cast_at_candidates(boxes, candidates, rays, found);
   expect_equal(found, expected, "bvha", where);
   WideStack stack;
-  cast_wide(trees.wide, rays, stack, found);
+  found.reset(rays.size()), found.stats = {};
+  cast_wide(trees.wide, rays, {}, found.object, found.distance, stack, found.stats);
   expect_equal(found, expected, "wide-rays", where);
+  std::vector<std::uint32_t> backwards(rays.size());
+  std::iota(backwards.rbegin(), backwards.rend(), 0u);
+  found.reset(rays.size()), found.stats = {};
+  cast_wide(trees.wide, rays, backwards, found.object, found.distance, stack, found.stats);
+  expect_equal(found, expected, "wide-rays backwards", where);
   return expected.stats.hits;
 }
 
@@ -112,6 +119,19 @@ TEST(NearestBox, IsTheSameForEveryMethodInAGameLevel) {
     grid.make(*make_view({.eye = from.eye, .forward = from.forward}, 1280, 720), 40, 40);
     EXPECT_GT(compare_all(scene.bounds, trees, grid.prepared, from.name), 800u);
   }
+}
+
+TEST(NearestBox, OfAGridIsTheSameTileByTile) {
+  const Scene scene = *generate_world("strata?triangles=20000");
+  const Trees trees(scene.bounds);
+  RayGrid grid;
+  grid.make(*make_view({.eye = scene.viewpoints[0].eye, .forward = scene.viewpoints[0].forward}, 640, 480),
+            53, 31);
+  RayHits expected, found;
+  cast_at_all_boxes(scene.bounds, grid.prepared, expected);
+  WideStack stack;
+  cast_wide(trees.wide, grid, stack, found);
+  expect_equal(found, expected, "wide-rays", "grid");
 }
 
 TEST(NearestBox, OfNothingIsAMiss) {
