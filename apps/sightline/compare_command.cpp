@@ -6,9 +6,9 @@
 #include <sightline/io.hpp>
 
 #include "command.hpp"
-#include "page.hpp"
 #include "lab/summary.hpp"
 #include "lab/table.hpp"
+#include "page.hpp"
 
 namespace sightline::app {
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "command.hpp"
-#include "page.hpp"
 #include "lab/reproduce/object_frustum.hpp"
+#include "page.hpp"
 
 namespace sightline::app {
 
@@ -28,8 +28,7 @@ int run_object_frustum(const Options& options) {
   fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
              100 * result.tested_share, lab::render(result.ratios));
   fmt::print("{}", lab::render(lab::summary_table(result.comparison)));
-  if (!options.report.empty())
-    write_page(options.report, scene, judge, contestants, result.comparison);
+  if (!options.report.empty()) write_page(options.report, scene, judge, contestants, result.comparison);
   return Exit::done;
 }
 

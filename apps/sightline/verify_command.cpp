@@ -6,6 +6,7 @@
 #include <sightline/io.hpp>
 
 #include "command.hpp"
+#include "lab/level_evidence.hpp"
 #include "lab/random_views.hpp"
 #include "lab/verify.hpp"
 
@@ -44,7 +45,21 @@ int run(const Options& options) {
   for (const lab::MethodVerdict& m : result.methods) {
     for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
   }
+  if (scene.level) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
+}
+
+// What the level's own visibility denies and rays see all the same, reason by reason.
+void print_level_evidence(const Scene& scene, std::uint64_t seed) {
+  constexpr std::size_t kEyes = 100;
+  constexpr std::uint32_t kSide = 96;
+  const lab::EmbreeJudge judge(scene);
+  const lab::LevelEvidence evidence = lab::gather_level_evidence(scene, judge, kEyes, kSide, seed);
+  fmt::print("\nThe level's own PVS, from {} eyes in open leaves: {} objects seen, {} of them denied by the eye's leaf\n",
+             evidence.eyes, evidence.objects_seen, evidence.objects_denied);
+  for (std::size_t reason = 0; reason < lab::kPvsExceptions; ++reason) {
+    fmt::print("{:>8}  {}\n", evidence.objects[reason], lab::explanation(static_cast<lab::PvsException>(reason)));
+  }
 }
 
 }  // namespace
