@@ -18,7 +18,8 @@ std::string_view to_string(Guarantee guarantee) noexcept {
 
 std::span<const MethodInfo> cpu_methods() noexcept {
   using namespace methods;
-  static const std::array kMethods{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked, kLevelPvs};
+  static const std::array kMethods{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked, kLevelPvs,
+                                   kToca, kBoca,  kWideRays, kTrianglePvs,   kGuided};
   return kMethods;
 }
 
