@@ -13,6 +13,7 @@
 #include <sightline/error.hpp>
 
 #include "lab/embree_layer.hpp"
+#include "lab/object_triangles.hpp"
 #include "lab/pixel_rays.hpp"
 
 namespace sightline::lab {
@@ -76,22 +77,6 @@ RTCRayHit extract_ray(const Packet& packet, unsigned i) {
              r.dir_z[i], 0,          r.tfar[i],  ~0u, i,          0};
   one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   return one;
-}
-
-/// Möller & Trumbore 1997, both sides, in double precision.
-bool meets(const PixelRay& ray, const std::array<glm::dvec3, 3>& triangle, Faces faces) {
-  const glm::dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-  const glm::dvec3 p = glm::cross(ray.direction, ac);
-  const double determinant = glm::dot(ab, p);
-  if (determinant == 0 || (faces == Faces::front && determinant < 0)) return false;
-  const glm::dvec3 from = ray.origin - triangle[0];
-  const double u = glm::dot(from, p) / determinant;
-  if (!(u >= 0 && u <= 1)) return false;
-  const glm::dvec3 q = glm::cross(from, ab);
-  const double v = glm::dot(ray.direction, q) / determinant;
-  if (!(v >= 0 && u + v <= 1)) return false;
-  const double t = glm::dot(ac, q) / determinant;
-  return t >= 0 && t <= ray.length;
 }
 
 }  // namespace
@@ -220,42 +205,6 @@ void EmbreeJudge::move(std::span<const ObjectId> objects) {
   state_->transparent->move(objects);
 }
 
-namespace {
-
-/// One object's world triangles, and the sphere around them that most rays miss.
-class ObjectTriangles {
-public:
-  ObjectTriangles(const Scene& scene, ObjectId object) {
-    const Mesh& mesh = scene.meshes[scene.mesh[object]];
-    corners_.reserve(mesh.index_count);
-    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-      const std::uint32_t v = mesh.first_vertex + scene.indices[mesh.first_index + i];
-      const Vec3 p = transform_point(scene.transform[object], scene.positions[v]);
-      corners_.emplace_back(p.x, p.y, p.z);
-    }
-    const Sphere sphere = scene.sphere(object);
-    centre_ = {sphere.centre.x, sphere.centre.y, sphere.centre.z};
-    radius_ = 1.001 * static_cast<double>(sphere.radius) + 1e-5 * glm::length(centre_);
-  }
-
-  [[nodiscard]] bool met_by(const PixelRay& ray, Faces faces) const {
-    const glm::dvec3 offset = centre_ - ray.origin;
-    const glm::dvec3 across = offset - glm::dot(offset, ray.direction) * ray.direction;
-    if (glm::dot(across, across) > radius_ * radius_) return false;
-    for (std::size_t i = 0; i + 2 < corners_.size(); i += 3) {
-      if (meets(ray, {corners_[i], corners_[i + 1], corners_[i + 2]}, faces)) return true;
-    }
-    return false;
-  }
-
-private:
-  std::vector<glm::dvec3> corners_;
-  glm::dvec3 centre_;
-  double radius_ = 0;
-};
-
-}  // namespace
-
 std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const ItemBuffer& truth,
                                                          std::span<const ObjectId> objects) const {
   const Scene& scene = state_->scene;
@@ -270,7 +219,7 @@ std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const
   }
   const PixelRays rays(view);
   const auto add = [&](std::size_t i, const PixelRay& ray) {
-    confirmed[i] += triangles[i].met_by(ray, state_->faces);
+    confirmed[i] += triangles[i].meet(ray, state_->faces).has_value();
   };
   for (std::uint32_t y = 0; y < truth.height; ++y) {
     for (std::uint32_t x = 0; x < truth.width; ++x) {

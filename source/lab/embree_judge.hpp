@@ -10,13 +10,9 @@
 #include <sightline/view.hpp>
 
 #include "lab/item_buffer.hpp"
+#include "lab/object_triangles.hpp"
 
 namespace sightline::lab {
-
-enum class Faces : std::uint8_t {
-  both,   ///< triangles are seen from both sides
-  front,  ///< only where their vertices run counter-clockwise, as with back-face culling
-};
 
 class EmbreeJudge {
 public:

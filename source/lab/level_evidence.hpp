@@ -14,12 +14,13 @@ namespace sightline::lab {
 
 /// Why rays see an object that the level's visibility denies. The first reason that holds counts.
 enum class PvsException : std::uint8_t {
-  moving_part,    ///< of a door or lift, which the compiler did not place in the leaves it may be seen in
-  through_solid,  ///< the line of sight runs through solid leaves whose faces are not drawn (caulk)
-  eye_at_border,  ///< the eye stands on the border of its leaf, and the leaf across may see it
+  through_solid,  ///< every line of sight to it runs through solid leaves whose faces are not drawn (caulk)
+  moving_part,    ///< of a door or lift, which leaves do not list by where it may be seen
+  unlisted,       ///< the leaf it is seen in may be seen, but does not list the face
+  unconfirmed,    ///< seen in single precision alone, on a silhouette
   unexplained,
 };
-inline constexpr std::size_t kPvsExceptions = 4;
+inline constexpr std::size_t kPvsExceptions = 5;
 
 /// A sentence on what the reason means.
 std::string_view explanation(PvsException exception) noexcept;

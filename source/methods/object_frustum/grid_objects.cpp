@@ -9,7 +9,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr float kObjectsPerCell = 16;
+constexpr float kObjectsPerCell = 64;
 
 float chosen_cell(const Box& all, std::size_t objects) {
   const float area =

@@ -12,7 +12,7 @@
 namespace sightline::methods {
 
 inline constexpr ParameterInfo kCellParameter{
-    "cell", "metres, the side of a cell; 0 chooses about 16 objects a cell", "0", 0, 1e6};
+    "cell", "metres, the side of a cell; 0 chooses about 64 objects a cell", "0", 0, 1e6};
 
 struct GridObjects {
   const Scene& scene;

@@ -1,0 +1,44 @@
+// A command: declares its options on the application and leaves what to run as the callback.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sightline::app {
+
+/// Exit codes, which scripts rely on.
+enum Exit : int { done = 0, check_failed = 1, wrong_call = 2 };
+
+/// Each adds its subcommand; the subcommand's callback sets `exit`.
+void add_methods(CLI::App& app, int& exit);
+void add_info(CLI::App& app, int& exit);
+void add_generate(CLI::App& app, int& exit);
+void add_verify(CLI::App& app, int& exit);
+void add_compare(CLI::App& app, int& exit);
+void add_reproduce(CLI::App& app, int& exit);
+
+inline constexpr const char* kSceneHelp =
+    "a file (.glb, .gltf, .bsp, archive.pk3:maps/name.bsp) or a generated world "
+    "(world:forest?trees=30000&seed=7)";
+
+/// Adds `command` with a callback that runs `run()` and keeps its exit code.
+template <class Run>
+void on_run(CLI::App& command, int& exit, Run run) {
+  command.callback([&exit, run = std::move(run)]() mutable { exit = run(); });
+}
+
+/// "WxH" as two numbers; refuses anything else with a sentence.
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
+
+/// "A,B,C" as a list; parameters of a method may hold no comma.
+std::vector<std::string> split(const std::string& list);
+
+/// Told how much is done; draws one line on stderr when it is a terminal.
+std::function<void(std::size_t done, std::size_t all)> progress(std::string what);
+
+}  // namespace sightline::app

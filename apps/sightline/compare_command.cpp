@@ -1,0 +1,77 @@
+// sightline compare: every method along a camera path, beside what it lost and kept in excess.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include <sightline/io.hpp>
+
+#include "command.hpp"
+#include "page.hpp"
+#include "lab/summary.hpp"
+
+namespace sightline::app {
+
+namespace {
+
+struct Options {
+  std::string scene, methods, path, size = "1280x720", device = "cpu", json, report;
+  std::size_t frames = 24;
+};
+
+int run(const Options& options) {
+  lab::MeasureOptions measure;
+  std::tie(measure.width, measure.height) = parse_size(options.size);
+  if (options.device != "cpu") {
+    throw Error("--device '" + options.device + "': no such device, expected cpu");
+  }
+  const Scene scene = load_scene(options.scene);
+  const std::vector<std::string> names =
+      options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
+  if (names.empty()) throw Error("--methods: expected at least one method");
+  const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
+  const std::string path_name = options.path.empty() ? std::string(lab::default_path(scene)) : options.path;
+  const lab::CameraPath path = lab::make_path(scene, path_name, options.frames);
+
+  const lab::EmbreeJudge judge(scene);
+  const lab::Comparison comparison =
+      lab::compare(scene, judge, contestants, path, measure, progress("compare"));
+  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}\n\n", scene.name, scene.size(),
+             triangle_count(scene), path.name, path.cameras.size(), options.size);
+  fmt::print("{}\n{}\n", render(lab::summary_table(comparison)), lab::verdict(comparison));
+  if (!options.json.empty()) lab::write_json(options.json, comparison);
+  if (!options.report.empty()) write_page(options.report, scene, judge, contestants, comparison);
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int& exit) {
+  CLI::App& command =
+      *app.add_subcommand("compare", "Run methods side by side along a camera path: the table");
+  auto options = std::make_shared<Options>();
+  command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  command
+      .add_option("--methods", options->methods,
+                  "methods, separated by commas (default: all that fit the scene)")
+      ->type_name("A,B");
+  command
+      .add_option("--path", options->path,
+                  "near, far, rising, walk, or a JSON path file (default: walk in a level, else near)")
+      ->type_name("NAME|FILE");
+  command.add_option("--frames", options->frames, "views along the path")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--size", options->size, "image size in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command.add_option("--device", options->device, "where methods run")
+      ->type_name("cpu|NAME")
+      ->capture_default_str();
+  command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
+      ->type_name("FILE");
+  command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
+      ->type_name("DIR");
+  on_run(command, exit, [options] { return run(*options); });
+}
+
+}  // namespace sightline::app

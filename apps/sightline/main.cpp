@@ -1,0 +1,74 @@
+// The command line: a thin face on the lab. Results go to stdout, complaints to stderr.
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <sightline/error.hpp>
+#include <sightline/version.hpp>
+
+#include "command.hpp"
+
+namespace sightline::app {
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
+  std::uint32_t width = 0, height = 0;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  if (first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x') {
+    const auto second = std::from_chars(first.ptr + 1, end, height);
+    if (second.ec == std::errc{} && second.ptr == end && width > 0 && height > 0 && width <= 4096 &&
+        height <= 4096) {
+      return {width, height};
+    }
+  }
+  throw Error("--size '" + text + "': expected WIDTHxHEIGHT in pixels, 1 to 4096 each, such as 1280x720");
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> out;
+  for (std::size_t start = 0; start <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', start), list.size());
+    if (comma > start) out.push_back(list.substr(start, comma - start));
+    start = comma + 1;
+  }
+  return out;
+}
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Sightline decides what not to draw: visibility culling, measured and proven.", "sightline"};
+  app.set_version_flag("--version", std::string(kVersion));
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  int exit = Exit::done;
+  add_methods(app, exit);
+  add_compare(app, exit);
+  add_verify(app, exit);
+  add_reproduce(app, exit);
+  add_generate(app, exit);
+  add_info(app, exit);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);  // prints help, version, or the complaint
+    return code == 0 ? Exit::done : Exit::wrong_call;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw Error("standard output: cannot be written to");
+  return exit;
+}
+
+}  // namespace
+}  // namespace sightline::app
+
+int main(int argc, char** argv) {
+  try {
+    return sightline::app::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "sightline: out of memory: the scene or the image is too large for this machine\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sightline: %s\n", error.what());
+  }
+  return sightline::app::Exit::wrong_call;
+}

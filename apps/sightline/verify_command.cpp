@@ -1,0 +1,71 @@
+// sightline verify: random views against the item buffer.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include <sightline/io.hpp>
+
+#include "command.hpp"
+#include "lab/random_views.hpp"
+#include "lab/verify.hpp"
+
+namespace sightline::app {
+
+namespace {
+
+struct Options {
+  std::string scene, methods, size = "160x120";
+  std::size_t views = 100;
+  std::uint64_t seed = 1;
+};
+
+int run(const Options& options) {
+  const auto [width, height] = parse_size(options.size);
+  const Scene scene = load_scene(options.scene);
+  const std::vector<std::string> names =
+      options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
+  if (names.empty()) throw Error("--methods: expected at least one method");
+  const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
+  const std::vector<Camera> cameras = lab::random_cameras(scene, options.views, options.seed);
+  const lab::Verification result =
+      lab::verify(scene, contestants, cameras, width, height, progress("verify"));
+
+  fmt::print("{}: {} random views of {}x{}, seed {}\n", scene.name, result.views, width, height,
+             options.seed);
+  fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  verdict\n", "method", "guarantee", "kept",
+             "visible", "lost objs", "lost pixels", "excess objs");
+  for (const lab::MethodVerdict& m : result.methods) {
+    fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  {}\n", m.method, to_string(m.guarantee),
+               m.kept, m.visible, m.lost_objects, m.lost_pixels, m.excess_objects,
+               !m.holds()           ? "BROKEN"
+               : m.lost_objects > 0 ? "approximate"
+                                    : "holds");
+  }
+  for (const lab::MethodVerdict& m : result.methods) {
+    for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
+  }
+  return result.passed() ? Exit::done : Exit::check_failed;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, int& exit) {
+  CLI::App& command = *app.add_subcommand(
+      "verify", "Prove methods against the item buffer on random views; exit 1 if a guarantee is broken");
+  auto options = std::make_shared<Options>();
+  command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  command
+      .add_option("--methods", options->methods,
+                  "methods, separated by commas (default: all that fit the scene)")
+      ->type_name("A,B");
+  command.add_option("--views", options->views, "random views")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--seed", options->seed, "of the random views")->capture_default_str();
+  command.add_option("--size", options->size, "image size in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  on_run(command, exit, [options] { return run(*options); });
+}
+
+}  // namespace sightline::app

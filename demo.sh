@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# The first command: installs what is missing, builds, compares the methods on a real game level, and says where the
+# report lies. An argument names another scene.
+set -euo pipefail
+cd "$(dirname "$0")"
+. scripts/packages.sh
+start=$(date +%s)
+scene=${1:-pak1-maps.pk3:maps/oasago2.bsp}
+
+ensure_packages $run_packages
+cmake --preset release -DSIGHTLINE_TESTS=OFF -DSIGHTLINE_BENCHMARKS=OFF >/dev/null
+cmake --build --preset release
+
+build/release/sightline compare "$scene" --report report
+echo
+echo "The report: $PWD/report/index.html"
+echo "This took $(elapsed "$start")."

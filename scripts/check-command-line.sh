@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# check-command-line.sh SIGHTLINE: the command line as scripts rely on it. Good calls exit 0 with what they promise; bad
+# input exits 2 with one sentence on stderr and leaves no file behind.
+set -uo pipefail
+sightline=$(realpath "$1")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+passed=0
+failed=0
+
+fail() {
+  echo "FAILED: $*"
+  failed=$((failed + 1))
+}
+
+# expect CODE TEXT COMMAND…: the exit code, and TEXT on stdout or stderr.
+expect() {
+  local code=$1 text=$2 out rc
+  shift 2
+  out=$("$@" 2>&1 </dev/null)
+  rc=$?
+  if [ $rc -ne "$code" ]; then
+    fail "$*: exit $rc, expected $code: $out"
+  elif ! grep -qF -- "$text" <<<"$out"; then
+    fail "$*: expected '$text' in: $out"
+  else
+    passed=$((passed + 1))
+  fi
+}
+
+# refused TEXT COMMAND…: exit 2 and one sentence: a single line on stderr, nothing on stdout.
+refused() {
+  local text=$1 rc
+  shift
+  "$@" >out 2>err </dev/null
+  rc=$?
+  if [ $rc -ne 2 ] || [ -s out ] || [ "$(wc -l <err)" -ne 1 ] || ! grep -qF -- "$text" err; then
+    fail "$*: exit $rc, expected 2 and one line with '$text'; stdout: $(cat out); stderr: $(cat err)"
+  else
+    passed=$((passed + 1))
+  fi
+}
+
+world=world:forest?trees=300\&size=100
+
+expect 0 "object-frustum" "$sightline" --help
+expect 0 "object-frustum" "$sightline" methods --json methods.json
+expect 0 "--path" "$sightline" compare --help
+for command in methods verify reproduce generate info; do expect 0 "Usage" "$sightline" $command --help; done
+expect 0 "0." "$sightline" --version
+expect 0 "objects     300" "$sightline" info "$world"
+expect 0 "300 objects" "$sightline" generate forest?trees=300\&size=100 -o forest.glb
+expect 0 "objects     300" "$sightline" info forest.glb
+expect 0 "holds" "$sightline" verify "$world" --views 20
+expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 2 --size 64x48 --json rows.json --report page
+[ -s page/index.html ] || fail "compare --report wrote no page"
+for field in scene method guarantee view objects tested visible culled draw_calls triangles cull_vertices cull_cpu_ms \
+    cull_cpu_ms_min cull_cpu_ms_max cull_gpu_ms frame_ms fps lost_objects lost_pixels excess_objects; do
+  grep -q "\"$field\"" rows.json || fail "compare --json: no field '$field'"
+done
+
+refused "sightline" "$sightline"
+refused "nonesuch" "$sightline" nonesuch
+refused "--nonesuch" "$sightline" info "$world" --nonesuch
+refused "missing.glb" "$sightline" info missing.glb
+refused "missing.bsp" "$sightline" info missing.bsp
+refused "missing.pk3" "$sightline" info missing.pk3:maps/x.bsp
+refused "moon" "$sightline" info world:moon
+refused "'trees'" "$sightline" info world:forest?trees=-1
+refused "no such method" "$sightline" compare "$world" --methods nonesuch
+refused "lacks a level's PVS" "$sightline" verify "$world" --methods level-pvs
+refused "no parameter" "$sightline" verify "$world" --methods none?x=1
+refused "--size" "$sightline" compare "$world" --size 0x0
+refused "--size" "$sightline" compare "$world" --size 99999x1
+refused "--views" "$sightline" verify "$world" --views 0
+refused "--device" "$sightline" compare "$world" --device nonesuch
+refused "nonesuch" "$sightline" compare "$world" --path nonesuch
+
+# Files that are none, or not what they claim to be.
+: >empty.glb
+head -c 3000 "$sightline" >random.glb
+cp random.glb random.bsp
+cp random.glb random.pk3
+head -c 500 forest.glb >truncated.glb
+mkdir folder.glb
+echo '{"asset":{"version":"2.0"},"scenes":[{"nodes":[]}],"scene":0}' >no-object.gltf
+for file in empty.glb random.glb random.bsp truncated.glb folder.glb no-object.gltf; do
+  refused "$file" "$sightline" info $file
+done
+refused "random.pk3" "$sightline" info random.pk3:maps/x.bsp
+
+# Views that no camera has.
+echo '{"views":[{"eye":[0,0,0],"forward":[0,1,0],"up":[0,1,0]}]}' >singular.json
+echo '{"views":[{"eye":[0,0,1e999]}]}' >infinite.json
+echo '{"views":[]}' >none.json
+echo 'no json' >text.json
+for file in singular.json infinite.json none.json text.json; do
+  refused "$file" "$sightline" compare "$world" --methods none --path $file
+done
+
+# Disks that are full, folders that are not there: no file, whole or half, stays behind.
+refused "/dev/full" "$sightline" methods --json /dev/full
+refused "nowhere" "$sightline" generate forest?trees=10 -o nowhere/forest.glb
+if [ "$(id -u)" -eq 0 ] && mkdir full && mount -t tmpfs -o size=64k tmpfs full 2>/dev/null; then
+  refused "full/forest.glb" "$sightline" generate forest?trees=3000 -o full/forest.glb
+  [ -z "$(ls -A full)" ] || fail "a full disk keeps: $(ls -A full)"
+  umount full
+else
+  # Without the right to mount, a limit on the size of files is the full disk.
+  (ulimit -f 8; trap '' XFSZ; refused "forest-full.glb" "$sightline" generate forest?trees=3000 -o forest-full.glb; exit $failed) || failed=$((failed + 1))
+fi
+"$sightline" methods >/dev/full 2>err && fail "methods > /dev/full exits 0"
+ls | grep -q '\.tmp' && fail "temporary files stay behind: $(ls)"
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]

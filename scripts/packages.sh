@@ -1,0 +1,43 @@
+# Sourced by demo.sh and test.sh: makes sure that Debian's packages are there.
+
+run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev \
+libtinygltf-dev libzip-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
+openarena-081-maps"
+
+test_packages="$run_packages libgtest-dev libgmock-dev libbenchmark-dev clang-19 libclang-rt-19-dev"
+
+# ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
+ensure_packages() {
+  local missing=() package
+  if ! command -v dpkg-query >/dev/null; then
+    echo "This is no Debian: install the equivalents of these packages, then run cmake --preset release:" >&2
+    echo "  $*" >&2
+    return 2
+  fi
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "Installing ${#missing[@]} packages: ${missing[*]}"
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "Neither root nor sudo: as root, run: apt-get install ${missing[*]}" >&2
+      return 2
+    fi
+    root=(sudo)
+  fi
+  export DEBIAN_FRONTEND=noninteractive
+  # Lists may be missing or stale on a fresh machine, so they are always renewed before an installation.
+  if ! { "${root[@]}" apt-get -qq update &&
+         "${root[@]}" apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null; }; then
+    echo "apt-get could not install: ${missing[*]} (expected Debian 12 with its main archive)" >&2
+    return 2
+  fi
+}
+
+# elapsed START: seconds since START, as "M min S s".
+elapsed() {
+  local seconds=$(($(date +%s) - $1))
+  echo "$((seconds / 60)) min $((seconds % 60)) s"
+}

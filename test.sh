@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The second command: installs what is missing, builds with every warning an error, and passes every test: the suite in
+# a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), a short run of each
+# fuzz target, the structure of the house, and the installed package as its users see it.
+set -euo pipefail
+cd "$(dirname "$0")"
+. scripts/packages.sh
+start=$(date +%s)
+
+ensure_packages $test_packages
+
+echo "== structure"
+scripts/check-structure.sh
+
+echo "== release build and tests"
+cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON >/dev/null
+cmake --build --preset release
+ctest --preset release -j"$(nproc)"
+
+echo "== command line"
+scripts/check-command-line.sh build/release/sightline
+
+echo "== installed package"
+scripts/check-package.sh build/release
+
+echo "== sanitizers"
+cmake --preset asan >/dev/null
+cmake --build --preset asan
+ctest --preset asan -j"$(nproc)"
+
+echo "== fuzzers"
+scripts/fuzz.sh build/asan "${FUZZ_SECONDS:-10}"
+
+echo "All tests passed in $(elapsed "$start")."
