@@ -151,6 +151,7 @@ void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std:
     if (hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
       const std::size_t pixel = std::size_t{y + i / kTile} * out.width + x + i % kTile;
       out.ids[pixel] = opaque->object_of(hit.instID[0][i], hit.primID[i]);
+      out.distances[pixel] = packet.rays.ray.tfar[i];
     }
     if (transparent->empty()) continue;
     RTCRayHit one = extract_ray(packet, i);
@@ -167,6 +168,7 @@ ItemBuffer EmbreeJudge::render(const View& view) const {
   ItemBuffer out;
   out.width = view.width, out.height = view.height;
   out.ids.assign(std::size_t{view.width} * view.height, kNoObject);
+  out.distances.assign(out.ids.size(), std::numeric_limits<float>::infinity());
   out.pixels.assign(state_->scene.size(), 0);
   const PixelRays rays(view);
   const bool counts = !state_->transparent->empty();

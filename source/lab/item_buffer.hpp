@@ -11,6 +11,7 @@ namespace sightline::lab {
 struct ItemBuffer {
   std::uint32_t width = 0, height = 0;
   std::vector<ObjectId> ids;  ///< width × height, row 0 at the top: the nearest opaque object, or kNoObject
+  std::vector<float> distances;  ///< metres from the near plane to what `ids` shows; +infinity for nothing
   /// One an object: pixels it is seen in. A transparent object is seen where nothing opaque lies before it.
   std::vector<std::uint32_t> pixels;
 

@@ -1,10 +1,8 @@
 // Camera paths, path files, ways through a level, and files on a full disk.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <csignal>
 #include <fstream>
 #include <limits>
 
@@ -17,11 +15,13 @@
 #include "lab/path_file.hpp"
 #include "lab/random_views.hpp"
 #include "lab/roadmap.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sightline::lab {
 namespace {
 
+using test::FullDisk;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
@@ -156,27 +156,6 @@ TEST(CameraPath, LevelWithoutAnythingButARoomStands) {
   scene.viewpoints.clear();
   EXPECT_EQ(make_path(scene, "walk", 5).cameras.size(), 5u);
 }
-
-/// No file may grow beyond some bytes, as on a full disk.
-class FullDisk {
-public:
-  explicit FullDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
-private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
 
 TEST(File, FullDiskIsAnErrorAndLeavesWhatWas) {
   const TemporaryFolder folder;

@@ -51,6 +51,9 @@ TEST(ItemBuffer, SquareCoversThePixelsThatGeometrySays) {
   EXPECT_EQ(buffer.ids[std::size_t{19} * 80 + 20], kNoObject);
   EXPECT_EQ(buffer.ids[std::size_t{59} * 80 + 59], 0u);
   EXPECT_EQ(buffer.ids[std::size_t{59} * 80 + 60], kNoObject);
+  // Along the ray from the near plane at 1 to the square at 10; the middle pixel looks almost straight on.
+  EXPECT_NEAR(buffer.distances[std::size_t{40} * 80 + 40], 9, 0.01);
+  EXPECT_TRUE(std::isinf(buffer.distances[0]));
 }
 
 TEST(ItemBuffer, RowZeroIsUp) {

@@ -1,0 +1,22 @@
+// The machine that figures were measured on; an absolute time means nothing without it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace sightline::lab {
+
+struct Machine {
+  std::string cpu, os, compiler;
+  unsigned cores = 0;        ///< hardware threads
+  std::uint64_t memory = 0;  ///< bytes
+};
+
+/// This machine; what it will not tell is called "unknown" or 0.
+Machine this_machine();
+
+/// Sightline's own version, "0.1.0".
+std::string_view version() noexcept;
+
+}  // namespace sightline::lab

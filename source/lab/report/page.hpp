@@ -1,0 +1,29 @@
+// The report's page as text.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/fate.hpp"
+#include "lab/measure.hpp"
+
+namespace sightline::lab::report {
+
+/// What the page shows beside the comparison itself.
+struct PageContent {
+  const Comparison& comparison;
+  const Scene& scene;
+  const Snapshot& snapshot;
+  std::string item_buffer;             ///< picture's file name
+  std::vector<std::string> top_views;  ///< one a method of the snapshot
+};
+
+/// A whole HTML document that loads nothing but the pictures beside it.
+std::string make_page(const PageContent& content);
+
+/// Text as it may stand in HTML, between tags or in a quoted attribute; bytes that are not UTF-8 become
+/// U+FFFD.
+std::string escape(std::string_view text);
+
+}  // namespace sightline::lab::report
