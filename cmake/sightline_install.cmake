@@ -5,7 +5,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline DESTINATION ${CMAKE_IN
         FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
 install(TARGETS sightline_core EXPORT sightline_targets)
 if(SIGHTLINE_TOOLS)
-#  install(TARGETS sightline_app)
+  install(TARGETS sightline_app)
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)

@@ -6,8 +6,9 @@
 #include <sightline/io.hpp>
 
 #include "command.hpp"
-#include "page.hpp"
 #include "lab/summary.hpp"
+#include "lab/table.hpp"
+#include "page.hpp"
 
 namespace sightline::app {
 
@@ -37,7 +38,7 @@ int run(const Options& options) {
       lab::compare(scene, judge, contestants, path, measure, progress("compare"));
   fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}\n\n", scene.name, scene.size(),
              triangle_count(scene), path.name, path.cameras.size(), options.size);
-  fmt::print("{}\n{}\n", render(lab::summary_table(comparison)), lab::verdict(comparison));
+  fmt::print("{}\n{}\n", lab::render(lab::summary_table(comparison)), lab::verdict(comparison));
   if (!options.json.empty()) lab::write_json(options.json, comparison);
   if (!options.report.empty()) write_page(options.report, scene, judge, contestants, comparison);
   return Exit::done;

@@ -50,12 +50,12 @@ void add_methods(CLI::App& app, int& exit) {
   auto json = std::make_shared<std::string>();
   command.add_option("--json", *json, "also write the list as JSON to FILE")->type_name("FILE");
   on_run(command, exit, [json] {
-    for (const MethodInfo& info : cpu_methods()) print(info);
     if (!json->empty()) {
       nlohmann::ordered_json document{{"sightline", kVersion}, {"methods", nlohmann::ordered_json::array()}};
       for (const MethodInfo& info : cpu_methods()) document["methods"].push_back(to_json(info));
       lab::write_file(*json, document.dump(1) + "\n");
     }
+    for (const MethodInfo& info : cpu_methods()) print(info);
     return Exit::done;
   });
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "command.hpp"
-#include "page.hpp"
 #include "lab/reproduce/object_frustum.hpp"
+#include "page.hpp"
 
 namespace sightline::app {
 
@@ -24,12 +24,11 @@ int run_object_frustum(const Options& options) {
       lab::reproduce_object_frustum(scene, judge, contestants, options.quick, progress("reproduce"));
   fmt::print(
       "Le Hoang Minh et al. 2022, table 2: {} trees on 1 km², eye at 8.9 m in the middle, ten runs\n\n{}\n",
-      scene.size(), render(result.runs));
+      scene.size(), lab::render(result.runs));
   fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
-             100 * result.tested_share, render(result.ratios));
-  fmt::print("{}", render(lab::summary_table(result.comparison)));
-  if (!options.report.empty())
-    write_page(options.report, scene, judge, contestants, result.comparison);
+             100 * result.tested_share, lab::render(result.ratios));
+  fmt::print("{}", lab::render(lab::summary_table(result.comparison)));
+  if (!options.report.empty()) write_page(options.report, scene, judge, contestants, result.comparison);
   return Exit::done;
 }
 

@@ -23,7 +23,7 @@ struct LoadOptions {
 
 /// Loads a scene and checks it.
 ///
-/// Specification: a generated world ("world:NAME?key=value"), a file ending in .bsp, or a
+/// Specification: a generated world ("world:NAME?key=value"), a file ending in .glb, .gltf or .bsp, or a
 /// level in an archive: "archive.pk3:maps/name.bsp". A relative .pk3 that is not in the current directory is
 /// looked for in the folders of the environment variable SIGHTLINE_DATA (separated by ':'), then where Debian
 /// puts OpenArena's data, /usr/share/games/openarena/baseoa.
@@ -49,5 +49,20 @@ Scene read_bsp(std::span<const std::byte> bytes, std::string name, const LoadOpt
 /// Reads one level out of a .pk3 (zip) archive held in memory. `name` is the archive's, for errors.
 Scene read_pk3(std::span<const std::byte> archive, std::string_view entry, std::string name,
                const LoadOptions& options = {});
+
+/// Reads glTF 2.0 from memory, binary (GLB) or text, told apart by their first bytes. External buffers are
+/// read from `folder` and nowhere else; without one they are refused.
+///
+/// One object per (node, primitive), or per instance of EXT_mesh_gpu_instancing. Primitives that are the same
+/// share a mesh. Triangle lists, strips and fans are read, points and lines left out. Missing normals are
+/// computed. Materials with alphaMode BLEND are transparent; perspective cameras become viewpoints. Images,
+/// animations, skins and morph targets are not looked at; required extensions that are not known are refused.
+Scene read_gltf(std::span<const std::byte> bytes, std::string name, const std::filesystem::path& folder = {});
+
+/// Writes a scene as GLB: each mesh once, objects as nodes or, where many share a mesh and their transforms
+/// are a rotation, a translation and a scale, as instances of EXT_mesh_gpu_instancing. Viewpoints become
+/// cameras, transparent objects get a material with alphaMode BLEND. The level's visibility and the waypoints
+/// are not kept, glTF has no place for them. Written under a temporary name in the same folder and renamed.
+void write_glb(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace sightline

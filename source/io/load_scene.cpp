@@ -35,7 +35,7 @@ Scene load(std::string_view specification, const LoadOptions& options) {
   constexpr std::string_view kWorld = "world:", kArchive = ".pk3:";
   const std::string text(specification);
   if (text.empty())
-    throw Error("no scene given, expected world:NAME or a .bsp or archive.pk3:maps/name.bsp");
+    throw Error("no scene given, expected world:NAME or a .glb, .gltf, .bsp or archive.pk3:maps/name.bsp");
   if (text.find('\0') != std::string::npos)
     throw Error("the scene's name holds a zero byte, expected a file name");
   if (text.starts_with(kWorld)) return or_throw(generate_world(specification.substr(kWorld.size())));
@@ -46,10 +46,13 @@ Scene load(std::string_view specification, const LoadOptions& options) {
   const std::filesystem::path path(text);
   const std::string ending = path.extension().string();
   if (ending == ".bsp") return read_bsp(io::read_file(path), text, options);
+  if (ending == ".glb" || ending == ".gltf") {
+    return read_gltf(io::read_file(path), text, path.has_parent_path() ? path.parent_path() : ".");
+  }
   if (ending == ".pk3") throw Error(text + ": names an archive, expected archive.pk3:maps/name.bsp");
   throw Error(
       text +
-      ": not a kind of scene, expected world:NAME or a .bsp or archive.pk3:maps/name.bsp");
+      ": not a kind of scene, expected world:NAME or a .glb, .gltf, .bsp or archive.pk3:maps/name.bsp");
 }
 
 }  // namespace

@@ -121,6 +121,8 @@ std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std
 }
 
 std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name, const std::string& entry) {
+  // libzip takes no bytes at all for an archive without entries.
+  if (bytes.empty()) throw Error(archive_name + ": not a readable zip archive: it is empty");
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);

@@ -40,8 +40,4 @@ Machine this_machine() {
   return machine;
 }
 
-std::string_view version() noexcept {
-  return SIGHTLINE_VERSION;
-}
-
 }  // namespace sightline::lab

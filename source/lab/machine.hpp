@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 namespace sightline::lab {
 
@@ -15,8 +14,5 @@ struct Machine {
 
 /// This machine; what it will not tell is called "unknown" or 0.
 Machine this_machine();
-
-/// Sightline's own version, "0.1.0".
-std::string_view version() noexcept;
 
 }  // namespace sightline::lab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <sightline/version.hpp>
 #include <sightline/error.hpp>
 
 #include "lab/file.hpp"
@@ -110,7 +111,7 @@ Comparison compare(const Scene& scene, const EmbreeJudge& judge, std::span<const
 Json to_json(const Comparison& comparison) {
   const Machine& machine = comparison.machine;
   Json out;
-  out["sightline"] = version();
+  out["sightline"] = kVersion;
   out["machine"] = {{"cpu", machine.cpu},
                     {"cores", machine.cores},
                     {"memory", machine.memory},

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include <sightline/version.hpp>
 #include <sightline/error.hpp>
 #include <sightline/worlds.hpp>
 
@@ -73,7 +74,7 @@ TEST(Measure, RowsOfEveryMethodAndViewWithEveryField) {
   const TemporaryFolder folder;
   write_json(folder / "r.json", comparison);
   const auto json = nlohmann::json::parse(read_file(folder / "r.json", 10'000'000));
-  EXPECT_EQ(json.at("sightline"), version());
+  EXPECT_EQ(json.at("sightline"), kVersion);
   EXPECT_EQ(json.at("device"), "cpu");
   for (const char* field : {"cpu", "cores", "memory", "os", "compiler"}) {
     EXPECT_TRUE(json.at("machine").contains(field)) << field;

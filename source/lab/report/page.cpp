@@ -1,3 +1,4 @@
+#include <sightline/version.hpp>
 #include "lab/report/page.hpp"
 
 #include <fmt/format.h>
@@ -184,7 +185,7 @@ std::string make_page(const PageContent& content) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       scene + " – Sightline</title>\n<style>\n";
   page.append(kPageStyle).append("</style></head>\n<body><main>\n");
-  page += "<header><h1>What not to draw of " + scene + "</h1><p>Sightline " + escape(version()) + " on " +
+  page += "<header><h1>What not to draw of " + scene + "</h1><p>Sightline " + escape(kVersion) + " on " +
           machine_html(comparison.machine) + "</p>" + facts_html(content) + "</header>\n";
   page += "<p class=\"verdict\">" + escape(verdict(comparison)) + "</p>\n";
   page += "<h2>The methods</h2>\n" + table_html(comparison);

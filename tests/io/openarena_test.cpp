@@ -1,0 +1,125 @@
+// Levels that nobody here made. Skipped, with a word, where the package openarena-081-maps is absent.
+#include <filesystem>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <zip.h>
+
+#include <sightline/io.hpp>
+
+namespace sightline {
+namespace {
+
+constexpr const char* kArchive = "/usr/share/games/openarena/baseoa/pak1-maps.pk3";
+
+std::vector<std::string> level_names() {
+  std::vector<std::string> names;
+  zip_t* archive = zip_open(kArchive, ZIP_RDONLY, nullptr);
+  for (zip_int64_t i = 0; archive != nullptr && i < zip_get_num_entries(archive, 0); ++i) {
+    const std::string name = zip_get_name(archive, static_cast<zip_uint64_t>(i), 0);
+    if (name.ends_with(".bsp")) names.push_back(name);
+  }
+  if (archive != nullptr) zip_discard(archive);
+  return names;
+}
+
+class OpenArena : public testing::Test {
+protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(kArchive)) GTEST_SKIP() << "install openarena-081-maps for the real levels";
+  }
+};
+
+TEST_F(OpenArena, AllLevelsLoadWithPlacesInFreeSpace) {
+  const std::vector<std::string> names = level_names();
+  ASSERT_EQ(names.size(), 50u);
+  for (const std::string& name : names) {
+    SCOPED_TRACE(name);
+    const Scene scene = load_scene("pak1-maps.pk3:" + name);
+    ASSERT_TRUE(scene.level);
+    EXPECT_FALSE(check(scene));
+    EXPECT_GE(scene.viewpoints.size(), 4u);
+    EXPECT_GE(scene.waypoints.size(), scene.viewpoints.size() / 2);
+    std::vector<std::uint8_t> mask(scene.size());
+    for (const Viewpoint& view : scene.viewpoints) {
+      const LevelPvs::Leaf& leaf = scene.level->leaves[scene.level->leaf_at(view.eye)];
+      EXPECT_GE(leaf.cluster, 0);
+      EXPECT_TRUE(scene.level->may_see(leaf.cluster, leaf.cluster)) << view.name;
+    }
+  }
+}
+
+TEST_F(OpenArena, FiguresOfOneLevel) {
+  const Scene scene = load_scene("pak1-maps.pk3:maps/oasago2.bsp");
+  EXPECT_EQ(scene.size(), 3869u);
+  EXPECT_EQ(scene.level->leaves.size(), 5144u);
+  EXPECT_EQ(scene.level->clusters, 2280u);
+  std::vector<std::uint8_t> mask(scene.size());
+  std::size_t fewest = scene.size();
+  for (const Viewpoint& view : scene.viewpoints) {
+    scene.level->potentially_visible(view.eye, mask);
+    fewest = std::min(fewest, static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1)));
+  }
+  EXPECT_GT(fewest, scene.size() / 20);
+  EXPECT_LT(fewest, scene.size() / 2);
+}
+
+/// Whether the nearest triangle along the ray shows its front (1) or its back (-1); 0 for a miss.
+int side_hit(const Scene& scene, const Vec3& from, const Vec3& along) {
+  double nearest = 1e30;
+  int side = 0;
+  for (ObjectId o = 0; o < scene.size(); ++o) {
+    const Mesh& mesh = scene.meshes[scene.mesh[o]];
+    for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
+      const auto at = [&](std::uint32_t k) {
+        return scene.positions[mesh.first_vertex + scene.indices[mesh.first_index + i + k]];
+      };
+      // Möller and Trumbore 1997; the determinant's sign says which side.
+      const Vec3 a = at(0), b = at(1), c = at(2);
+      const double e1[3]{b.x - a.x, b.y - a.y, b.z - a.z}, e2[3]{c.x - a.x, c.y - a.y, c.z - a.z};
+      const double p[3]{along.y * e2[2] - along.z * e2[1], along.z * e2[0] - along.x * e2[2],
+                        along.x * e2[1] - along.y * e2[0]};
+      const double determinant = e1[0] * p[0] + e1[1] * p[1] + e1[2] * p[2];
+      if (std::abs(determinant) < 1e-12) continue;
+      const double s[3]{from.x - a.x, from.y - a.y, from.z - a.z};
+      const double u = (s[0] * p[0] + s[1] * p[1] + s[2] * p[2]) / determinant;
+      const double q[3]{s[1] * e1[2] - s[2] * e1[1], s[2] * e1[0] - s[0] * e1[2],
+                        s[0] * e1[1] - s[1] * e1[0]};
+      const double v = (along.x * q[0] + along.y * q[1] + along.z * q[2]) / determinant;
+      const double t = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / determinant;
+      if (u < 0 || v < 0 || u + v > 1 || t <= 0 || t >= nearest) continue;
+      nearest = t;
+      side = determinant > 0 ? 1 : -1;
+    }
+  }
+  return side;
+}
+
+TEST_F(OpenArena, PlayersSeeTheFrontsOfWalls) {
+  const Scene scene = load_scene("pak1-maps.pk3:maps/oa_dm1.bsp");
+  std::mt19937 random(3);
+  std::normal_distribution<float> axis;
+  int fronts = 0, backs = 0;
+  for (const Viewpoint& view : scene.viewpoints) {
+    for (int ray = 0; ray < 40; ++ray) {
+      const int side = side_hit(scene, view.eye, {axis(random), axis(random), axis(random)});
+      fronts += side > 0;
+      backs += side < 0;
+    }
+  }
+  EXPECT_GT(fronts, 300);
+  // Two-sided surfaces such as banners may show their back.
+  EXPECT_LT(backs, fronts / 20);
+}
+
+TEST_F(OpenArena, MissingLevelNamesItsNeighbours) {
+  try {
+    load_scene("pak1-maps.pk3:maps/oasago3.bsp");
+    FAIL() << "expected an error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("maps/oasago2.bsp"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace sightline
