@@ -1,0 +1,15 @@
+// What paper D gives to the registry.
+#pragma once
+
+#include <array>
+
+#include "methods/methods.hpp"
+
+namespace sightline::methods {
+
+extern const std::array<MethodInfo, 9> kDrawCallMethods;
+
+/// The parameter `submission`.
+Submission submission_from(const Parameters& parameters) noexcept;
+
+}  // namespace sightline::methods
