@@ -25,7 +25,7 @@ public:
   };
 
   /// Structures of Serpa et al. over `triangles` (ascending ids into `all`), `height` levels of splitting.
-  /// A node is not split where each child would hold most of its triangles. Coordinates are finite.
+  /// A node is not split where that would multiply its triangles. Coordinates are finite.
   void build(Structure structure, const TriangleSpan& all, std::span<const std::uint32_t> triangles,
              std::uint32_t height);
 

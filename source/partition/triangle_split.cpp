@@ -69,7 +69,9 @@ Box octant(const Box& region, const Planes& planes, std::uint32_t child) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!planes.cuts[a]) continue;
     const float at = std::clamp(planes.at[a], region.min.*kAxes[a], region.max.*kAxes[a]);
-    (child >> a & 1 ? box.min : box.max).*kAxes[a] = at;
+    // Not in one expression: GCC 12 assigns to a copy there.
+    Vec3& end = (child >> a & 1) != 0 ? box.min : box.max;
+    end.*kAxes[a] = at;
   }
   return box;
 }
@@ -97,7 +99,6 @@ bool split(Structure structure, const TriangleSpan& all, std::span<const std::ui
     out.triangles[child].clear();
     if (possible >> child & 1) out.regions[child] = octant(region, planes, child);
   }
-  out.children = possible;
   std::uint64_t shared = 0;
   for (const std::uint32_t triangle : triangles) {
     const auto corners = all[triangle];
@@ -116,10 +117,10 @@ bool split(Structure structure, const TriangleSpan& all, std::span<const std::ui
       ++shared;
     }
   }
-  const auto children = static_cast<std::uint64_t>(__builtin_popcount(possible));
-  // More than half of the node in the mean child (k-d tree: nearly all): cells would multiply, not divide.
-  return structure == Structure::kd_tree ? 20 * shared <= 39 * triangles.size()
-                                         : 2 * shared <= (children + 1) * triangles.size();
+  // Copies a triangle at which cells multiply instead of dividing what they hold, in twentieths: one as large
+  // as the node reaches into all four of a grid's children, into four of an octree's eight or more.
+  constexpr std::array<std::uint64_t, 3> kMostCopies{50, 60, 39};
+  return 20 * shared <= kMostCopies[static_cast<std::size_t>(structure)] * triangles.size();
 }
 
 }  // namespace sightline::partition

@@ -37,11 +37,10 @@ Box bounds_of(const std::array<Vec3, 3>& triangle) noexcept;
 struct Split {
   std::array<Box, 8> regions;
   std::array<std::vector<std::uint32_t>, 8> triangles;  ///< in the order they came in
-  std::uint32_t children = 0;
 };
 
-/// Shares triangles out to every child they reach into. False where that would not divide them: each child
-/// would hold most of what the node holds.
+/// Shares triangles out to every child they reach into. False where that would multiply them more than
+/// divide them, as with triangles as large as the node.
 bool split(Structure structure, const TriangleSpan& all, std::span<const std::uint32_t> triangles,
            const Box& region, Split& out);
 
