@@ -22,6 +22,7 @@ std::span<const MethodInfo> cpu_methods() noexcept {
   static const std::vector<MethodInfo> kMethods = [] {
     std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum};
     all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
+    all.push_back(kClusterCone);
     all.push_back(kLevelPvs);
     return all;
   }();

@@ -35,11 +35,7 @@ struct TrianglePartition::ClusterBuilder {
       out.nodes_[self].bounds = cluster(places);
     } else {
       const std::size_t axis = widest(places);
-      const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
-      // Ids decide between equals: the same clusters whatever the library's algorithm.
-      std::nth_element(places.begin(), middle, places.end(), [axis](const Place& a, const Place& b) {
-        return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.triangle < b.triangle;
-      });
+      const auto middle = axis < 3 ? halve(places, axis) : part_by_facing(places, axis);
       const Box low = node({places.begin(), middle});
       const Box high = node({middle, places.end()});
       out.nodes_[self].bounds = united(low, high);
@@ -47,6 +43,25 @@ struct TrianglePartition::ClusterBuilder {
     out.nodes_[self].next = static_cast<std::uint32_t>(out.nodes_.size());
     out.nodes_[self].last_cell = out.cells();
     return out.nodes_[self].bounds;
+  }
+
+  static std::span<Place>::iterator halve(std::span<Place> places, std::size_t axis) {
+    const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+    // Ids decide between equals: the same clusters whatever the library's algorithm.
+    std::nth_element(places.begin(), middle, places.end(), [axis](const Place& a, const Place& b) {
+      return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.triangle < b.triangle;
+    });
+    return middle;
+  }
+
+  // At the middle of the normals' range, not at their median: walls, floors and ceilings come apart whole.
+  static std::span<Place>::iterator part_by_facing(std::span<Place> places, std::size_t axis) {
+    const auto [low, high] = std::ranges::minmax(places, {}, [axis](const Place& p) { return p.at[axis]; });
+    const float cut = 0.5f * (low.at[axis] + high.at[axis]);
+    const auto rest =
+        std::ranges::stable_partition(places, [&](const Place& p) { return p.at[axis] <= cut; });
+    return rest.begin() == places.end() || rest.begin() == places.begin() ? halve(places, axis)
+                                                                          : rest.begin();
   }
 
   static std::size_t widest(std::span<const Place> places) {

@@ -8,6 +8,7 @@
 namespace sightline::methods {
 
 extern const std::array<MethodInfo, 9> kDrawCallMethods;
+extern const MethodInfo kClusterCone;
 
 /// The parameter `submission`.
 Submission submission_from(const Parameters& parameters) noexcept;
