@@ -42,7 +42,7 @@ int run(const Options& options) {
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
   const Scene scene = load_scene(options.scene);
   const std::vector<std::string> names =
-      options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
+      options.methods.empty() ? lab::promising_methods(scene) : split(options.methods);
   if (names.empty()) throw Error("--methods: expected at least one method");
   const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
   const std::vector<Camera> cameras = lab::random_cameras(scene, options.views, options.seed);
@@ -76,7 +76,7 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command
       .add_option("--methods", options->methods,
-                  "methods, separated by commas (default: all that fit the scene)")
+                  "methods, separated by commas (default: all that fit the scene and promise something)")
       ->type_name("A,B");
   command.add_option("--views", options->views, "random views")
       ->check(CLI::Range(1, 1000000))

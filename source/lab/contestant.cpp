@@ -20,4 +20,12 @@ std::vector<std::string> fitting_methods(const Scene& scene) {
   return names;
 }
 
+std::vector<std::string> promising_methods(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const MethodInfo& info : cpu_methods()) {
+    if (info.fits(scene) && info.guarantee != Guarantee::approximate) names.emplace_back(info.name);
+  }
+  return names;
+}
+
 }  // namespace sightline::lab

@@ -21,4 +21,7 @@ std::vector<Contestant> make_contestants(const Scene& scene, std::span<const std
 /// Names of all registered CPU methods that fit the scene.
 std::vector<std::string> fitting_methods(const Scene& scene);
 
+/// Of those, the ones that promise something that can be held against them: exact or conservative.
+std::vector<std::string> promising_methods(const Scene& scene);
+
 }  // namespace sightline::lab

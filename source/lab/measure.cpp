@@ -26,11 +26,15 @@ std::vector<std::vector<double>> take_times(std::span<const Contestant> contesta
                                             std::size_t turn, const MeasureOptions& options,
                                             std::vector<Frame>& frames) {
   std::vector<std::vector<double>> times(contestants.size());
+  std::vector<double> spent(contestants.size(), 0);
   for (std::size_t repeat = 0; repeat < options.warm_up + options.repeats; ++repeat) {
     for (std::size_t k = 0; k < contestants.size(); ++k) {
       const std::size_t m = (k + turn + repeat) % contestants.size();
+      const bool counts = repeat >= options.warm_up;
+      if (spent[m] > options.patience_ms && (!counts || !times[m].empty())) continue;
       const double time = cull_milliseconds(*contestants[m].method, view, frames[m]);
-      if (repeat >= options.warm_up) times[m].push_back(time);
+      spent[m] += time;
+      if (counts) times[m].push_back(time);
     }
   }
   return times;

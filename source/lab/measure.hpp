@@ -53,8 +53,9 @@ struct Comparison {
 
 struct MeasureOptions {
   std::uint32_t width = 1280, height = 720;
-  std::size_t warm_up = 2;  ///< culls of each method and view that are not counted
-  std::size_t repeats = 9;  ///< that are
+  std::size_t warm_up = 2;   ///< culls of each method and view that are not counted
+  std::size_t repeats = 9;   ///< that are
+  double patience_ms = 200;  ///< a method that has taken longer in a view is not repeated, only counted once
 };
 
 /// For each view, all methods by turns in an order that rotates, so that drift of the machine hits all alike;
