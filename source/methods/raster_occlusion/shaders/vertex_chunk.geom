@@ -1,15 +1,13 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 #include "boxes.h"
 
 // Figure 2 of Lee & Shin 2023, geometry stage: the box restored out of its vertex, as one strip.
 layout(points) in;
 layout(triangle_strip, max_vertices = 14) out;
-
-layout(push_constant, scalar) uniform Push {
-  ViewBuffer view_data;
-};
 
 layout(location = 0) in vec3 box_centre[];
 layout(location = 1) in vec3 box_half_extent[];
@@ -22,11 +20,10 @@ const uint kStrip[14] = uint[](6, 7, 2, 3, 1, 7, 5, 6, 4, 2, 0, 1, 4, 5);
 
 void main() {
   if (fate[0] == 0) return;
-  const ViewData view = view_data.view;
   const bool certain = fate[0] == 2;
   vec4 corners[8];
   for (uint i = 0; i < 8; ++i) {
-    corners[i] = certain ? certain_mark(view, i) : clip_position(view, corner(box_centre[0], box_half_extent[0], i));
+    corners[i] = certain ? certain_mark(i) : clip_position(corner(box_centre[0], box_half_extent[0], i));
   }
   const uint count = certain ? 4 : 14;
   for (uint i = 0; i < count; ++i) {
