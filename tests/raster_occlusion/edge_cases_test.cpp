@@ -142,10 +142,13 @@ TEST_F(EdgeCases, AWindowOfOnePixelAndOneOf4096By4096) {
 
 TEST_F(EdgeCases, AMillionObjects) {
   Scene scene;
-  const std::uint32_t cube = add_cube(scene);
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<Vec3> normals(3, Vec3{0, 0, 1});
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  const std::uint32_t triangle = scene.add_mesh(corners, normals, indices);
   scene.bounds.reserve(1000000);
   for (int i = 0; i < 1000000; ++i) {
-    scene.add_object(cube,
+    scene.add_object(triangle,
                      at(static_cast<float>(i % 1000) * 3 - 1500, 0, -static_cast<float>(i / 1000) * 3 - 4));
   }
   Examination examination(device(), scene, kOcclusionMethods);
