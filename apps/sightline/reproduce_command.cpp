@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "command.hpp"
+#include "device.hpp"
 #include "lab/reproduce/object_frustum.hpp"
+#include "lab/reproduce/vertex_chunk.hpp"
 #include "page.hpp"
 
 namespace sightline::app {
@@ -13,8 +15,27 @@ namespace {
 
 struct Options {
   bool quick = false;
-  std::string report;
+  std::string report, device;
 };
+
+// Frame times of both methods, drawn by a device.
+void print_drawn_object_frustum(const std::string& name, bool quick) {
+  const auto device = open_device(name);
+  Scene scene = lab::object_frustum_scene();
+  const std::vector<std::string> methods{"grid-cell", "object-frustum"};
+  lab::Workbench bench(*device, scene, methods);
+  lab::DeviceMeasureOptions measure;
+  measure.measure.repeats = quick ? 2 : 5;
+  measure.measure.warm_up = 1;
+  const lab::Comparison drawn =
+      lab::compare_on_device(bench, lab::object_frustum_path(scene), measure, progress("draw"));
+  expect_silence(*device);
+  fmt::print("\nDrawn on {}, opaque front to back, then transparent back to front\n{}", drawn.device,
+             lab::render(lab::device_table(drawn)));
+  const auto all = lab::summarise_on_device(drawn);
+  fmt::print("\nfps, object-frustum / grid-cell: {:.2f}, published {:.2f}\n", all[1].fps() / all[0].fps(),
+             lab::kPublishedObjectFrustum.fps / lab::kPublishedGridCell.fps);
+}
 
 int run_object_frustum(const Options& options) {
   const Scene scene = lab::object_frustum_scene();
@@ -29,6 +50,33 @@ int run_object_frustum(const Options& options) {
              100 * result.tested_share, lab::render(result.ratios));
   fmt::print("{}", lab::render(lab::summary_table(result.comparison)));
   if (!options.report.empty()) write_page(options.report, scene, judge, contestants, result.comparison);
+  if (options.device.empty() && vulkan::list_devices().empty()) {
+    fmt::print("\nThere is no Vulkan device: nothing was drawn.\n");
+  } else if (options.device != "cpu") {
+    print_drawn_object_frustum(options.device.empty() ? "any" : options.device, options.quick);
+  }
+  return Exit::done;
+}
+
+int run_vertex_chunk(const Options& options) {
+  const auto device = open_device(options.device.empty() ? "any" : options.device);
+  std::vector<lab::VertexChunkWorld> worlds;
+  for (const char* name : {"regular", "irregular"}) {
+    worlds.push_back(
+        lab::reproduce_vertex_chunk(*device, name, {options.quick, !options.report.empty()}, progress(name)));
+    const lab::VertexChunkWorld& world = worlds.back();
+    fmt::print(
+        "Lee & Shin 2023, world {}: {} objects, {}x{} on {}; each cell is ours (ratio to vertex-chunk / "
+        "published ratio)\n\n",
+        name, world.near.rows.front().stats.objects, world.near.width, world.near.height, world.near.device);
+    for (const lab::Table& table : world.tables) fmt::print("{}\n", lab::render(table));
+    fmt::print("Figure 7\n{}\n", lab::render(world.rising_fps));
+    for (const lab::Comparison* view : {&world.near, &world.far}) {
+      fmt::print("{} view\n{}\n", view->path, lab::render(lab::device_table(*view)));
+    }
+  }
+  expect_silence(*device);
+  if (!options.report.empty()) lab::write_vertex_chunk_report(options.report, worlds);
   return Exit::done;
 }
 
@@ -43,7 +91,19 @@ void add_reproduce(CLI::App& app, int& exit) {
   auto options = std::make_shared<Options>();
   paper.add_flag("--quick", options->quick, "fewer repeats");
   paper.add_option("--report", options->report, "also write an HTML page to DIR")->type_name("DIR");
+  paper.add_option("--device", options->device, "where frames are drawn; cpu draws none (default: any)")
+      ->type_name("cpu|NAME");
   on_run(paper, exit, [options] { return run_object_frustum(*options); });
+
+  CLI::App& chunks =
+      *command.add_subcommand("vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion");
+  chunks.add_flag("--quick", options->quick, "smaller pictures, fewer triangles, fewer repeats");
+  chunks.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
+      ->type_name("DIR");
+  chunks
+      .add_option("--device", options->device, "a Vulkan device by index or part of its name (default: any)")
+      ->type_name("NAME");
+  on_run(chunks, exit, [options] { return run_vertex_chunk(*options); });
 }
 
 }  // namespace sightline::app

@@ -47,8 +47,10 @@ public:
   [[nodiscard]] const vk::PhysicalDeviceLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] const Features& features() const noexcept { return *features_; }
   [[nodiscard]] bool has_timestamps() const noexcept { return timestamps_; }
-  /// All pipelines share one layout: 128 bytes of push constants, no descriptors.
+  /// All pipelines share one layout: 128 bytes of push constants, and a set with one uniform buffer, the view.
   [[nodiscard]] const vk::raii::PipelineLayout& layout() const noexcept { return *layout_; }
+
+  [[nodiscard]] const vk::raii::DescriptorSetLayout& set_layout() const noexcept { return *set_layout_; }
 
   /// Throws Error that names `who` unless the device has the feature.
   void require(std::string_view feature, std::string_view who) const;
@@ -89,6 +91,7 @@ private:
   std::optional<vk::raii::Device> device_;
   std::optional<vk::raii::Queue> queue_;
   std::optional<vk::raii::CommandPool> command_pool_;
+  std::optional<vk::raii::DescriptorSetLayout> set_layout_;
   std::optional<vk::raii::PipelineLayout> layout_;
 };
 

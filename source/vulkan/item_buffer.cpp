@@ -17,7 +17,7 @@ constexpr std::uint32_t kSeenFrag[] =
     ;
 
 struct Push {
-  vk::DeviceAddress view, objects, list, seen;
+  vk::DeviceAddress objects, list, seen;
 };
 
 }  // namespace
@@ -47,7 +47,7 @@ ItemBuffer ItemBufferPass::render(const View& view) {
       if (count == 0) return;
       frame.bind(pipeline);
       frame.push(
-          Push{frame.view_address(), scene.object_data.address(), all_.list.address(), seen_.address()});
+          Push{scene.object_data.address(), all_.list.address(), seen_.address()});
       frame.commands.bindVertexBuffers(0, scene.vertices.handle(), vk::DeviceSize{0});
       frame.commands.bindIndexBuffer(scene.indices.handle(), 0, vk::IndexType::eUint32);
       frame.commands.drawIndexedIndirect(all_.commands.handle(), first * sizeof(DrawCommand), count,

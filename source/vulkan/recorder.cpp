@@ -3,15 +3,18 @@
 namespace sightline::vulkan {
 
 Recorder::Recorder(const Device& device, const vk::raii::CommandBuffer& commands, Timer& timer,
-                   const View& view, shared::ViewData& view_data, vk::DeviceAddress view_address,
+                   const View& view, shared::ViewData& view_data, vk::DescriptorSet view_set,
                    const Targets& targets)
     : commands(commands),
       view(view),
       targets(targets),
       device_(device),
       timer_(timer),
-      view_data_(view_data),
-      view_address_(view_address) {}
+      view_data_(view_data) {
+  for (const auto point : {vk::PipelineBindPoint::eGraphics, vk::PipelineBindPoint::eCompute}) {
+    commands.bindDescriptorSets(point, *device.layout(), 0, view_set, {});
+  }
+}
 
 Recorder::Pass::Pass(Recorder& frame, std::string_view name, PassKind kind) : frame_(frame) {
   full_barrier(frame_.commands);

@@ -26,7 +26,7 @@ inline constexpr float kTestBias = 4;
 class Recorder {
 public:
   Recorder(const Device& device, const vk::raii::CommandBuffer& commands, Timer& timer, const View& view,
-           shared::ViewData& view_data, vk::DeviceAddress view_address, const Targets& targets);
+           shared::ViewData& view_data, vk::DescriptorSet view_set, const Targets& targets);
 
   const vk::raii::CommandBuffer& commands;
   const View& view;
@@ -34,7 +34,6 @@ public:
 
   /// What shaders see of the view; may be changed until the frame is submitted.
   [[nodiscard]] shared::ViewData& view_data() const noexcept { return view_data_; }
-  [[nodiscard]] vk::DeviceAddress view_address() const noexcept { return view_address_; }
   [[nodiscard]] bool reversed() const noexcept { return view_data_.reversed != 0; }
 
   /// A named pass with a timestamp at either end, and a barrier before and after.
@@ -88,7 +87,6 @@ private:
   const Device& device_;
   Timer& timer_;
   shared::ViewData& view_data_;
-  vk::DeviceAddress view_address_;
 };
 
 }  // namespace sightline::vulkan

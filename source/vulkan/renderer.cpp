@@ -21,12 +21,18 @@ constexpr std::uint32_t kShadeFrag[] =
 constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 struct DrawPush {
-  vk::DeviceAddress view, objects, list, extra;
+  vk::DeviceAddress objects, list, extra;
 };
 
 std::array<std::uint32_t, 4> background() {
   return {std::bit_cast<std::uint32_t>(0.62f), std::bit_cast<std::uint32_t>(0.70f),
           std::bit_cast<std::uint32_t>(0.80f), std::bit_cast<std::uint32_t>(1.0f)};
+}
+
+vk::raii::DescriptorPool make_pool(const Device& device) {
+  const vk::DescriptorPoolSize size{vk::DescriptorType::eUniformBuffer, 1};
+  return {device.handle(),
+          vk::DescriptorPoolCreateInfo{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size}};
 }
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
@@ -59,6 +65,8 @@ Renderer::Renderer(Device& device, const Scene& scene)
       view_buffer_(device, sizeof(shared::ViewData), Memory::upload, "the view"),
       transparent_order_(device, buffers_.transparent_ids.size() * 4, Memory::upload,
                          "the transparent objects' order"),
+      descriptors_(make_pool(device)),
+      view_set_(device.handle(), {*descriptors_, *device.set_layout()}),
       depth_pipeline_(device, {.vertex = kObjectVert, .input = Input::mesh}),
       lit_pipeline_(
           device,
@@ -69,6 +77,9 @@ Renderer::Renderer(Device& device, const Scene& scene)
                                .colour = kColourFormat,
                                .blend = true,
                                .depth_write = false}) {
+  const vk::DescriptorBufferInfo view{view_buffer_.handle(), 0, sizeof(shared::ViewData)};
+  device.handle().updateDescriptorSets(
+      vk::WriteDescriptorSet{*view_set_[0], 0, 0, vk::DescriptorType::eUniformBuffer, {}, view}, {});
   for (ObjectId object = 0; object < scene.size(); ++object)
     grow(extent_, scene.bounds[object], scene.radius[object]);
 }
@@ -111,7 +122,7 @@ FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)
   const vk::raii::CommandBuffer& commands = commands_[0];
   commands.begin(vk::CommandBufferBeginInfo{vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timer_.reset(commands);
-  Recorder recorder(device_, commands, timer_, view, data, view_buffer_.address(), *targets_);
+  Recorder recorder(device_, commands, timer_, view, data, *view_set_[0], *targets_);
   const auto before = std::chrono::steady_clock::now();
   record(recorder);
   times.record_ms = milliseconds_since(before);
@@ -132,7 +143,7 @@ void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipe
                              Recorder::Compare compare, vk::DeviceAddress extra) const {
   if (count == 0) return;
   frame.bind(pipeline, compare);
-  frame.push(DrawPush{frame.view_address(), buffers_.object_data.address(), list, extra});
+  frame.push(DrawPush{buffers_.object_data.address(), list, extra});
   frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
   frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
   frame.commands.drawIndexedIndirect(commands, first * kCommandSize, count, kCommandSize);

@@ -80,6 +80,8 @@ private:
   Timer timer_;
   vk::raii::CommandBuffers commands_;
   Buffer view_buffer_, transparent_order_, host_list_, host_commands_;
+  vk::raii::DescriptorPool descriptors_;
+  vk::raii::DescriptorSets view_set_;
   std::vector<std::uint64_t> sort_keys_;
   GraphicsPipeline depth_pipeline_, lit_pipeline_, blend_pipeline_;
 };

@@ -62,9 +62,6 @@ static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshDa
               sizeof(CommandData) == 20);
 }  // namespace sightline::vulkan::shared
 #else
-layout(buffer_reference, scalar) readonly buffer ViewBuffer {
-  ViewData view;
-};
 layout(buffer_reference, scalar) readonly buffer ObjectBuffer {
   ObjectData at[];
 };

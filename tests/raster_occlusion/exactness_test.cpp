@@ -23,8 +23,9 @@ TEST_P(Exactness, NothingIsLostAfterACameraCut) {
   for (const Camera& camera : lab::random_cameras(scene, 24, 3)) {
     examination.look(view_of(camera, 192, 108), "in view " + std::to_string(index++));
   }
-  std::printf("kept %.2f times the visible\n", static_cast<double>(examination.kept()) /
-                                                    static_cast<double>(examination.visible() * kOcclusionMethods.size()));
+  std::printf("kept %.2f times the visible\n",
+              static_cast<double>(examination.kept()) /
+                  static_cast<double>(examination.visible() * kOcclusionMethods.size()));
 }
 
 TEST_P(Exactness, NothingIsLostWithTheExactContributionTest) {
@@ -51,7 +52,8 @@ TEST_P(Exactness, NothingIsLostWhileObjectsAndCameraMove) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Exactness,
-                         testing::Values("regular?columns=30&rows=30&detail=2", "irregular?spheres=1500&size=100&detail=2",
+                         testing::Values("regular?columns=30&rows=30&detail=2",
+                                         "irregular?spheres=1500&size=100&detail=2",
                                          "forest?trees=1500&size=200"),
                          [](const auto& info) {
                            const std::string_view name = info.param;

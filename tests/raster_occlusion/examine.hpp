@@ -48,13 +48,15 @@ public:
       renderer_.frame(view, [&](vulkan::Recorder& frame) { method->record(frame); });
       const vulkan::Picture picture = renderer_.picture();
       std::size_t different = 0;
-      for (std::size_t i = 0; i < picture.pixels.size(); ++i) different += picture.pixels[i] != expected.pixels[i];
+      for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        different += picture.pixels[i] != expected.pixels[i];
       method->read_back(frame_);
       kept_ += frame_.visible.size();
       std::vector<std::uint8_t> kept(scene_.size());
       for (const ObjectId object : frame_.visible) kept[object] = 1;
       std::size_t lost = 0;
-      for (ObjectId object = 0; object < scene_.size(); ++object) lost += truth.visible[object] && !kept[object];
+      for (ObjectId object = 0; object < scene_.size(); ++object)
+        lost += truth.visible[object] && !kept[object];
       EXPECT_EQ(lost, 0u) << name << " lost objects " << where;
       EXPECT_EQ(different, 0u) << name << " drew another picture " << where;
     }
@@ -84,6 +86,7 @@ private:
   std::uint64_t visible_ = 0, kept_ = 0;
 };
 
-inline const std::vector<std::string> kOcclusionMethods{"roc", "hroc", "vertex-chunk", "resident-chunk", "hiz"};
+inline const std::vector<std::string> kOcclusionMethods{"roc", "hroc", "vertex-chunk", "resident-chunk",
+                                                        "hiz"};
 
 }  // namespace sightline

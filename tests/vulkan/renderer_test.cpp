@@ -17,7 +17,8 @@ vulkan::Picture draw_all(vulkan::Renderer& renderer, const View& view) {
   const auto draws = renderer.draws().make_buffers(renderer.device());
   const vulkan::Buffer flags(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::upload, "flags");
   renderer.frame(view, [&](vulkan::Recorder& frame) {
-    renderer.draws().build(frame, flags.address(), vulkan::VisibleDraws::kAll, renderer.transparent_order(), draws);
+    renderer.draws().build(frame, flags.address(), vulkan::VisibleDraws::kAll, renderer.transparent_order(),
+                           draws);
     renderer.draw_opaque(frame, draws, vulkan::Renderer::Style::lit, vulkan::Renderer::Clear::both);
     renderer.draw_transparent(frame, draws);
   });
@@ -51,7 +52,8 @@ TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
   const vulkan::Picture picture = renderer.picture();
   EXPECT_TRUE(picture == expected);
   EXPECT_GT(std::ranges::count_if(picture.pixels, [&](auto p) { return p != picture.pixels[0]; }), 1000);
-  if (const char* folder = std::getenv("SIGHTLINE_TEST_PICTURES")) vulkan::save_png(picture, std::string(folder) + "/forest.png");
+  if (const char* folder = std::getenv("SIGHTLINE_TEST_PICTURES"))
+    vulkan::save_png(picture, std::string(folder) + "/forest.png");
 }
 
 TEST_F(RendererTest, UpIsUpAndNearerHidesFartherWithEitherDepth) {
@@ -118,9 +120,9 @@ TEST_F(ItemBufferTest, AgreesWithRaysThroughPixelCentresButForSilhouettes) {
   }
   RecordProperty("different_pixels", static_cast<int>(different));
   RecordProperty("disputed_objects", static_cast<int>(disputed));
-  std::printf("%llu of %llu pixels, %llu of %llu objects differ\n", static_cast<unsigned long long>(different),
-              static_cast<unsigned long long>(pixels), static_cast<unsigned long long>(disputed),
-              static_cast<unsigned long long>(objects));
+  std::printf("%llu of %llu pixels, %llu of %llu objects differ\n",
+              static_cast<unsigned long long>(different), static_cast<unsigned long long>(pixels),
+              static_cast<unsigned long long>(disputed), static_cast<unsigned long long>(objects));
   EXPECT_LT(different * 1000, pixels);
   EXPECT_LT(disputed * 100, objects);
 }

@@ -15,7 +15,9 @@ namespace {
 
 constexpr int kRuns = 10;
 
-CameraPath ten_headings(const Scene& scene) {
+}  // namespace
+
+CameraPath object_frustum_path(const Scene& scene) {
   CameraPath path{"ten headings from the middle", {}};
   for (int run = 0; run < kRuns; ++run) {
     const float heading = 2 * std::numbers::pi_v<float> * static_cast<float>(run) / kRuns;
@@ -26,6 +28,8 @@ CameraPath ten_headings(const Scene& scene) {
   }
   return path;
 }
+
+namespace {
 
 std::string ratio(double of, double to) {
   return to > 0 ? fmt::format("{:.2f}", of / to) : "-";
@@ -69,7 +73,7 @@ ObjectFrustumReproduction reproduce_object_frustum(const Scene& scene, const Emb
   ObjectFrustumReproduction out;
   MeasureOptions options;
   options.repeats = quick ? 11 : 101;
-  out.comparison = compare(scene, judge, contestants, ten_headings(scene), options, progress);
+  out.comparison = compare(scene, judge, contestants, object_frustum_path(scene), options, progress);
 
   const double objects = static_cast<double>(scene.size());
   out.runs.header = {"run",    "grid-cell kept", "ms", "object-frustum kept",

@@ -27,6 +27,9 @@ struct ObjectFrustumReproduction {
 /// The scene the paper describes.
 Scene object_frustum_scene();
 
+/// The ten views.
+CameraPath object_frustum_path(const Scene& scene);
+
 /// Ten runs; `quick` repeats each less often. Throws Error as compare() does.
 ObjectFrustumReproduction reproduce_object_frustum(const Scene& scene, const EmbreeJudge& judge,
                                                    std::span<const Contestant> contestants, bool quick,

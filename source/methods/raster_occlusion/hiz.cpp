@@ -17,12 +17,12 @@ constexpr std::uint32_t kPyramid[] =
     ;
 
 struct InViewPush {
-  vk::DeviceAddress view, boxes, marks, last_marks, state;
+  vk::DeviceAddress boxes, marks, last_marks, state;
   std::uint32_t objects;
 };
 
 struct TestPush {
-  vk::DeviceAddress view, boxes, marks, state, pyramid;
+  vk::DeviceAddress boxes, marks, state, pyramid;
   std::uint32_t objects;
 };
 
@@ -45,7 +45,7 @@ private:
   void find_in_view(vulkan::Recorder& frame) override {
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.dispatch(in_view_,
-                   InViewPush{frame.view_address(), scene.box_data.address(), marks_.address(),
+                   InViewPush{scene.box_data.address(), marks_.address(),
                               last_marks_.address(), state_.address(), scene.objects},
                    scene.objects);
   }
@@ -68,7 +68,7 @@ private:
     }
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.dispatch(test_,
-                   TestPush{frame.view_address(), scene.box_data.address(), marks_.address(),
+                   TestPush{scene.box_data.address(), marks_.address(),
                             state_.address(), pyramid_.address(), scene.objects},
                    scene.objects);
   }

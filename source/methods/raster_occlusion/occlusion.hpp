@@ -18,7 +18,7 @@ void set_contribution(const vulkan::Recorder& frame, const culling::Contribution
 
 /// Push constants of every pass that tests boxes by rasterising them.
 struct BoxPush {
-  vk::DeviceAddress view, boxes, marks, list;
+  vk::DeviceAddress boxes, marks, list;
   std::uint32_t listed, first_leaf;
 };
 

@@ -25,7 +25,7 @@ constexpr std::uint32_t kWords = partition::ChunkMap::kCapacity + 1;  ///< a chu
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
-  vk::DeviceAddress view, boxes, marks, list, last_marks, state, chunks_in, chunk_objects, test;
+  vk::DeviceAddress boxes, marks, list, last_marks, state, chunks_in, chunk_objects, test;
 };
 
 constexpr std::array kParameters{culling::kContributionParameter, culling::kThresholdParameter,
@@ -96,7 +96,7 @@ private:
     vulkan::full_barrier(frame.commands);
     if (count == 0) return;
     frame.dispatch(in_view_,
-                   Push{frame.view_address(), renderer_.buffers().box_data.address(), marks_.address(),
+                   Push{renderer_.buffers().box_data.address(), marks_.address(),
                         list_.address(), last_marks_.address(), state_.address(), chunks_in_.address(),
                         resident_.address(), test_.address()},
                    count, 1);
@@ -105,7 +105,7 @@ private:
   void test(vulkan::Recorder& frame) override {
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{frame.view_address(), renderer_.buffers().box_data.address(), marks_.address(),
+    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(),
                        list_.address(), 0, 0});
     frame.commands.drawIndirect(test_.handle(), 0, 1, 16);
     frame.end_rendering();

@@ -28,7 +28,7 @@ constexpr VisibleDraws::Condition kEarly{kDrawnEarly, kDrawnEarly}, kLate{kDrawn
     kAnySeen{kSeen, kSeen}, kAnyTied{kTied, kTied}, kNever{0, 1};
 
 struct Push {
-  vk::DeviceAddress view, boxes, objects, marks, state, tiles;
+  vk::DeviceAddress boxes, objects, marks, state, tiles;
   std::uint32_t count;
 };
 
@@ -91,7 +91,7 @@ void TwoPhase::settle_ties(vulkan::Recorder& frame) {
     tiles_ = vulkan::Buffer(renderer_.device(), columns * rows * 4, vulkan::Memory::device, "tiles");
   }
   frame.fill(tiles_, 0, columns * rows * 4);
-  const Push push{frame.view_address(), scene.box_data.address(), scene.object_data.address(),
+  const Push push{scene.box_data.address(), scene.object_data.address(),
                   marks_.address(),     state_.address(),         tiles_.address(),
                   scene.objects};
   frame.dispatch(new_tiles_, push, scene.objects);

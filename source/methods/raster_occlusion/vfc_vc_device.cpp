@@ -11,7 +11,7 @@ constexpr std::uint32_t kVfcVc[] =
     ;
 
 struct Push {
-  vk::DeviceAddress view, boxes, marks, counters;
+  vk::DeviceAddress boxes, marks, counters;
   std::uint32_t objects;
 };
 
@@ -35,7 +35,7 @@ public:
       const auto pass = frame.pass("frustum and contribution", vulkan::PassKind::cull);
       frame.fill(counters_, 0, 8);
       frame.dispatch(test_,
-                     Push{frame.view_address(), scene.box_data.address(), marks_.address(),
+                     Push{scene.box_data.address(), marks_.address(),
                           counters_.address(), scene.objects},
                      scene.objects);
       renderer_.draws().build(frame, marks_.address(), {}, renderer_.transparent_order(), draws_);

@@ -1,10 +1,11 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 // Draws an object of the list; every pass that draws objects uses this one shader, so depths agree to the
 // bit.
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
   ObjectBuffer objects;
   WordBuffer list;
 };
@@ -26,5 +27,5 @@ void main() {
   const vec3 a = data.rows[0].xyz, b = data.rows[1].xyz, c = data.rows[2].xyz;
   world_normal = vec3(dot(cross(b, c), normal), dot(cross(c, a), normal), dot(cross(a, b), normal));
   colour = data.colour;
-  gl_Position = view.view.world_to_clip * vec4(world_position, 1);
+  gl_Position = view.world_to_clip * vec4(world_position, 1);
 }

@@ -4,7 +4,6 @@
 layout(early_fragment_tests) in;
 
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
   ObjectBuffer objects;
   WordBuffer list;
   WordBuffer seen;

@@ -1,11 +1,9 @@
 #version 460
 #include "vulkan/shared.h"
 
-#include "shading.h"
+#include "vulkan/shaders/view.h"
 
-layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
-};
+#include "shading.h"
 
 layout(location = 0) in vec3 world_position;
 layout(location = 1) in vec3 world_normal;
@@ -13,5 +11,5 @@ layout(location = 3) in flat uint colour;
 layout(location = 0) out vec4 shade;
 
 void main() {
-  shade = shade_of(view.view, world_position, world_normal, colour);
+  shade = shade_of(world_position, world_normal, colour);
 }

@@ -1,5 +1,5 @@
 // The light that every picture is drawn with.
-vec4 shade_of(ViewData view, vec3 world_position, vec3 world_normal, uint colour) {
+vec4 shade_of(vec3 world_position, vec3 world_normal, uint colour) {
   const vec4 base = unpackUnorm4x8(colour);
   const vec3 to_eye = view.eye.w > 0 ? -view.forward.xyz : view.eye.xyz - world_position;
   vec3 n = normalize(world_normal);

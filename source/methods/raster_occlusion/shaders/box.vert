@@ -1,11 +1,12 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 #include "boxes.h"
 
 // A box as 36 vertices, the box and its corner out of the vertex index.
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view_data;
   BoxBuffer boxes;
   WordBuffer marks;
   WordBuffer list;
@@ -23,20 +24,19 @@ const uint kSquare[6] = uint[](0, 1, 2, 2, 1, 3);
 void main() {
   const uint place = gl_VertexIndex / 36, turn = gl_VertexIndex % 36;
   id = listed != 0 ? list.at[place] : place;
-  const ViewData view = view_data.view;
   const BoxData box = boxes.at[id];
   const vec3 centre = box.centre_radius.xyz;
-  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
+  const vec3 half_extent = widened(centre, box.half_extent.xyz);
   if (view.contribution != 0) {
-    if ((view.contribution == 1 || id >= first_leaf) && !contributes(view, box.centre_radius, half_extent)) {
+    if ((view.contribution == 1 || id >= first_leaf) && !contributes(box.centre_radius, half_extent)) {
       gl_Position = kNowhere;
       return;
     }
   }
-  if (reaches_near_plane(view, centre, half_extent)) {
-    const bool drawn = turn < 6 && !outside(view, centre, half_extent);
-    gl_Position = drawn ? certain_mark(view, kSquare[turn % 6]) : kNowhere;
+  if (reaches_near_plane(centre, half_extent)) {
+    const bool drawn = turn < 6 && !outside(centre, half_extent);
+    gl_Position = drawn ? certain_mark(kSquare[turn % 6]) : kNowhere;
     return;
   }
-  gl_Position = clip_position(view, corner(centre, half_extent, kCorners[turn]));
+  gl_Position = clip_position(corner(centre, half_extent, kCorners[turn]));
 }

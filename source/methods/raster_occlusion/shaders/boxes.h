@@ -6,7 +6,7 @@ float plane_slack(vec4 plane, vec3 centre, vec3 half_extent) {
 }
 
 // Whether the box lies wholly behind a plane of the frustum.
-bool outside(ViewData view, vec3 centre, vec3 half_extent) {
+bool outside(vec3 centre, vec3 half_extent) {
   for (int i = 0; i < 6; ++i) {
     const vec4 plane = view.planes[i];
     const float nearest = dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), half_extent);
@@ -15,7 +15,7 @@ bool outside(ViewData view, vec3 centre, vec3 half_extent) {
   return false;
 }
 
-bool outside(ViewData view, vec4 sphere) {
+bool outside(vec4 sphere) {
   for (int i = 0; i < 6; ++i) {
     const vec4 plane = view.planes[i];
     const float slack = plane_slack(plane, sphere.xyz, vec3(sphere.w));
@@ -26,7 +26,7 @@ bool outside(ViewData view, vec4 sphere) {
 
 // Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
 // raster test would not see it.
-bool reaches_near_plane(ViewData view, vec3 centre, vec3 half_extent) {
+bool reaches_near_plane(vec3 centre, vec3 half_extent) {
   const vec4 plane = view.planes[4];
   const float nearest = dot(plane.xyz, centre) + plane.w - dot(abs(plane.xyz), half_extent);
   return nearest <= 4 * plane_slack(plane, centre, half_extent);
@@ -35,7 +35,7 @@ bool reaches_near_plane(ViewData view, vec3 centre, vec3 half_extent) {
 // The box grown by 1/32 pixel: more than the 1/256 pixel to which the rasteriser snaps vertices, of box and
 // mesh alike, so that no pixel of the mesh is missed at the box's rim, nor at a slant in depth. A depth bias
 // covers what is left.
-vec3 widened(ViewData view, vec3 centre, vec3 half_extent) {
+vec3 widened(vec3 centre, vec3 half_extent) {
   float depth = 1;
   if (view.eye.w == 0) {
     depth = max(0, dot(view.forward.xyz, centre - view.eye.xyz) + dot(abs(view.forward.xyz), half_extent));
@@ -43,7 +43,7 @@ vec3 widened(ViewData view, vec3 centre, vec3 half_extent) {
   return half_extent + depth / (32 * view.pixels_per_metre) + 1e-6 * (abs(centre) + half_extent);
 }
 
-vec4 clip_position(ViewData view, vec3 at) {
+vec4 clip_position(vec3 at) {
   return view.world_to_clip * vec4(at, 1);
 }
 
@@ -57,11 +57,11 @@ struct Footprint {
   bool whole;      // a corner lies at the eye plane: it may be anywhere
 };
 
-Footprint footprint(ViewData view, vec3 centre, vec3 half_extent) {
+Footprint footprint(vec3 centre, vec3 half_extent) {
   vec2 low = vec2(1e30), high = vec2(-1e30);
   float nearest = view.reversed != 0 ? 0 : 1, widest = 0;
   for (uint i = 0; i < 8; ++i) {
-    const vec4 clip = clip_position(view, corner(centre, half_extent, i));
+    const vec4 clip = clip_position(corner(centre, half_extent, i));
     if (!(clip.w > 2 * view.coordinate_error)) return Footprint(vec2(0), vec2(view.width, view.height), 0, true);
     const vec3 at = clip.xyz / clip.w;
     low = min(low, at.xy);
@@ -78,14 +78,14 @@ Footprint footprint(ViewData view, vec3 centre, vec3 half_extent) {
 }
 
 // Whether the rectangle, clipped to the image, holds a pixel centre.
-bool covers_sample(ViewData view, Footprint print) {
+bool covers_sample(Footprint print) {
   const vec2 size = vec2(view.width, view.height);
   const vec2 low = max(print.low, vec2(0)), high = min(print.high, size);
   return all(greaterThanEqual(floor(high + 0.5) - 0.5, low)) && all(greaterThanEqual(high, vec2(0.5)));
 }
 
 // Lee & Shin 2023, equation (1) with its misprint mended, px².
-float projected_area(ViewData view, vec4 sphere) {
+float projected_area(vec4 sphere) {
   float d = 1;
   if (view.eye.w == 0) {
     d = distance(view.eye.xyz, sphere.xyz);
@@ -96,15 +96,15 @@ float projected_area(ViewData view, vec4 sphere) {
 }
 
 // Contribution culling, as the view asks for it.
-bool contributes(ViewData view, vec4 sphere, vec3 half_extent) {
-  if (view.contribution == 1) return covers_sample(view, footprint(view, sphere.xyz, half_extent));
-  if (view.contribution == 2) return projected_area(view, sphere) >= view.threshold;
+bool contributes(vec4 sphere, vec3 half_extent) {
+  if (view.contribution == 1) return covers_sample(footprint(sphere.xyz, half_extent));
+  if (view.contribution == 2) return projected_area(sphere) >= view.threshold;
   return true;
 }
 
 // A corner of a square about the image's middle at the near plane, for boxes that must be marked without a
 // raster test: nothing can hide it.
-vec4 certain_mark(ViewData view, uint bits) {
+vec4 certain_mark(uint bits) {
   const vec2 at = vec2((bits & 1) != 0 ? 2 : -2, (bits & 2) != 0 ? 2 : -2) / vec2(view.width, view.height);
   return vec4(at, view.reversed, 1);
 }

@@ -1,6 +1,8 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 256) in;
@@ -10,7 +12,6 @@ layout(local_size_x = 256) in;
 layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };
 
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view_data;
   BoxBuffer boxes;
   WordBuffer marks, state;
   FloatBuffer pyramid;
@@ -20,12 +21,11 @@ layout(push_constant, scalar) uniform Push {
 void main() {
   const uint object = gl_GlobalInvocationID.x;
   if (object >= objects || (state.at[object] & kInView) == 0) return;
-  const ViewData view = view_data.view;
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;
-  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
-  const Footprint print = footprint(view, centre, half_extent);
-  if (print.whole || reaches_near_plane(view, centre, half_extent)) {
+  const vec3 half_extent = widened(centre, box.half_extent.xyz);
+  const Footprint print = footprint(centre, half_extent);
+  if (print.whole || reaches_near_plane(centre, half_extent)) {
     marks.at[object] = 1;
     return;
   }

@@ -5,7 +5,6 @@
 layout(early_fragment_tests) in;
 
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view_data;
   BoxBuffer boxes;
   WordBuffer marks;
 };

@@ -1,6 +1,8 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 96) in;
@@ -12,7 +14,6 @@ layout(buffer_reference, scalar) buffer TestBuffer {
 };
 
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view_data;
   BoxBuffer boxes;
   WordBuffer marks;
   WordBuffer list;
@@ -29,14 +30,13 @@ void main() {
   const uint chunk = 97 * (entry & 0x7fffffff);
   if (gl_LocalInvocationID.x >= chunk_objects.at[chunk]) return;
   const uint object = chunk_objects.at[chunk + 1 + gl_LocalInvocationID.x];
-  const ViewData view = view_data.view;
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;
-  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
-  if ((entry & 0x80000000) == 0 && outside(view, centre, half_extent)) return;
-  if (view.contribution != 0 && !contributes(view, box.centre_radius, half_extent)) return;
+  const vec3 half_extent = widened(centre, box.half_extent.xyz);
+  if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
+  if (view.contribution != 0 && !contributes(box.centre_radius, half_extent)) return;
   state.at[object] = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
-  if (reaches_near_plane(view, centre, half_extent)) {
+  if (reaches_near_plane(centre, half_extent)) {
     marks.at[object] = 1;
   } else {
     list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;

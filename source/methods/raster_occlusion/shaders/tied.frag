@@ -1,11 +1,12 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 #include "vulkan/shaders/shading.h"
 
 // Colours again what lies nearest, in tiles where something was drawn late.
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
   ObjectBuffer objects;
   WordBuffer list;
   WordBuffer tiles;
@@ -20,7 +21,7 @@ const uint kTile = 64;
 
 void main() {
   const uvec2 at = uvec2(gl_FragCoord.xy) / kTile;
-  const uint columns = uint(ceil(view.view.width / kTile));
+  const uint columns = uint(ceil(view.width / kTile));
   if (tiles.at[at.y * columns + at.x] == 0) discard;
-  shade = shade_of(view.view, world_position, world_normal, colour);
+  shade = shade_of(world_position, world_normal, colour);
 }

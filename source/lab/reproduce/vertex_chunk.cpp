@@ -1,0 +1,227 @@
+#include "lab/reproduce/vertex_chunk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <sightline/error.hpp>
+#include <sightline/worlds.hpp>
+
+#include "partition/chunk_map.hpp"
+
+namespace sightline::lab {
+
+namespace {
+
+// The paper's methods with its contribution test where it has one; then ours.
+const std::vector<std::string> kMethods{"none", "vfc-vc?contribution=area",       "roc",
+                                        "hroc", "vertex-chunk?contribution=area", "resident-chunk",
+                                        "hiz"};
+constexpr std::size_t kNone = 0, kVfc = 1, kRoc = 2, kHroc = 3, kChunk = 4;
+
+// vertex-chunk, hroc, roc, vfc-vc, none; 0 where the paper has no figure.
+struct Published {
+  std::array<double, 5> vertices, cull_ms, culled, fps, far_fps, near_fps;
+};
+constexpr Published kRegular{
+    {2338, 324864, 324864, 9024, 0}, {17, 29, 45, 21, 0}, {7938, 7938, 7938, 5849, 0},
+    {193, 172, 97, 78, 12},          {29, 21, 23, 31, 9}, {220, 192, 108, 88, 12}};
+constexpr Published kIrregular{
+    {2703, 229832, 324864, 9024, 0}, {21, 26, 55, 31, 0}, {8127, 8127, 8127, 6048, 0},
+    {203, 178, 91, 62, 11},          {37, 33, 31, 36, 9}, {223, 182, 92, 83, 12}};
+constexpr std::array<std::size_t, 5> kPaperOrder{kChunk, kHroc, kRoc, kVfc, kNone};
+
+double cull_ms(const DeviceSummary& s) {
+  return s.cpu_ms + s.gpu_ms;
+}
+
+// "12.3 (1.00 / 1.00)": ours, and both as ratios to vertex-chunk.
+template <class Value>
+std::vector<std::string> line(std::string name, const std::vector<DeviceSummary>& ours,
+                              const std::array<double, 5>& published, Value value, bool whole) {
+  std::vector<std::string> cells{std::move(name)};
+  const double base = value(ours[kChunk]);
+  const auto ratio = [](double a, double b) {
+    return b > 0 ? fmt::format("{:.2f}", a / b) : std::string("–");
+  };
+  for (std::size_t i = 0; i < kPaperOrder.size(); ++i) {
+    const double v = value(ours[kPaperOrder[i]]);
+    cells.push_back(fmt::format("{} ({} / {})", whole ? format_count(v) : format_ms(v), ratio(v, base),
+                                published[i] > 0 ? ratio(published[i], published[0]) : "–"));
+  }
+  for (std::size_t m = kChunk + 1; m < ours.size(); ++m) {
+    const double v = value(ours[m]);
+    cells.push_back(fmt::format("{} ({})", whole ? format_count(v) : format_ms(v), ratio(v, base)));
+  }
+  return cells;
+}
+
+Table table_of(std::string title) {
+  return {
+      {std::move(title), "vertex-chunk", "hroc", "roc", "vfc-vc", "none", "resident-chunk", "hiz"}, {}, 1};
+}
+
+std::vector<Table> make_tables(const VertexChunkWorld& world, const Published& published) {
+  const std::vector<DeviceSummary> near = summarise_on_device(world.near),
+                                   far = summarise_on_device(world.far),
+                                   rising = summarise_on_device(world.rising);
+  const double objects = static_cast<double>(world.near.rows.front().stats.objects);
+  const auto fps = [](const DeviceSummary& s) { return s.fps(); };
+  std::vector<Table> out;
+  out.push_back(table_of("1: vertices into the culling pass"));
+  out.back().rows.push_back(line(
+      "near view", near, published.vertices, [](const auto& s) { return s.cull_vertices; }, true));
+  out.push_back(table_of("2: culling time, ms"));
+  out.back().rows.push_back(line("near view", near, published.cull_ms, cull_ms, false));
+  out.push_back(table_of("3: objects culled"));
+  out.back().rows.push_back(line(
+      "near view", near, published.culled, [&](const auto& s) { return objects - s.kept; }, true));
+  out.push_back(table_of("4: frames/s"));
+  out.back().rows.push_back(line("rising camera", rising, published.fps, fps, false));
+  out.push_back(table_of("5: frames/s by view"));
+  out.back().rows.push_back(line("far view", far, published.far_fps, fps, false));
+  out.back().rows.push_back(line("near view", near, published.near_fps, fps, false));
+  return out;
+}
+
+Table rising_table(const Comparison& rising) {
+  Table table;
+  table.header = {"frames/s at scene number"};
+  for (const std::string& method : rising.methods) table.header.push_back(method.substr(0, method.find('?')));
+  for (std::size_t view = 0; view < rising.cameras.size(); ++view) {
+    std::vector<std::string> cells{fmt::format("{}", view + 1)};
+    for (const Row& row : rising.rows) {
+      if (row.view == view) cells.push_back(format_ms(row.frame->median > 0 ? 1000 / row.frame->median : 0));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+CameraPath rising_path(const Scene& scene, std::size_t views) {
+  const Camera low = vertex_chunk_near(scene), high = vertex_chunk_far(scene);
+  CameraPath path{"rising", {}};
+  for (std::size_t i = 0; i < views; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(views - 1);
+    const auto mix = [&](const Vec3& a, const Vec3& b) {
+      return Vec3{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
+    };
+    Camera camera = low;
+    camera.eye = mix(low.eye, high.eye);
+    camera.forward = mix(low.forward, high.forward);
+    path.cameras.push_back(camera);
+  }
+  return path;
+}
+
+// The world from the side and above, with what vertex-chunk kept of the near view alone, and the chunks.
+void take_pictures(Workbench& bench, VertexChunkWorld& world, std::uint32_t width, std::uint32_t height) {
+  const Scene& scene = bench.scene();
+  const View near = or_throw(make_view(world.near.cameras.front(), width, height));
+  methods::DeviceMethod& method = *bench.contestants()[kChunk].method;
+  for (int settle = 0; settle < 2; ++settle) bench.draw(method, near);
+  world.pictures.push_back({world.name + "-near.png", "the near view", bench.renderer().picture()});
+  Frame kept;
+  method.read_back(kept);
+  const Box all = extent(scene);
+  Camera side = vertex_chunk_far(scene);
+  const float reach = std::max(all.max.x - all.min.x, all.max.z - all.min.z);
+  side.eye = {side.eye.x + 0.9f * reach, 0.45f * reach, 0.5f * (all.min.z + all.max.z)};
+  side.forward = {-0.9f, -0.45f, 0};
+  const View aside = or_throw(make_view(side, width, height));
+  const auto draw = [&](std::span<const ObjectId> objects) {
+    std::vector<DrawCommand> commands;
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+      const Mesh& mesh = scene.meshes[scene.mesh[objects[i]]];
+      commands.push_back(
+          {mesh.index_count, 1, mesh.first_index, static_cast<std::int32_t>(mesh.first_vertex), i});
+    }
+    bench.renderer().frame(aside,
+                           [&](vulkan::Recorder& frame) { bench.renderer().draw(frame, objects, commands); });
+    return bench.renderer().picture();
+  };
+  bench.draw(bench.reference(), aside);
+  world.pictures.push_back(
+      {world.name + "-side-all.png", "seen from the side: every object", bench.renderer().picture()});
+  world.pictures.push_back({world.name + "-side-kept.png",
+                            "seen from the side: what vertex-chunk keeps of the near view",
+                            draw(kept.visible)});
+  // Own chunks alone: what crosses a border between regions leaves a gap.
+  partition::ChunkMap map({all, 3});
+  map.insert_all(scene.bounds);
+  std::vector<ObjectId> own;
+  for (std::uint32_t chunk = 0; chunk < map.chunk_limit(); ++chunk) {
+    const auto objects = map.chunk(chunk);
+    if (objects.count == 0 || map.chunk_regions(chunk).shared()) continue;
+    own.insert(own.end(), objects.objects, objects.objects + objects.count);
+  }
+  world.pictures.push_back({world.name + "-own-chunks.png",
+                            "the objects of own chunks; the gaps between them are the shared chunks'",
+                            draw(own)});
+}
+
+}  // namespace
+
+Scene vertex_chunk_scene(const std::string& world, bool quick) {
+  return or_throw(generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3)));
+}
+
+Camera vertex_chunk_near(const Scene& scene) {
+  const Box all = extent(scene);
+  Camera camera;
+  camera.eye = {0.5f * (all.min.x + all.max.x), 1.6f, 0.5f * (all.min.z + all.max.z)};
+  camera.forward = {0.05f, 0, -1};
+  const auto free = [&](const Vec3& eye) {
+    constexpr float kClearance = 0.2f;
+    for (ObjectId o = 0; o < scene.size(); ++o) {
+      const Sphere s = scene.sphere(o);
+      const float x = eye.x - s.centre.x, y = eye.y - s.centre.y, z = eye.z - s.centre.z;
+      if (std::sqrt(x * x + y * y + z * z) < s.radius + kClearance) return false;
+    }
+    return true;
+  };
+  const Vec3 middle = camera.eye;
+  // Outwards on a spiral until there is room.
+  for (int step = 0; step < 1000 && !free(camera.eye); ++step) {
+    const float angle = 2.4f * static_cast<float>(step), radius = 0.25f * std::sqrt(static_cast<float>(step));
+    camera.eye = {middle.x + radius * std::cos(angle), middle.y, middle.z + radius * std::sin(angle)};
+  }
+  return camera;
+}
+
+Camera vertex_chunk_far(const Scene& scene) {
+  Camera camera;
+  for (const Viewpoint& viewpoint : scene.viewpoints) {
+    if (viewpoint.name != "far") continue;
+    camera.eye = viewpoint.eye;
+    camera.forward = viewpoint.forward;
+  }
+  return camera;
+}
+
+VertexChunkWorld reproduce_vertex_chunk(vulkan::Device& device, const std::string& name,
+                                        const VertexChunkOptions& options, const Progress& progress) {
+  Scene scene = vertex_chunk_scene(name, options.quick);
+  Workbench bench(device, scene, kMethods);
+  DeviceMeasureOptions measure;
+  measure.measure.width = options.quick ? 640 : 1280;
+  measure.measure.height = options.quick ? 360 : 720;
+  measure.measure.repeats = options.quick ? 9 : 15;
+  VertexChunkWorld world;
+  world.name = name;
+  world.near = compare_on_device(bench, {"near", {vertex_chunk_near(scene)}}, measure);
+  // After a change of view it takes two frames until what was marked in vain is gone.
+  measure.measure.warm_up = 2;
+  measure.measure.repeats = options.quick ? 1 : 5;
+  world.far = compare_on_device(bench, {"far", {vertex_chunk_far(scene)}}, measure);
+  measure.measure.repeats = options.quick ? 1 : 3;
+  world.rising = compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
+  world.tables = make_tables(world, name == "regular" ? kRegular : kIrregular);
+  world.rising_fps = rising_table(world.rising);
+  if (options.pictures) take_pictures(bench, world, measure.measure.width, measure.measure.height);
+  return world;
+}
+
+}  // namespace sightline::lab

@@ -1,0 +1,162 @@
+// The cases that break occlusion culling, each a small world of its own.
+#include <cmath>
+
+#include "raster_occlusion/examine.hpp"
+#include "scene/shapes.hpp"
+
+namespace sightline {
+namespace {
+
+using EdgeCases = DeviceTest;
+
+std::uint32_t add_cube(Scene& scene) {
+  std::vector<Vec3> corners, normals;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 at{i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f};
+    corners.push_back(at);
+    const float unit = 1 / std::sqrt(3.0f);
+    normals.push_back({at.x * unit, at.y * unit, at.z * unit});
+  }
+  const std::vector<std::uint32_t> indices{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 4, 2, 2, 4, 6,
+                                           1, 3, 5, 3, 7, 5, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7};
+  return scene.add_mesh(corners, normals, indices);
+}
+
+Affine at(float x, float y, float z, float sx = 1, float sy = 1, float sz = 1) {
+  Affine out;
+  out.rows = {Vec4{sx, 0, 0, x}, Vec4{0, sy, 0, y}, Vec4{0, 0, sz, z}};
+  return out;
+}
+
+TEST_F(EdgeCases, CameraInsideABoxAndBoxesAcrossTheNearPlane) {
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  scene.add_object(cube, at(0, 0, 0, 20, 20, 20));               // holds the eye and everything else
+  scene.add_object(cube, at(0.3f, 0, -0.6f, 0.5f, 0.5f, 0.5f));  // across the near plane
+  scene.add_object(cube, at(0, 0, -5));
+  scene.add_object(cube, at(0, -1.5f, 0, 20, 0.001f, 20));  // a floor below the eye
+  scene.add_object(cube, at(0, 0, -10, 3, 3, 0.1f));
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (const Depth depth : {Depth::standard, Depth::reversed}) {
+    for (int step = 0; step < 6; ++step) {
+      Camera camera;
+      camera.near_plane = 0.3f;
+      camera.depth = depth;
+      camera.forward = {std::sin(1.0f * step), 0.1f * step - 0.3f, -std::cos(1.0f * step)};
+      examination.look(view_of(camera), "in step " + std::to_string(step));
+    }
+  }
+}
+
+TEST_F(EdgeCases, EverythingBehindTheCamera) {
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  for (int i = 0; i < 40; ++i) scene.add_object(cube, at(static_cast<float>(3 * i), 0, 10));
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 3; ++frame) examination.look(view_of({}), "with all behind");
+  EXPECT_EQ(examination.visible(), 0u);
+  EXPECT_EQ(examination.kept(), 0u);
+}
+
+TEST_F(EdgeCases, OneObject) {
+  Scene scene;
+  scene.add_object(add_cube(scene), at(0, 0, -5));
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 3; ++frame) examination.look(view_of({}), "with one object");
+  EXPECT_EQ(examination.visible(), 3u);
+}
+
+TEST_F(EdgeCases, NoObjectIsRefusedBeforeItReachesADevice) {
+  const Scene scene;
+  const Check refused = check(scene);
+  ASSERT_TRUE(refused);
+  EXPECT_NE(refused->message.find("object"), std::string::npos) << refused->message;
+}
+
+TEST_F(EdgeCases, OnlyTransparentObjects) {
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  for (int i = 0; i < 9; ++i)
+    scene.add_object(cube, at(static_cast<float>(i) - 4, 0, -6.0f - i), Surface::transparent);
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 2; ++frame) examination.look(view_of({}), "with glass alone");
+}
+
+TEST_F(EdgeCases, EqualDepthsHaveOneWinnerWhateverIsDrawnFirst) {
+  // Pairs of equal cubes in different colours at the same place: which shows is the order of drawing's to
+  // say.
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  for (int i = 0; i < 60; ++i) {
+    scene.add_object(
+        cube, at(static_cast<float>(2 * (i % 10)) - 9, static_cast<float>(i / 20) - 1, -12.0f - i % 3));
+  }
+  for (int i = 59; i >= 0; --i) {
+    scene.add_object(
+        cube, at(static_cast<float>(2 * (i % 10)) - 9, static_cast<float>(i / 20) - 1, -12.0f - i % 3));
+  }
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int step = 0; step < 12; ++step) {
+    Camera camera;
+    camera.forward = {std::sin(0.25f * step - 1.2f), 0, -std::cos(0.25f * step - 1.2f)};
+    examination.look(view_of(camera), "in step " + std::to_string(step));
+  }
+}
+
+TEST_F(EdgeCases, FlatObjectsInTheirOwnBoxes) {
+  // Walls without thickness along the axes: box and mesh are the same rectangle, rounded differently.
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
+  const std::vector<Vec3> normals(4, Vec3{0, 0, 1});
+  const std::vector<std::uint32_t> indices{0, 1, 2, 2, 1, 3};
+  const std::uint32_t quad = scene.add_mesh(corners, normals, indices);
+  scene::Random random(4);
+  for (int i = 0; i < 400; ++i) {
+    Affine transform = at(random.between(-20, 20), random.between(-3, 3), random.between(-40, -1));
+    const float size = random.between(0.005f, 1.5f);
+    const float x = transform.rows[0].w, y = transform.rows[1].w, z = transform.rows[2].w;
+    if (i % 3 == 0) transform.rows = {Vec4{size, 0, 0, x}, Vec4{0, size, 0, y}, Vec4{0, 0, 1, z}};
+    if (i % 3 == 1) transform.rows = {Vec4{0, 0, 1, x}, Vec4{0, size, 0, y}, Vec4{size, 0, 0, z}};
+    if (i % 3 == 2) transform.rows = {Vec4{size, 0, 0, x}, Vec4{0, 0, 1, y}, Vec4{0, size, 0, z}};
+    scene.add_object(quad, transform);
+  }
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int step = 0; step < 10; ++step) {
+    Camera camera;
+    camera.eye.x = 0.37f * step;
+    camera.forward.x = 0.11f * step - 0.5f;
+    examination.look(view_of(camera), "in step " + std::to_string(step));
+  }
+}
+
+TEST_F(EdgeCases, AWindowOfOnePixelAndOneOf4096By4096) {
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  for (int i = 0; i < 50; ++i)
+    scene.add_object(cube, at(static_cast<float>(i % 7) * 3 - 9, 0, -4.0f - 2 * i));
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 2; ++frame) examination.look(view_of({}, 1, 1), "in one pixel");
+  examination.look(view_of({}, 4096, 4096), "in 4096 x 4096");
+  EXPECT_GT(examination.visible(), 0u);
+}
+
+TEST_F(EdgeCases, AMillionObjects) {
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<Vec3> normals(3, Vec3{0, 0, 1});
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  const std::uint32_t triangle = scene.add_mesh(corners, normals, indices);
+  scene.bounds.reserve(1000000);
+  for (int i = 0; i < 1000000; ++i) {
+    scene.add_object(triangle,
+                     at(static_cast<float>(i % 1000) * 3 - 1500, 0, -static_cast<float>(i / 1000) * 3 - 4));
+  }
+  Examination examination(device(), scene, kOcclusionMethods);
+  Camera camera;
+  camera.eye.y = 2;
+  examination.look(view_of(camera, 160, 90), "of a million objects");
+  EXPECT_GT(examination.visible(), 0u);
+}
+
+}  // namespace
+}  // namespace sightline
