@@ -5,6 +5,7 @@
 #include <sightline/culling.hpp>
 #include <sightline/frame.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/geometry.hpp>
 #include <sightline/level_pvs.hpp>
 #include <sightline/method.hpp>
 #include <sightline/occlusion.hpp>

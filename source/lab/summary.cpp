@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "lab/table.hpp"
 
@@ -76,8 +77,8 @@ std::string verdict(const Comparison& comparison) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(safe), [](const MethodSummary& s) {
     return s.lost_objects == 0 && s.guarantee != Guarantee::approximate;
   });
-  std::stable_sort(safe.begin(), safe.end(), [](const MethodSummary& a, const MethodSummary& b) {
-    return estimated_frame_ms(a) < estimated_frame_ms(b);
+  std::sort(safe.begin(), safe.end(), [](const MethodSummary& a, const MethodSummary& b) {
+    return std::pair(estimated_frame_ms(a), a.method) < std::pair(estimated_frame_ms(b), b.method);
   });
   std::string text;
   double least_triangles = std::numeric_limits<double>::infinity();

@@ -1,0 +1,94 @@
+// One frame being recorded: named passes, rendering into the targets, draws, dispatches.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include <sightline/view.hpp>
+
+#include "vulkan/image.hpp"
+#include "vulkan/pipeline.hpp"
+#include "vulkan/shared.h"
+#include "vulkan/timer.hpp"
+
+namespace sightline::vulkan {
+
+struct Targets {
+  Image colour, depth;
+  Targets(Device& device, std::uint32_t width, std::uint32_t height)
+      : colour(device, kColourFormat, width, height, "the picture"),
+        depth(device, kDepthFormat, width, height, "depth") {}
+};
+
+/// Depth bias in units of the last place towards the eye, for occlusion tests by bounding boxes.
+inline constexpr float kTestBias = 4;
+
+class Recorder {
+public:
+  Recorder(const Device& device, const vk::raii::CommandBuffer& commands, Timer& timer, const View& view,
+           shared::ViewData& view_data, vk::DeviceAddress view_address, const Targets& targets);
+
+  const vk::raii::CommandBuffer& commands;
+  const View& view;
+  const Targets& targets;
+
+  /// What shaders see of the view; may be changed until the frame is submitted.
+  [[nodiscard]] shared::ViewData& view_data() const noexcept { return view_data_; }
+  [[nodiscard]] vk::DeviceAddress view_address() const noexcept { return view_address_; }
+  [[nodiscard]] bool reversed() const noexcept { return view_data_.reversed != 0; }
+
+  /// A named pass with a timestamp at either end, and a barrier before and after.
+  class Pass {
+  public:
+    Pass(Recorder& frame, std::string_view name, PassKind kind);
+    ~Pass();
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+
+  private:
+    Recorder& frame_;
+  };
+  [[nodiscard]] Pass pass(std::string_view name, PassKind kind) { return {*this, name, kind}; }
+
+  struct Into {
+    const Image* colour = nullptr;  ///< none: depth only
+    const Image* depth = nullptr;   ///< null: the frame's own
+    bool clear_colour = false, clear_depth = false;
+    std::array<std::uint32_t, 4> clear_value{};  ///< bits of the clear colour
+  };
+  void begin_rendering(const Into& into) const;
+  void end_rendering() const { commands.endRendering(); }
+
+  enum class Compare : std::uint8_t { nearer_or_equal, equal };
+  /// Binds a pipeline with the frame's viewport; `bias` moves depths towards the eye, in units of the last
+  /// place.
+  void bind(const GraphicsPipeline& pipeline, Compare compare = Compare::nearer_or_equal,
+            float bias = 0) const;
+
+  template <class T>
+  void push(const T& constants) const {
+    static_assert(sizeof(T) <= 128);
+    commands.pushConstants<T>(*device_.layout(), vk::ShaderStageFlagBits::eAll, 0, constants);
+  }
+
+  /// Runs at least `threads` invocations in groups of `group`, then makes their writes seen.
+  template <class T>
+  void dispatch(const ComputePipeline& pipeline, const T& constants, std::uint32_t threads,
+                std::uint32_t group = 256) const {
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
+    push(constants);
+    commands.dispatch((threads + group - 1) / group, 1, 1);
+    full_barrier(commands);
+  }
+
+  /// Sets `bytes` of a buffer to a word, then makes them seen.
+  void fill(const Buffer& buffer, std::uint32_t word, vk::DeviceSize bytes) const;
+
+private:
+  const Device& device_;
+  Timer& timer_;
+  shared::ViewData& view_data_;
+  vk::DeviceAddress view_address_;
+};
+
+}  // namespace sightline::vulkan
