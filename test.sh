@@ -13,7 +13,7 @@ echo "== structure"
 scripts/check-structure.sh
 
 echo "== release build and tests"
-cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON >/dev/null
+cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null
 cmake --build --preset release
 ctest --preset release -j"$(nproc)"
 

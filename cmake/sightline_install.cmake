@@ -3,7 +3,8 @@ include(CMakePackageConfigHelpers)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
-install(TARGETS sightline_core EXPORT sightline_targets)
+install(TARGETS sightline_core sightline_c EXPORT sightline_targets)
+install(FILES ${CMAKE_BINARY_DIR}/bindings/c/sightline.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 if(SIGHTLINE_TOOLS)
   install(TARGETS sightline_app)
 endif()
@@ -16,3 +17,17 @@ write_basic_package_version_file(sightline-config-version.cmake COMPATIBILITY Sa
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sightline-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/sightline-config-version.cmake
         DESTINATION ${package_dir})
+
+# cpack -G DEB: one package for who builds against the library and for who runs the command line.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME libsightline-dev)
+set(CPACK_PACKAGE_VENDOR "Sightline")
+set(CPACK_PACKAGE_CONTACT "The Sightline authors <sightline@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libhwy-dev")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+include(CPack)

@@ -4,7 +4,7 @@ run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libt
 libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
 openarena-081-maps"
 
-test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev clang-19 libclang-rt-19-dev"
+test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev python3-numpy dpkg-dev clang-19 libclang-rt-19-dev"
 
 # ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
 ensure_packages() {

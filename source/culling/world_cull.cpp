@@ -9,6 +9,7 @@
 #define HWY_TARGET_INCLUDE "culling/world_cull.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -111,6 +112,18 @@ HWY_INLINE hn::Mask<F> inside(const Corner* corners, std::size_t count, std::siz
   return hn::Ge(worst, hn::Zero(f));
 }
 
+HWY_INLINE void prefetch(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes) {
+  for (std::uint32_t i = 0; i < chunk.count; i += 16) hwy::Prefetch(chunk.objects + i);
+  if (planes == 0) return;
+  Corner corners[Frustum::sides];
+  const std::size_t count = corners_of(chunk, view, planes, corners);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::uint32_t i = 0; i < chunk.count; i += 16) {
+      hwy::Prefetch(corners[c].x + i), hwy::Prefetch(corners[c].y + i), hwy::Prefetch(corners[c].z + i);
+    }
+  }
+}
+
 // One view, frustum only: ids straight into `out`.
 HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
                                   ObjectId* HWY_RESTRICT out) {
@@ -140,15 +153,25 @@ PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries,
     const SectorView& view = input.views[entry.sector];
     const ChunkBits bits = classify_chunks(block, view, entry.planes[0]);
     counts.chunks += block.count;
+    // Memory is what this waits for: the whole block's is asked for before any of it is used.
+    std::array<ChunkMap::ChunkView, kBlock> chunks;
+    std::array<PlaneSet, kBlock> planes;
+    std::size_t kept = 0;
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      const ChunkMap::ChunkView chunk = map.chunk(block.chunks[i]);
-      if ((bits.crossing >> i & 1) == 0) {
+      chunks[kept] = map.chunk(block.chunks[i]);
+      planes[kept] = planes_of(bits, i);
+      prefetch(chunks[kept], view, planes[kept]);
+      ++kept;
+    }
+    for (std::size_t k = 0; k < kept; ++k) {
+      const ChunkMap::ChunkView& chunk = chunks[k];
+      if (planes[k] == 0) {
         copy_ids(chunk.objects, chunk.count, at);
         at += chunk.count;
       } else {
         counts.tested += chunk.count;
-        at += cull_chunk(chunk, view, planes_of(bits, i), at);
+        at += cull_chunk(chunk, view, planes[k], at);
       }
     }
   }
@@ -247,6 +270,7 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
   std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
   std::array<ObjectBits, kMaxViews> seen;
+  std::array<ChunkMap::ChunkView, kBlock> chunks;
   for (const BlockEntry& entry : entries) {
     const ChunkMap& map = *input.maps[entry.sector];
     const ChunkMap::Block& block = map.blocks()[entry.block];
@@ -259,9 +283,21 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
       any |= bits[v].kept;
     }
     counts.chunks += block.count;
+    for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      chunks[i] = map.chunk(block.chunks[i]);
+      PlaneSet planes = 0;
+      std::size_t crossed_by = 0;
+      for (std::size_t v = 0; v < input.view_count; ++v) {
+        if ((bits[v].crossing >> i & 1) == 0) continue;
+        planes = planes_of(bits[v], static_cast<std::uint32_t>(i));
+        crossed_by = v;
+      }
+      prefetch(chunks[i], views[crossed_by], planes);
+    }
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
-      const ChunkMap::ChunkView chunk = map.chunk(block.chunks[i]);
+      const ChunkMap::ChunkView& chunk = chunks[i];
       std::uint8_t whole = 0, part = 0;  // views
       for (std::size_t v = 0; v < input.view_count; ++v) {
         if ((bits[v].kept >> i & 1) == 0) continue;

@@ -258,18 +258,6 @@ void ChunkMap::split_block(std::uint32_t block, const Box& newcomer) {
 
 // --- what others read ---
 
-ChunkMap::ChunkView ChunkMap::chunk(std::uint32_t chunk) const noexcept {
-  const Chunk& c = chunks_[chunk];
-  return {lanes(c, 0),
-          lanes(c, 1),
-          lanes(c, 2),
-          lanes(c, 3),
-          lanes(c, 4),
-          lanes(c, 5),
-          ids_.data() + c.first_lane,
-          c.count};
-}
-
 RegionSet ChunkMap::chunk_regions(std::uint32_t chunk) const noexcept {
   return keys_[chunks_[chunk].key].regions;
 }

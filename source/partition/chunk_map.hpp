@@ -122,7 +122,17 @@ public:
   [[nodiscard]] std::uint32_t chunk_limit() const noexcept {
     return static_cast<std::uint32_t>(chunks_.size());
   }
-  [[nodiscard]] ChunkView chunk(std::uint32_t chunk) const noexcept;
+  [[nodiscard]] ChunkView chunk(std::uint32_t chunk) const noexcept {
+    const Chunk& c = chunks_[chunk];
+    return {lanes(c, 0),
+            lanes(c, 1),
+            lanes(c, 2),
+            lanes(c, 3),
+            lanes(c, 4),
+            lanes(c, 5),
+            ids_.data() + c.first_lane,
+            c.count};
+  }
   /// Tight union of the chunk's boxes.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;
   [[nodiscard]] RegionSet chunk_regions(std::uint32_t chunk) const noexcept;

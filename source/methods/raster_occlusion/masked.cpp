@@ -12,13 +12,14 @@
 
 #include "culling/draw_list.hpp"
 #include "methods/methods.hpp"
+#include "methods/raster_occlusion/inner_shell.hpp"
 
 namespace sightline::methods {
 
 namespace {
 
 constexpr std::array kParameters{
-    ParameterInfo{"occluders", "at most so many objects occlude, the largest on the image", "64", 0, 100000,
+    ParameterInfo{"occluders", "at most so many objects occlude, the largest on the image", "512", 0, 100000,
                   true},
     ParameterInfo{"pixels", "px², the least area of an occluder's bounding sphere", "150", 0, 1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
@@ -117,8 +118,8 @@ private:
     if (!meshes_[index]) {
       const Mesh& mesh = scene_.meshes[index];
       meshes_[index] = std::make_unique<OccluderMesh>(
-          std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count),
-          std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count));
+          simple_occluder(std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count),
+                          std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count)));
     }
     return *meshes_[index];
   }

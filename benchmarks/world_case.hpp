@@ -1,0 +1,77 @@
+// The boxes and views that Sightline and its peers are measured on.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <sightline/culling.hpp>
+#include <sightline/world.hpp>
+
+#include "scene/random.hpp"
+
+namespace sightline::benchmarks {
+
+inline constexpr float kReach = 1000;
+
+// Random boxes about the origin; beyond a million, the rest stands around them, out of all views.
+struct Case {
+  Boxes flat;
+  World world;
+  std::vector<Handle> handles;
+};
+
+inline WorldBox wide(const Box& b) {
+  return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
+}
+
+inline Case& case_of(std::size_t count) {
+  static std::map<std::size_t, std::unique_ptr<Case>> made;
+  std::unique_ptr<Case>& slot = made[count];
+  if (slot) return *slot;
+  slot = std::make_unique<Case>();
+  scene::Random random(1);
+  std::vector<WorldBox> boxes;
+  while (boxes.size() < count) {
+    Vec3 at = random.inside({{-kReach, -50, -kReach}, {kReach, 50, kReach}});
+    // Behind the eye.
+    if (boxes.size() >= 1'000'000) at.z = kReach + 8 * random.between(0, kReach);
+    const Vec3 half{random.between(0.1f, 3), random.between(0.1f, 3), random.between(0.1f, 3)};
+    const Box box{{at.x - half.x, at.y - half.y, at.z - half.z},
+                  {at.x + half.x, at.y + half.y, at.z + half.z}};
+    slot->flat.push_back(box);
+    boxes.push_back(wide(box));
+  }
+  slot->handles.resize(count);
+  if (slot->world.insert(boxes, slot->handles)) std::abort();
+  return *slot;
+}
+
+inline View looking(float heading, float fov) {
+  Camera camera;
+  camera.eye = {0, 5, 0};
+  camera.forward = {std::sin(heading), -0.02f, -std::cos(heading)};
+  camera.vertical_fov = fov;
+  camera.far_plane = 1400;
+  return *make_view(camera, 1280, 720);
+}
+
+// The field of view that sees a tenth of a million.
+inline float tenth_of_view() {
+  static const float found = [] {
+    const Case& c = case_of(1'000'000);
+    std::vector<ObjectId> visible(c.flat.size() + kCullPadding);
+    float low = 0.05f, high = 2.5f;
+    for (int i = 0; i < 30; ++i) {
+      const float middle = 0.5f * (low + high);
+      const Frustum frustum = make_frustum(looking(0.3f, middle), {{-2000, -60, -2000}, {2000, 60, 2000}});
+      (cull_boxes(frustum, span_of(c.flat), visible) < c.flat.size() / 10 ? low : high) = middle;
+    }
+    return high;
+  }();
+  return found;
+}
+
+}  // namespace sightline::benchmarks

@@ -1,0 +1,30 @@
+"""A flight over a million boxes: how many are drawn from where, with and without what hides what."""
+import time
+
+import numpy as np
+import sightline
+
+rng = np.random.default_rng(1)
+n = 1_000_000
+centre = rng.uniform((-2000, 0, -2000), (2000, 0, 2000), (n, 3))
+half = rng.uniform((0.5, 1, 0.5), (4, 12, 4), (n, 3))
+boxes = np.stack([centre - half, centre + half], axis=1)
+
+world = sightline.World()
+handles = world.insert(boxes)
+culler, occlusion = sightline.Culler(), sightline.Occlusion()
+
+print("height   in the frustum        and not hidden")
+for height in (2, 20, 100, 500):
+    view = sightline.camera(eye=(0, height, 0), forward=(0, -height / 600, -1), far=2000)
+    start = time.perf_counter()
+    in_view = culler.cull(world, [view])
+    middle = time.perf_counter()
+    # The nearest of what is in view occludes.
+    near = in_view[np.argsort(np.linalg.norm(centre[in_view], axis=1))[:4000]]
+    drawing = time.perf_counter()
+    occlusion.begin(view)
+    occlusion.draw_boxes(boxes[near])
+    visible = culler.cull(world, [view], occlusion=[occlusion])
+    end = time.perf_counter()
+    print(f"{height:4} m   {len(in_view):7,} {1e3 * (middle - start):6.2f} ms   {len(visible):7,} {1e3 * (end - drawing):6.2f} ms")
