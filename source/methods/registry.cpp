@@ -19,7 +19,7 @@ std::string_view to_string(Guarantee guarantee) noexcept {
 std::span<const MethodInfo> cpu_methods() noexcept {
   using namespace methods;
   static const std::array kMethods{kNone, kVfcVc, kGridCell, kObjectFrustum, kLevelPvs,
-                                   kToca, kBoca,  kWideRays, kTrianglePvs,   kGuided};
+                                   kToca, kBoca,  kWideRays, kTrianglePvs,   kGuided, kBaked};
   return kMethods;
 }
 
