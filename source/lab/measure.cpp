@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include <sightline/version.hpp>
 #include <sightline/error.hpp>
+#include <sightline/version.hpp>
 
 #include "lab/file.hpp"
 #include "lab/loss.hpp"
+#include "lab/triangle_judge.hpp"
 
 namespace sightline::lab {
 namespace {
@@ -47,6 +48,7 @@ Json row_json(const Comparison& comparison, const Row& row) {
   out["culled"] = row.stats.objects - std::min(row.kept, row.stats.objects);
   out["culled_frustum"] = row.stats.culled_frustum;
   out["culled_contribution"] = row.stats.culled_contribution;
+  out["culled_facing"] = row.stats.culled_facing;
   out["culled_occlusion"] = row.stats.culled_occlusion;
   out["nodes_visited"] = row.stats.nodes_visited;
   out["draw_calls"] = row.stats.draw_calls;
@@ -55,7 +57,15 @@ Json row_json(const Comparison& comparison, const Row& row) {
   out["cull_cpu_ms"] = row.cull.median;
   out["cull_cpu_ms_min"] = row.cull.min;
   out["cull_cpu_ms_max"] = row.cull.max;
-  for (const char* without_gpu : {"cull_gpu_ms", "frame_ms", "fps"}) out[without_gpu] = nullptr;
+  const auto time = [&](const std::string& name, const std::optional<Timing>& timing) {
+    out[name] = timing ? Json(timing->median) : Json();
+    if (!timing) return;
+    out[name + "_min"] = timing->min;
+    out[name + "_max"] = timing->max;
+  };
+  time("cull_gpu_ms", row.cull_gpu);
+  time("frame_ms", row.frame);
+  out["fps"] = row.frame && row.frame->median > 0 ? Json(1000 / row.frame->median) : Json();
   out["truly_visible"] = row.truly_visible;
   out["lost_objects"] = row.lost_objects;
   out["lost_pixels"] = row.lost_pixels;
@@ -82,13 +92,21 @@ Comparison compare(const Scene& scene, const EmbreeJudge& judge, std::span<const
   result.width = options.width, result.height = options.height;
   result.cameras = path.cameras;
   for (const Contestant& contestant : contestants) result.methods.push_back(contestant.name);
+  TriangleJudge triangle_judge(scene);
   std::vector<Frame> frames(contestants.size());
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], options.width, options.height));
     std::vector<std::vector<double>> times = take_times(contestants, view, v, options, frames);
     const ItemBuffer truth = judge.render(view);
     for (std::size_t m = 0; m < contestants.size(); ++m) {
-      const Loss loss = confirmed_loss(judge, view, truth, frames[m].visible);
+      Loss loss;
+      std::size_t truly_visible = truth.visible_count();
+      if (const TriangleGeometry* geometry = contestants[m].method->geometry()) {
+        TriangleJudge::Verdict found = triangle_judge.judge(view, *geometry, frames[m]);
+        loss = std::move(found.loss), truly_visible = found.truly_visible;
+      } else {
+        loss = confirmed_loss(judge, view, truth, frames[m].visible);
+      }
       Row row;
       row.method = contestants[m].name;
       row.guarantee = contestants[m].method->guarantee();
@@ -96,7 +114,7 @@ Comparison compare(const Scene& scene, const EmbreeJudge& judge, std::span<const
       row.stats = frames[m].stats;
       row.stats.objects = scene.size();
       row.kept = frames[m].visible.size();
-      row.truly_visible = truth.visible_count();
+      row.truly_visible = truly_visible;
       row.cull = timing_of(times[m]);
       row.lost_objects = loss.lost.size();
       row.lost_pixels = loss.lost_pixels;

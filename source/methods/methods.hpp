@@ -7,6 +7,7 @@ namespace sightline::methods {
 
 extern const MethodInfo kNone;
 extern const MethodInfo kVfcVc;
+extern const MethodInfo kMasked;
 extern const MethodInfo kGridCell;
 extern const MethodInfo kObjectFrustum;
 extern const MethodInfo kLevelPvs;
