@@ -11,6 +11,7 @@ declare -A stands_on=(
   [culling]="geometry scene partition"
   [pvs]="geometry scene partition culling"
   [io]="geometry scene"
+  [bake]="geometry scene partition culling pvs io"
   [vulkan]="geometry scene"
   [methods]="geometry scene partition culling pvs vulkan"
   [lab]="geometry scene partition culling pvs methods vulkan io"

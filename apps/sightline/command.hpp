@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <sightline/scene.hpp>
+
 namespace sightline::app {
 
 /// Exit codes, which scripts rely on.
@@ -21,6 +23,8 @@ void add_generate(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_reproduce(CLI::App& app, int& exit);
+void add_bake(CLI::App& app, int& exit);
+void add_query(CLI::App& app, int& exit);
 
 inline constexpr const char* kSceneHelp =
     "a file (.glb, .gltf, .bsp, archive.pk3:maps/name.bsp) or a generated world "
@@ -31,6 +35,10 @@ template <class Run>
 void on_run(CLI::App& command, int& exit, Run run) {
   command.callback([&exit, run = std::move(run)]() mutable { exit = run(); });
 }
+
+/// Gives the scene what was baked for it; nothing for an empty name. Throws Error for a file of another
+/// scene.
+void attach_pvs(Scene& scene, const std::string& file);
 
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);

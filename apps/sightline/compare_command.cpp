@@ -16,7 +16,7 @@ namespace sightline::app {
 namespace {
 
 struct Options {
-  std::string scene, methods, path, size = "1280x720", device = "cpu", json, report;
+  std::string scene, methods, path, size = "1280x720", device = "cpu", pvs, json, report;
   std::size_t frames = 24;
   double moving = 0;
 };
@@ -30,7 +30,8 @@ int run(const Options& options) {
                               measure.width, measure.height, options.frames, 0, options.moving});
   }
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
-  const Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene);
+  attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
       options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
   if (names.empty()) throw Error("--methods: expected at least one method");
@@ -56,6 +57,8 @@ void add_compare(CLI::App& app, int& exit) {
       *app.add_subcommand("compare", "Run methods side by side along a camera path: the table");
   auto options = std::make_shared<Options>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked (CPU)")
+      ->type_name("FILE");
   command
       .add_option("--methods", options->methods,
                   "methods, separated by commas (default: all that fit the scene)")

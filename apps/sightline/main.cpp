@@ -58,6 +58,8 @@ int run(int argc, char** argv) {
   add_compare(app, exit);
   add_verify(app, exit);
   add_reproduce(app, exit);
+  add_bake(app, exit);
+  add_query(app, exit);
   add_generate(app, exit);
   add_info(app, exit);
   try {

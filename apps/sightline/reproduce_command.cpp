@@ -8,6 +8,7 @@
 #include "lab/reproduce/object_frustum.hpp"
 #include "lab/reproduce/vertex_chunk.hpp"
 #include "page.hpp"
+#include "reproduce_ray_pvs.hpp"
 
 namespace sightline::app {
 
@@ -80,6 +81,16 @@ int run_vertex_chunk(const Options& options) {
   return Exit::done;
 }
 
+void add_ray_pvs(CLI::App& command, int& exit) {
+  CLI::App& paper = *command.add_subcommand("ray-pvs", "Ye et al. 2023: toca, boca, iwcpa, bvha and saa");
+  auto quick = std::make_shared<bool>(false);
+  auto device = std::make_shared<std::string>("any"), report = std::make_shared<std::string>();
+  paper.add_flag("--quick", *quick, "fewer repeats");
+  paper.add_option("--device", *device, "the Vulkan device")->capture_default_str();
+  paper.add_option("--report", *report, "also write figure 12's pictures to DIR")->type_name("DIR");
+  on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
+}
+
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit) {
@@ -104,6 +115,7 @@ void add_reproduce(CLI::App& app, int& exit) {
       .add_option("--device", options->device, "a Vulkan device by index or part of its name (default: any)")
       ->type_name("NAME");
   on_run(chunks, exit, [options] { return run_vertex_chunk(*options); });
+  add_ray_pvs(command, exit);
 }
 
 }  // namespace sightline::app

@@ -18,7 +18,7 @@ namespace sightline::app {
 namespace {
 
 struct Options {
-  std::string scene, methods, size = "160x120", device = "cpu";
+  std::string scene, methods, size = "160x120", device = "cpu", pvs;
   std::size_t views = 100;
   std::uint64_t seed = 1;
   double moving = 0;
@@ -40,7 +40,8 @@ int run(const Options& options) {
                              options.views, options.seed, options.moving});
   }
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
-  const Scene scene = load_scene(options.scene);
+  Scene scene = load_scene(options.scene);
+  attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
       options.methods.empty() ? lab::promising_methods(scene) : split(options.methods);
   if (names.empty()) throw Error("--methods: expected at least one method");
@@ -74,6 +75,8 @@ void add_verify(CLI::App& app, int& exit) {
       "verify", "Prove methods against the item buffer on random views; exit 1 if a guarantee is broken");
   auto options = std::make_shared<Options>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked (CPU)")
+      ->type_name("FILE");
   command
       .add_option("--methods", options->methods,
                   "methods, separated by commas (default: all that fit the scene and promise something)")

@@ -1,11 +1,13 @@
 // What the world holds: objects in structure of arrays, and the meshes they show.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <sightline/cell_pvs.hpp>
 #include <sightline/level_pvs.hpp>
 #include <sightline/result.hpp>
 #include <sightline/types.hpp>
@@ -70,8 +72,9 @@ struct Scene {
   std::vector<std::uint32_t> indices;
 
   std::vector<Viewpoint> viewpoints;
-  std::vector<Vec3> waypoints;    ///< places known to be free, that a walk may lead through
-  std::optional<LevelPvs> level;  ///< the visibility another program computed, where the file has one
+  std::vector<Vec3> waypoints;           ///< places known to be free, that a walk may lead through
+  std::optional<LevelPvs> level;         ///< the visibility another program computed, where the file has one
+  std::shared_ptr<const CellPvs> cells;  ///< what was baked for this scene, where somebody loaded it
 
   [[nodiscard]] std::size_t size() const noexcept { return mesh.size(); }
   [[nodiscard]] bool empty() const noexcept { return mesh.empty(); }

@@ -6,12 +6,13 @@
 #include <sightline/error.hpp>
 
 #include "methods/raster_occlusion/device_methods.hpp"
+#include "methods/ray_pvs/ray_device_method.hpp"
 
 namespace sightline::methods {
 
 std::span<const DeviceMethodInfo> device_methods() noexcept {
-  static const std::array kMethods{kNoneOnDevice, kVfcVcOnDevice, kRoc, kHroc,
-                                   kVertexChunk,  kResidentChunk, kHiz};
+  static const std::array kMethods{kNoneOnDevice,  kVfcVcOnDevice, kRoc,   kHroc, kVertexChunk,
+                                   kResidentChunk, kHiz,           kIwcpa, kBvha, kSaa};
   return kMethods;
 }
 

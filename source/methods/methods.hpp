@@ -16,6 +16,7 @@ extern const MethodInfo kBoca;
 extern const MethodInfo kWideRays;
 extern const MethodInfo kTrianglePvs;
 extern const MethodInfo kGuided;
+extern const MethodInfo kBaked;
 
 inline bool fits_any_scene(const Scene&) {
   return true;

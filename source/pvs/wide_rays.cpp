@@ -2,6 +2,8 @@
 
 #include <bit>
 #include <limits>
+#include <new>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pvs/wide_rays.cpp"
@@ -92,7 +94,6 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
       }
       const std::uint32_t meeting = bits_of(hit);
       if (meeting == 0) continue;
-      prefetch(nodes[child & WideNode::kIndex]);
       const float nearest = hn::GetLane(
           hn::MinOfLanes(p, hn::IfThenElse(hit, entry, hn::Set(p, std::numeric_limits<float>::max()))));
       const std::uint64_t entry_bits = waiting(nearest, child);
@@ -129,6 +130,16 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
   hn::Store(object, pu, packet.object);
 }
 
+// Several rays by turns: while a node of one is on its way from memory, the others go on.
+constexpr std::size_t kTurns = 8;
+
+struct Turn {
+  WideSlabs slabs;
+  Way way;
+  WideResult best;
+  std::size_t ray;
+};
+
 bool same_signs(const Packet& packet, std::size_t lanes) {
   for (const auto& inverse : packet.inverse) {
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -136,6 +147,57 @@ bool same_signs(const Packet& packet, std::size_t lanes) {
     }
   }
   return true;
+}
+
+template <class Store>
+HWY_INLINE void cast_by_turns(const WideNode* nodes, const PreparedRay* rays, const std::uint32_t* order,
+                              std::size_t count, WideStack* stack, Work& work, const Store& store) {
+  std::uint64_t* stacks[kTurns];
+  for (std::size_t i = 0; i < kTurns; ++i)
+    stacks[i] = stack->entries.data() + i * (stack->entries.size() / kTurns);
+  std::size_t next = 0, going = 0;
+  alignas(Turn) unsigned char memory[kTurns * sizeof(Turn)];
+  Turn* turns = reinterpret_cast<Turn*>(memory);
+  // Puts the next ray that needs a walk into a place; false where there is none.
+  const auto begin = [&](std::size_t place) {
+    while (next < count) {
+      const std::size_t turn = next++;
+      const PreparedRay& ray = rays[order ? order[turn] : turn];
+      WideResult best{ray.max_distance, kNoObject};
+      if (ray.inverse.x == 0 || ray.inverse.y == 0 || ray.inverse.z == 0) {
+        walk_as<true>(nodes, WideNode::kInner, ray, best, stacks[place], work);
+        store(turn, best.distance, best.object);
+        continue;
+      }
+      new (&turns[place])
+          Turn{{slab_of(ray.origin.x, ray.inverse.x, 0), slab_of(ray.origin.y, ray.inverse.y, 1),
+                slab_of(ray.origin.z, ray.inverse.z, 2)},
+               {WideNode::kInner},
+               best,
+               turn};
+      return true;
+    }
+    return false;
+  };
+  while (going < kTurns && begin(going)) ++going;
+  while (going > 0) {
+    for (std::size_t place = 0; place < going;) {
+      Turn& turn = turns[place];
+      if (step<false>(nodes, turn.slabs, turn.way, turn.best, stacks[place], work)) {
+        prefetch(nodes[turn.way.current & WideNode::kIndex]);
+        ++place;
+        continue;
+      }
+      store(turn.ray, turn.best.distance, turn.best.object);
+      if (begin(place)) {
+        ++place;
+      } else if (--going != place) {
+        // The last one moves into the gap, and keeps its stack.
+        new (&turns[place]) Turn(turns[going]);
+        std::swap(stacks[place], stacks[going]);
+      }
+    }
+  }
 }
 
 void cast(const WideNode* nodes, const PreparedRay* rays, const std::uint32_t* order, std::size_t count,
@@ -152,10 +214,14 @@ void cast(const WideNode* nodes, const PreparedRay* rays, const std::uint32_t* o
     distance[at] = hit ? t : -1;
     hits += hit;
   };
+  if (!together) {
+    cast_by_turns(nodes, rays, order, count, stack, work, store);
+    r = count;
+  }
   while (r < count) {
     Packet packet;
     const PreparedRay* members[kPacket];
-    if (together && lanes >= 8 && count - r >= lanes) {
+    if (lanes >= 8 && count - r >= lanes) {
       for (std::size_t i = 0; i < lanes; ++i) {
         const PreparedRay& ray = rays[at_turn(r + i)];
         members[i] = &ray;
@@ -199,8 +265,9 @@ void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
     for (std::size_t r = 0; r < rays.size(); ++r) object[r] = kNoObject, distance[r] = -1;
     return;
   }
-  // A ray that leaves its packet walks on above what waits for the packet.
-  const std::size_t room = 2 * std::size_t{bvh.stack_size()};
+  // Enough for rays by turns; and a ray that leaves its packet walks on above what waits for the packet.
+  constexpr std::size_t kStacks = 8;
+  const std::size_t room = kStacks * std::size_t{bvh.stack_size()};
   if (stack.entries.size() < room) stack.entries.resize(room), stack.rays.resize(room);
   // With many more objects than rays even neighbours part soon, and a packet only drags them along.
   constexpr std::size_t kObjectsARay = 16;

@@ -84,53 +84,68 @@ struct Work {
   std::uint64_t inner = 0, leaves = 0;  // nodes looked at, times rays
 };
 
-// Walks what is below `start` with one ray, nearest nodes first, and offers each box it meets to `found`,
-// which says in `distance` up to where the walk still matters.
+using WideSlabs = WideSlab[3];
+
+HWY_INLINE WideSlab slab_of(float origin, float inverse, std::size_t axis) {
+  return {origin, inverse, axis * kWide, (axis + 3) * kWide};
+}
+
+// Where a ray is on its way down: the node it looks at, and what waits.
+struct Way {
+  std::uint32_t current;
+  std::size_t waits = 0;
+};
+
+// Looks at one node, offers each box that is met to `found`, and goes on to the nearest that waits. `found`
+// says in `distance` up to where that matters. False at the end of the way.
+template <bool kParallel, class Found>
+HWY_INLINE bool step(const WideNode* nodes, const WideSlabs& slabs, Way& way, Found& found,
+                     std::uint64_t* stack, Work& work) {
+  alignas(64) float t[kWide];
+  const WideNode& node = nodes[way.current & WideNode::kIndex];
+  std::uint32_t bits = test<kParallel>(slabs, node, found.distance, t);
+  if (way.current & WideNode::kLeaf) {
+    ++work.leaves;
+    for (; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      found.offer(t[lane], node.child[lane]);
+    }
+  } else {
+    ++work.inner;
+    const std::size_t before = way.waits;
+    for (; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      const std::uint32_t child = node.child[lane];
+      if (child < WideNode::kInner) {
+        found.offer(t[lane], child);
+        continue;
+      }
+      // Farthest at the bottom.
+      const std::uint64_t entry = waiting(t[lane], child);
+      std::size_t at = way.waits++;
+      for (; at > before && stack[at - 1] < entry; --at) stack[at] = stack[at - 1];
+      stack[at] = entry;
+    }
+  }
+  // What is equally far may still hold a lower id.
+  float distance;
+  do {
+    if (way.waits == 0) return false;
+    const std::uint64_t next = stack[--way.waits];
+    distance = std::bit_cast<float>(static_cast<std::uint32_t>(next >> 32));
+    way.current = static_cast<std::uint32_t>(next);
+  } while (distance > found.distance);
+  return true;
+}
+
+// Walks what is below `start` with one ray, nearest nodes first.
 template <bool kParallel, class Found>
 HWY_INLINE void walk_as(const WideNode* nodes, std::uint32_t start, const PreparedRay& ray, Found& found,
                         std::uint64_t* stack, Work& work) {
-  constexpr std::size_t x = 0, y = kWide, z = 2 * kWide, far = 3 * kWide;
-  const WideSlab slabs[3] = {{ray.origin.x, ray.inverse.x, x, x + far},
-                             {ray.origin.y, ray.inverse.y, y, y + far},
-                             {ray.origin.z, ray.inverse.z, z, z + far}};
-  alignas(64) float t[kWide];
-  std::size_t waits = 0;
-  std::uint32_t current = start;
-  while (true) {
-    const WideNode& node = nodes[current & WideNode::kIndex];
-    std::uint32_t bits = test<kParallel>(slabs, node, found.distance, t);
-    if (current & WideNode::kLeaf) {
-      ++work.leaves;
-      for (; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        found.offer(t[lane], node.child[lane]);
-      }
-    } else {
-      ++work.inner;
-      const std::size_t before = waits;
-      for (; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-        const std::uint32_t child = node.child[lane];
-        if (child < WideNode::kInner) {
-          found.offer(t[lane], child);
-          continue;
-        }
-        prefetch(nodes[child & WideNode::kIndex]);
-        // Farthest at the bottom.
-        const std::uint64_t entry = waiting(t[lane], child);
-        std::size_t at = waits++;
-        for (; at > before && stack[at - 1] < entry; --at) stack[at] = stack[at - 1];
-        stack[at] = entry;
-      }
-    }
-    // What is equally far may still hold a lower id.
-    float distance;
-    do {
-      if (waits == 0) return;
-      const std::uint64_t next = stack[--waits];
-      distance = std::bit_cast<float>(static_cast<std::uint32_t>(next >> 32));
-      current = static_cast<std::uint32_t>(next);
-    } while (distance > found.distance);
+  const WideSlabs slabs = {slab_of(ray.origin.x, ray.inverse.x, 0), slab_of(ray.origin.y, ray.inverse.y, 1),
+                           slab_of(ray.origin.z, ray.inverse.z, 2)};
+  Way way{start};
+  while (step<kParallel>(nodes, slabs, way, found, stack, work)) {
   }
 }
 

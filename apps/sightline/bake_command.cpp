@@ -1,0 +1,150 @@
+// sightline bake and query: potentially visible sets per cell, offline, and what stands in their file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include <sightline/io.hpp>
+
+#include "bake/bake.hpp"
+#include "bake/pvs_file.hpp"
+#include "command.hpp"
+#include "lab/bake_check.hpp"
+#include "lab/file.hpp"
+#include "lab/table.hpp"
+
+namespace sightline::app {
+
+namespace {
+
+struct Options {
+  std::string scene, file, cells;
+  bake::CellOptions bake;
+  std::size_t check = 0;
+};
+
+void print_level(const Scene& scene, const CellPvs& cells, const Options& options) {
+  const std::vector<lab::CellComparison> rows = lab::compare_with_level(scene, cells, options.bake.seed);
+  double baked = 0, level = 0, only_baked = 0, only_level = 0;
+  std::string csv = "cell,baked,level,only_baked,only_level\n";
+  for (const lab::CellComparison& row : rows) {
+    baked += row.baked, level += row.level, only_baked += row.only_baked, only_level += row.only_level;
+    csv += fmt::format("{},{},{},{},{}\n", row.cell, row.baked, row.level, row.only_baked, row.only_level);
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(1, rows.size()));
+  fmt::print(
+      "Against the level's own PVS, mean of {} cells: {:.1f} objects baked, {:.1f} in the level's; {:.2f} "
+      "only baked, "
+      "{:.1f} only in the level's\n",
+      rows.size(), baked / n, level / n, only_baked / n, only_level / n);
+  if (!options.cells.empty()) lab::write_file(options.cells, csv);
+}
+
+int run_bake(const Options& options) {
+  const bake::Ranks ranks = bake::Ranks::join();
+  const Scene scene = load_scene(options.scene);
+  const auto shown = ranks.rank() == 0 ? progress("bake") : std::function<void(std::size_t, std::size_t)>();
+  const bake::BakeResult result =
+      bake::bake(scene, options.bake, options.file, ranks, [&](std::size_t done, std::size_t all) {
+        if (shown) shown(done, all);
+        return true;
+      });
+  if (ranks.rank() != 0) return Exit::done;
+  const CellPvs& cells = result.cells;
+  const auto open = static_cast<std::uint64_t>(std::count(cells.open.begin(), cells.open.end(), 1));
+  const double bytes = static_cast<double>(std::filesystem::file_size(options.file));
+  const double raw = static_cast<double>(open) * static_cast<double>((scene.size() + 7) / 8);
+  fmt::print("{}: {} of {} cells open, {} objects; {} rays here, {} cells resumed\n", options.file, open,
+             cells.size(), scene.size(), result.rays, result.resumed);
+  fmt::print("{:.0f} bytes, {:.3f} of the open cells' raw bit matrix ({:.0f} bytes)\n", bytes, bytes / raw,
+             raw);
+  if (scene.level) print_level(scene, cells, options);
+  if (options.check > 0) {
+    const lab::EmbreeJudge judge(scene);
+    const lab::BakeLoss loss =
+        lab::check_bake(scene, cells, judge, options.check, 320, 240, options.bake.seed, progress("check"));
+    fmt::print(
+        "{} random views inside cells: {} of {} pixels lost ({:.5f} %), {} objects; {:.1f} kept, {:.1f} "
+        "seen\n",
+        loss.views, loss.lost_pixels, loss.pixels,
+        100 * static_cast<double>(loss.lost_pixels) / static_cast<double>(loss.pixels), loss.lost_objects,
+        static_cast<double>(loss.kept) / static_cast<double>(loss.views),
+        static_cast<double>(loss.visible) / static_cast<double>(loss.views));
+  }
+  return Exit::done;
+}
+
+Vec3 parse_point(const std::string& text) {
+  const std::vector<std::string> parts = split(text);
+  float v[3];
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const char* end = parts[i].data() + parts[i].size();
+    const auto read = std::from_chars(parts[i].data(), end, v[i]);
+    good = read.ec == std::errc{} && read.ptr == end;
+  }
+  if (!good) throw Error("--at '" + text + "': expected three numbers, x,y,z");
+  return {v[0], v[1], v[2]};
+}
+
+int run_query(const std::string& file, const std::string& at) {
+  const Vec3 point = parse_point(at);
+  const CellPvs cells = bake::read_pvs(file);
+  const std::uint32_t cell = cells.cell_at(point);
+  if (cell == kNoCell) {
+    fmt::print("{},{},{}: in no open cell; everything may be seen\n", point.x, point.y, point.z);
+    return Exit::done;
+  }
+  const Box box = cells.cell_bounds(cell);
+  const auto seen = cells.seen_from(cell);
+  fmt::print("cell {} from {},{},{} to {},{},{}: {} of {} objects\n", cell, box.min.x, box.min.y, box.min.z,
+             box.max.x, box.max.y, box.max.z, seen.size(), cells.objects);
+  for (const std::uint32_t object : seen) fmt::print("{}\n", object);
+  return Exit::done;
+}
+
+}  // namespace
+
+void attach_pvs(Scene& scene, const std::string& file) {
+  if (file.empty()) return;
+  auto cells = std::make_shared<CellPvs>(bake::read_pvs(file));
+  bake::check_belongs(*cells, file, scene);
+  scene.cells = std::move(cells);
+}
+
+void add_bake(CLI::App& app, int& exit) {
+  CLI::App& command = *app.add_subcommand(
+      "bake",
+      "Bake the visible set of each cell of a grid; goes on where it was killed; mpirun shares it out");
+  auto options = std::make_shared<Options>();
+  command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  command.add_option("-o,--output", options->file, "the file to write")->required()->type_name("FILE.pvs");
+  command.add_option("--cell", options->bake.cell, "metres along each side of a cell")->capture_default_str();
+  command.add_option("--target", options->bake.target, "share of a view that a cell's set may lack")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command.add_option("--seed", options->bake.seed, "of the viewpoints")->capture_default_str();
+  command.add_option("--rays", options->bake.rays, "from each viewpoint")
+      ->check(CLI::Range(16, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--viewpoints", options->bake.most_viewpoints, "at most, a cell")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--check", options->check, "afterwards hold N random views against the item buffer")
+      ->type_name("N");
+  command
+      .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")
+      ->type_name("FILE.csv");
+  on_run(command, exit, [options] { return run_bake(*options); });
+}
+
+void add_query(CLI::App& app, int& exit) {
+  CLI::App& command = *app.add_subcommand("query", "Print what a baked file says can be seen from a point");
+  auto file = std::make_shared<std::string>(), at = std::make_shared<std::string>();
+  command.add_option("FILE", *file, "a file that bake wrote")->required();
+  command.add_option("--at", *at, "the point, in metres")->required()->type_name("x,y,z");
+  on_run(command, exit, [file, at] { return run_query(*file, *at); });
+}
+
+}  // namespace sightline::app

@@ -1,0 +1,42 @@
+// Any bytes as baked visibility: sets whose objects are in range and ascending, or an Error. The checksum
+// would keep the fuzzer out, so the bytes are also read as a lone set, and as a file whose checksum is right.
+#include <cstdlib>
+#include <cstring>
+
+#include "bake/pvs_file.hpp"
+
+namespace {
+
+void expect_sound(const sightline::CellPvs& cells) {
+  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+    std::int64_t last = -1;
+    for (const std::uint32_t object : cells.seen_from(cell)) {
+      if (object <= last || object >= cells.objects) std::abort();
+      last = object;
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace sightline;
+  const auto bytes = std::as_bytes(std::span(data, size));
+  try {
+    std::vector<std::uint32_t> ids;
+    bake::unpack_set(bytes, 100000, "fuzz", ids);
+  } catch (const Error&) {
+  }
+  constexpr std::size_t kHeader = 84, kChecksumAt = 76;
+  std::vector<std::byte> file(bytes.begin(), bytes.end());
+  if (size >= kHeader) {
+    const std::uint64_t sum =
+        bake::checksum(std::span(file).subspan(kHeader), bake::checksum(std::span(file).first(kChecksumAt)));
+    std::memcpy(file.data() + kChecksumAt, &sum, sizeof sum);
+  }
+  try {
+    expect_sound(bake::unpack_cells(file, "fuzz.pvs"));
+  } catch (const Error&) {
+  }
+  return 0;
+}

@@ -1,0 +1,88 @@
+// IWCPA, Ye et al. 2023, section 3.4: every ray against every box on the GPU, workgroups of 16 × 16.
+#include <algorithm>
+
+#include "methods/ray_pvs/ray_device_method.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::uint32_t kPairs[] =
+#include "shaders/iwcpa_pairs.comp.inc"
+    ;
+constexpr std::uint32_t kNearest[] =
+#include "shaders/iwcpa_nearest.comp.inc"
+    ;
+
+struct PairsPush {
+  vk::DeviceAddress rays, boxes, nearest;
+  std::uint32_t ray_count, first_box, box_end;
+};
+struct NearestPush {
+  vk::DeviceAddress nearest, hits, marks;
+  std::uint32_t ray_count, rows, is_first, is_last;
+};
+
+constexpr std::uint32_t kGroup = 16;
+constexpr std::size_t kHitBytes = 8;
+// Rows of workgroups a round, so that many boxes need no more memory than this.
+constexpr std::size_t kRoundBytes = std::size_t{64} << 20;
+
+class Iwcpa final : public DeviceRays {
+public:
+  Iwcpa(vulkan::Device& device, const Scene& scene)
+      : DeviceRays(device, scene),
+        pairs_(device, kPairs),
+        nearest_(device, kNearest),
+        boxes_(device, scene.size() * sizeof(Box), vulkan::Memory::upload, "boxes") {
+    update();
+  }
+  void update() override {
+    for (std::size_t i = 0; i < scene_.size(); ++i) boxes_.mapped<Box>()[i] = scene_.bounds[i];
+  }
+
+private:
+  [[nodiscard]] std::uint32_t rows_a_round() const {
+    const std::size_t fit =
+        std::max<std::size_t>(1, kRoundBytes / (kHitBytes * std::max<std::size_t>(rays_, 1)));
+    const std::size_t all = (scene_.size() + kGroup - 1) / kGroup;
+    return static_cast<std::uint32_t>(std::min({fit, all, std::size_t{65535}}));
+  }
+  void prepare_more(const pvs::RayGrid&) override {
+    grow(partial_, rows_a_round() * rays_ * kHitBytes, vulkan::Memory::device, "nearest by workgroup");
+  }
+
+  void record_passes(const vk::raii::CommandBuffer& commands) override {
+    const auto rays = static_cast<std::uint32_t>(rays_), boxes = static_cast<std::uint32_t>(scene_.size());
+    const std::uint32_t step = rows_a_round() * kGroup;
+    for (std::uint32_t first = 0; first < boxes; first += step) {
+      const std::uint32_t rows = (std::min(step, boxes - first) + kGroup - 1) / kGroup;
+      dispatch(commands, pairs_,
+               PairsPush{ray_buffer_.address(), boxes_.address(), partial_.address(), rays, first, boxes},
+               (rays + kGroup - 1) / kGroup, rows);
+      dispatch(commands, nearest_,
+               NearestPush{partial_.address(), hits_.address(), marks_.address(), rays, rows, first == 0,
+                           boxes - first <= step},
+               (rays + 255) / 256);
+    }
+  }
+
+  vulkan::ComputePipeline pairs_, nearest_;
+  vulkan::Buffer boxes_, partial_;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceRays> make_iwcpa(vulkan::Device& device, const Scene& scene) {
+  return std::make_unique<Iwcpa>(device, scene);
+}
+
+const DeviceMethodInfo kIwcpa{"iwcpa",
+                              kRayPaper,
+                              "100 x 100 rays, every ray and box at once on the GPU",
+                              Guarantee::approximate,
+                              "",
+                              kRayDeviceParameters,
+                              make_rays_on_device<make_iwcpa>};
+
+}  // namespace sightline::methods

@@ -1,0 +1,110 @@
+#include "bake/bake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <sightline/method.hpp>
+#include <sightline/worlds.hpp>
+
+#include "bake/pvs_file.hpp"
+#include "io/files.hpp"
+#include "lab/embree_judge.hpp"
+#include "lab/loss.hpp"
+#include "scene/random.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sightline::bake {
+namespace {
+
+const CellOptions kCoarse{.cell = 15, .target = 1e-3, .rays = 256};
+
+Scene forest() {
+  return *generate_world("forest?trees=150&size=60");
+}
+
+TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
+  const Scene scene = forest();
+  const test::TemporaryFolder folder;
+  const std::filesystem::path once = folder / "once.pvs", again = folder / "again.pvs";
+  const BakeResult whole = bake(scene, kCoarse, once, {});
+  ASSERT_TRUE(whole.finished);
+  EXPECT_GT(whole.cells.visible.size(), 100u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+
+  scene::Random random(3);
+  std::uint32_t stops = 0;
+  BakeResult part;
+  do {
+    std::size_t left = 1 + random.below(4);
+    part = bake(scene, kCoarse, again, {}, [&](std::size_t, std::size_t) { return --left > 0; });
+    ASSERT_LT(++stops, 1000u);
+    if (part.finished) break;
+    // A kill may cut a record off, or leave bytes that never were one.
+    const std::filesystem::path journal = again.string() + ".part.0";
+    if (random.below(2) == 0) {
+      const auto size = std::filesystem::file_size(journal);
+      std::filesystem::resize_file(journal, size - std::min<std::uintmax_t>(size, random.below(40)));
+    } else {
+      std::ofstream(journal, std::ios::binary | std::ios::app) << "cut off";
+    }
+  } while (!part.finished);
+  EXPECT_GT(stops, 3u);
+  EXPECT_EQ(io::read_file(again), io::read_file(once));
+}
+
+TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
+  const Scene scene = forest();
+  const test::TemporaryFolder folder;
+  CellOptions other = kCoarse;
+  other.seed = 2;
+  const std::filesystem::path file = folder / "a.pvs", fresh = folder / "b.pvs";
+  bake(scene, other, file, {}, [](std::size_t done, std::size_t) { return done < 5; });
+  const BakeResult result = bake(scene, kCoarse, file, {});
+  EXPECT_EQ(result.resumed, 0u);
+  bake(scene, kCoarse, fresh, {});
+  EXPECT_EQ(io::read_file(file), io::read_file(fresh));
+}
+
+TEST(Bake, LosesLittleFromAnywhereInTheCells) {
+  Scene scene = forest();
+  const test::TemporaryFolder folder;
+  const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3, .rays = 512}, folder / "a.pvs", {});
+  scene.cells = std::make_shared<CellPvs>(read_pvs(folder / "a.pvs"));
+  const auto method = *create_method("baked", scene);
+  const lab::EmbreeJudge judge(scene);
+  scene::Random random(5);
+  std::uint64_t lost = 0, pixels = 0;
+  Frame frame;
+  for (int v = 0; v < 60; ++v) {
+    const Vec3 eye = random.inside(result.cells.bounds);
+    const float turn = random.between(0, 6.28f);
+    const View view = *make_view({.eye = eye, .forward = {std::sin(turn), 0.1f, std::cos(turn)}}, 160, 120);
+    method->cull(view, frame);
+    lost += lab::compare_to_truth(judge.render(view), frame.visible).lost_pixels;
+    pixels += 160 * 120;
+  }
+  EXPECT_LE(lost, pixels / 1000);
+}
+
+TEST(Bake, RefusesTooManyCells) {
+  const Scene scene = forest();
+  EXPECT_THROW(make_cells(scene, {.cell = 1e-3f}), Error);
+  EXPECT_THROW(make_cells(scene, {.cell = 0}), Error);
+}
+
+// Nobody knows what is seen from outside the cells: everything is drawn.
+TEST(Baked, DrawsEverythingInViewOutsideItsCells) {
+  Scene scene = forest();
+  auto cells = std::make_shared<CellPvs>(make_cells(scene, kCoarse));
+  scene.cells = cells;
+  Frame baked, all;
+  const View view = *make_view({.eye = {0, 500, 0}, .forward = {0, -1, 0}, .up = {1, 0, 0}}, 200, 200);
+  (*create_method("baked", scene))->cull(view, baked);
+  (*create_method("vfc-vc?bounds=box", scene))->cull(view, all);
+  EXPECT_EQ(baked.visible.size(), scene.size());
+  EXPECT_EQ(baked.visible.size(), all.visible.size());
+}
+
+}  // namespace
+}  // namespace sightline::bake
