@@ -23,6 +23,7 @@ std::span<const MethodInfo> cpu_methods() noexcept {
     std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum};
     all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
     all.push_back(kClusterCone);
+    all.push_back(kAdaptive);
     all.push_back(kLevelPvs);
     return all;
   }();
