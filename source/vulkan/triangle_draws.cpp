@@ -74,6 +74,8 @@ void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeli
                            Submission submission) const {
   if (draws.empty()) return;
   frame.bind(pipeline);
+  // Strictly nearer: a triangle that crosses cells is drawn once for each, and shaded once all the same.
+  frame.commands.setDepthCompareOp(frame.reversed() ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
   frame.push(Push{frame.view_address(), renderer_.buffers().object_data.address(), positions_.address(),
                   owners_.address()});
   frame.commands.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint32);

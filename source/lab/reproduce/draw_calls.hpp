@@ -42,7 +42,8 @@ struct WalkRow {
   std::string family;  ///< without parameters
   std::uint32_t height = 0;
   Submission submission = Submission::calls;
-  double frame_ms = 0, cull_ms = 0;  ///< means of the views' medians
+  /// Means of the views' medians; recording is the CPU's part: culling and submitting.
+  double frame_ms = 0, cull_ms = 0, record_ms = 0;
   double draw_calls = 0, ranges = 0, triangles = 0;
   std::uint64_t bytes = 0, lost_pixels = 0;
   std::vector<double> frame_ms_by_view;

@@ -37,7 +37,7 @@ std::vector<DrawCallPlan> candidates(const Scene& scene) {
   std::vector<DrawCallPlan> plans;
   for (const auto structure :
        {partition::Structure::grid, partition::Structure::octree, partition::Structure::kd_tree}) {
-    for (const Strategy strategy : {Strategy::drawcall_wise, Strategy::zhang}) {
+    for (const Strategy strategy : {Strategy::simple, Strategy::drawcall_wise, Strategy::zhang}) {
       for (std::uint32_t height = many ? 6 : 1; height <= 6; ++height) {
         DrawCallPlan plan;
         plan.structure = structure, plan.height = height, plan.strategy = strategy;
