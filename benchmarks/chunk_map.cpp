@@ -67,5 +67,3 @@ BENCHMARK_CAPTURE(move_objects, anywhere, true)->Arg(1)->Arg(10)->Unit(benchmark
 
 }  // namespace
 }  // namespace sightline::partition
-
-BENCHMARK_MAIN();

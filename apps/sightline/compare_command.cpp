@@ -6,6 +6,7 @@
 #include <sightline/io.hpp>
 
 #include "command.hpp"
+#include "device.hpp"
 #include "lab/summary.hpp"
 #include "lab/table.hpp"
 #include "page.hpp"
@@ -17,14 +18,18 @@ namespace {
 struct Options {
   std::string scene, methods, path, size = "1280x720", device = "cpu", json, report;
   std::size_t frames = 24;
+  double moving = 0;
 };
 
 int run(const Options& options) {
   lab::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   if (options.device != "cpu") {
-    throw Error("--device '" + options.device + "': no such device, expected cpu");
+    if (!options.report.empty()) throw Error("--report: expected --device cpu");
+    return compare_on_device({options.scene, options.methods, options.path, options.device, options.json,
+                              measure.width, measure.height, options.frames, 0, options.moving});
   }
+  if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
   const Scene scene = load_scene(options.scene);
   const std::vector<std::string> names =
       options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
@@ -65,9 +70,9 @@ void add_compare(CLI::App& app, int& exit) {
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
-  command.add_option("--device", options->device, "where methods run")
-      ->type_name("cpu|NAME")
-      ->capture_default_str();
+  command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
+  command.add_option("--moving", options->moving, "share of the objects that move before every frame")
+      ->check(CLI::Range(0.0, 1.0));
   command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
       ->type_name("FILE");
   command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")

@@ -9,12 +9,15 @@
 
 #include "command.hpp"
 #include "lab/file.hpp"
+#include "methods/device_method.hpp"
 
 namespace sightline::app {
 
 namespace {
 
-nlohmann::ordered_json to_json(const MethodInfo& info) {
+// MethodInfo and DeviceMethodInfo alike.
+template <class Info>
+nlohmann::ordered_json to_json(const Info& info) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
   for (const ParameterInfo& parameter : info.parameters) {
     nlohmann::ordered_json entry{
@@ -31,7 +34,8 @@ nlohmann::ordered_json to_json(const MethodInfo& info) {
           {"needs", info.needs},     {"parameters", std::move(parameters)}};
 }
 
-void print(const MethodInfo& info) {
+template <class Info>
+void print(const Info& info) {
   fmt::print("{:<16} {:<13} {:<34} {}\n", info.name, to_string(info.guarantee), info.paper, info.summary);
   if (!info.needs.empty()) fmt::print("{:16} needs {}\n", "", info.needs);
   for (const ParameterInfo& parameter : info.parameters) {
@@ -50,12 +54,32 @@ void add_methods(CLI::App& app, int& exit) {
   auto json = std::make_shared<std::string>();
   command.add_option("--json", *json, "also write the list as JSON to FILE")->type_name("FILE");
   on_run(command, exit, [json] {
+    const std::vector<vulkan::DeviceInfo> devices = vulkan::list_devices();
     if (!json->empty()) {
-      nlohmann::ordered_json document{{"sightline", kVersion}, {"methods", nlohmann::ordered_json::array()}};
+      using Json = nlohmann::ordered_json;
+      Json document{{"sightline", kVersion},
+                    {"methods", Json::array()},
+                    {"device_methods", Json::array()},
+                    {"devices", Json::array()}};
       for (const MethodInfo& info : cpu_methods()) document["methods"].push_back(to_json(info));
-      lab::write_file(*json, document.dump(1) + "\n");
+      for (const methods::DeviceMethodInfo& info : methods::device_methods()) {
+        document["device_methods"].push_back(to_json(info));
+      }
+      for (const vulkan::DeviceInfo& info : devices) {
+        document["devices"].push_back({{"name", info.name}, {"kind", info.kind}, {"driver", info.driver}});
+      }
+      lab::write_file(*json, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     }
+    fmt::print("On the CPU (--device cpu):\n");
     for (const MethodInfo& info : cpu_methods()) print(info);
+    fmt::print(
+        "\nOn a Vulkan device (--device NAME), where CPU methods without a form of their own are drawn "
+        "too:\n");
+    for (const methods::DeviceMethodInfo& info : methods::device_methods()) print(info);
+    fmt::print("\nVulkan devices:{}\n", devices.empty() ? " none" : "");
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      fmt::print("{:>3}  {} ({}, {})\n", i, devices[i].name, devices[i].kind, devices[i].driver);
+    }
     return Exit::done;
   });
 }

@@ -3,10 +3,14 @@
 
 #include <memory>
 
+#include <sightline/error.hpp>
 #include <sightline/io.hpp>
 
 #include "command.hpp"
+#include "device.hpp"
+#include "lab/level_evidence.hpp"
 #include "lab/random_views.hpp"
+#include "lab/table.hpp"
 #include "lab/verify.hpp"
 
 namespace sightline::app {
@@ -14,13 +18,28 @@ namespace sightline::app {
 namespace {
 
 struct Options {
-  std::string scene, methods, size = "160x120";
+  std::string scene, methods, size = "160x120", device = "cpu";
   std::size_t views = 100;
   std::uint64_t seed = 1;
+  double moving = 0;
 };
+
+// What the level's own visibility denies and rays see all the same, reason by reason.
+void print_level_evidence(const Scene& scene, std::uint64_t seed) {
+  constexpr std::size_t kEyes = 100;
+  constexpr std::uint32_t kSide = 96;
+  const lab::EmbreeJudge judge(scene);
+  fmt::print("\nThe level's own PVS against what rays see from open leaves:\n{}",
+             lab::render(lab::evidence_table(lab::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
+}
 
 int run(const Options& options) {
   const auto [width, height] = parse_size(options.size);
+  if (options.device != "cpu") {
+    return verify_on_device({options.scene, options.methods, "", options.device, "", width, height,
+                             options.views, options.seed, options.moving});
+  }
+  if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
   const Scene scene = load_scene(options.scene);
   const std::vector<std::string> names =
       options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
@@ -44,6 +63,7 @@ int run(const Options& options) {
   for (const lab::MethodVerdict& m : result.methods) {
     for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
   }
+  if (scene.level) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
 }
 
@@ -65,6 +85,9 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
+  command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
+  command.add_option("--moving", options->moving, "share of the objects that move before every frame")
+      ->check(CLI::Range(0.0, 1.0));
   on_run(command, exit, [options] { return run(*options); });
 }
 

@@ -26,8 +26,8 @@ Plane round_outwards(const glm::dvec4& plane, const Vec3& largest) {
 
 }  // namespace
 
-Frustum make_frustum(const View& view, const Box& extent) noexcept {
-  const glm::dmat4 rows = glm::transpose(to_double(view.eye_to_clip) * to_double(view.world_to_eye));
+Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept {
+  const glm::dmat4 rows = glm::transpose(clip);
   const Vec3 reach = largest(extent);
   Frustum frustum;
   frustum.planes[Frustum::left] = round_outwards(rows[3] + rows[0], reach);
@@ -37,13 +37,16 @@ Frustum make_frustum(const View& view, const Box& extent) noexcept {
   // 0 <= z <= w: with reversed depth the first of these is the far plane, and the half spaces are the same.
   const Plane z_low = round_outwards(rows[2], reach);
   const Plane z_high = round_outwards(rows[3] - rows[2], reach);
-  const Vec3 forward = view_direction(view);
   const Vec3& n = z_low.normal;
   const bool has_low = n.x != 0 || n.y != 0 || n.z != 0;
   const bool low_is_front = has_low && n.x * forward.x + n.y * forward.y + n.z * forward.z > 0;
   frustum.planes[Frustum::front] = low_is_front ? z_low : z_high;
   frustum.planes[Frustum::back] = low_is_front ? z_high : z_low;
   return frustum;
+}
+
+Frustum make_frustum(const View& view, const Box& extent) noexcept {
+  return frustum_of(to_double(view.eye_to_clip) * to_double(view.world_to_eye), view_direction(view), extent);
 }
 
 Overlap classify(const Frustum& frustum, const Box& box) noexcept {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include <sightline/frustum.hpp>
 #include <sightline/types.hpp>
 
 namespace sightline::geometry {
@@ -50,5 +51,8 @@ inline Vec3 largest(const Box& box) noexcept {
           std::fmax(std::fabs(box.min.y), std::fabs(box.max.y)),
           std::fmax(std::fabs(box.min.z), std::fabs(box.max.z))};
 }
+
+/// make_frustum for any matrix to clip space, still in double precision; `forward` tells front from back.
+Frustum frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept;
 
 }  // namespace sightline::geometry

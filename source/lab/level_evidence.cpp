@@ -17,7 +17,7 @@ namespace sightline::lab {
 namespace {
 
 constexpr double kBeforeFace = 1e-3;    ///< metres before a face where a line of sight is held to end
-constexpr double kThroughSolid = 1e-6;  ///< metres of solid that are no rounding
+constexpr double kThroughSolid = 1e-3;  ///< metres of solid that are more than a brush past a corner
 
 struct Direction {
   Vec3 forward, up;
@@ -163,6 +163,19 @@ LevelEvidence gather_level_evidence(const Scene& scene, const EmbreeJudge& judge
     }
   }
   return evidence;
+}
+
+Table evidence_table(const LevelEvidence& evidence) {
+  const auto figure = [](std::uint64_t count) { return format_count(static_cast<double>(count)); };
+  Table table;
+  table.header = {"objects seen from " + figure(evidence.eyes) + " places", "objects"};
+  table.rows.push_back(
+      {"in the leaf's potentially visible set", figure(evidence.objects_seen - evidence.objects_denied)});
+  for (std::size_t i = 0; i < kPvsExceptions; ++i) {
+    table.rows.push_back(
+        {std::string(explanation(static_cast<PvsException>(i))), figure(evidence.objects[i])});
+  }
+  return table;
 }
 
 }  // namespace sightline::lab

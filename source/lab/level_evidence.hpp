@@ -9,6 +9,7 @@
 #include <sightline/scene.hpp>
 
 #include "lab/embree_judge.hpp"
+#include "lab/table.hpp"
 
 namespace sightline::lab {
 
@@ -41,5 +42,8 @@ struct LevelEvidence {
 /// every object seen against the leaf's potentially visible set. Throws Error where the scene has no level.
 LevelEvidence gather_level_evidence(const Scene& scene, const EmbreeJudge& judge, std::size_t eyes,
                                     std::uint32_t side, std::uint64_t seed);
+
+/// What was found, a line a reason, for a terminal.
+Table evidence_table(const LevelEvidence& evidence);
 
 }  // namespace sightline::lab

@@ -57,7 +57,15 @@ Json row_json(const Comparison& comparison, const Row& row) {
   out["cull_cpu_ms"] = row.cull.median;
   out["cull_cpu_ms_min"] = row.cull.min;
   out["cull_cpu_ms_max"] = row.cull.max;
-  for (const char* without_gpu : {"cull_gpu_ms", "frame_ms", "fps"}) out[without_gpu] = nullptr;
+  const auto time = [&](const std::string& name, const std::optional<Timing>& timing) {
+    out[name] = timing ? Json(timing->median) : Json();
+    if (!timing) return;
+    out[name + "_min"] = timing->min;
+    out[name + "_max"] = timing->max;
+  };
+  time("cull_gpu_ms", row.cull_gpu);
+  time("frame_ms", row.frame);
+  out["fps"] = row.frame && row.frame->median > 0 ? Json(1000 / row.frame->median) : Json();
   out["truly_visible"] = row.truly_visible;
   out["lost_objects"] = row.lost_objects;
   out["lost_pixels"] = row.lost_pixels;

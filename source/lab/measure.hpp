@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,7 +36,9 @@ struct Row {
   CullStats stats;
   std::uint64_t kept = 0;           ///< objects in the method's visible set
   std::uint64_t truly_visible = 0;  ///< objects with a pixel in the item buffer
-  Timing cull;
+  Timing cull;                      ///< on the CPU
+  std::optional<Timing> cull_gpu,
+      frame;  ///< where a device drew; frame: culling and drawing, from start to end
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
 };
 

@@ -20,11 +20,9 @@ std::string_view to_string(Guarantee guarantee) noexcept {
 std::span<const MethodInfo> cpu_methods() noexcept {
   using namespace methods;
   static const std::vector<MethodInfo> kMethods = [] {
-    std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum};
+    std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked};
     all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
-    all.push_back(kClusterCone);
-    all.push_back(kAdaptive);
-    all.push_back(kLevelPvs);
+    all.insert(all.end(), {kClusterCone, kAdaptive, kToca, kBoca, kWideRays, kTrianglePvs, kGuided, kLevelPvs});
     return all;
   }();
   return kMethods;

@@ -42,7 +42,7 @@ ItemBuffer ItemBufferPass::render(const View& view) {
   }
   renderer_.frame(view, [&](Recorder& frame) {
     frame.fill(seen_, 0, seen_.size());
-    renderer_.draws().build(frame, seen_.address(), 0, 0, renderer_.transparent_order(), all_);
+    renderer_.draws().build(frame, seen_.address(), VisibleDraws::kAll, renderer_.transparent_order(), all_);
     const auto draw = [&](const GraphicsPipeline& pipeline, std::uint32_t first, std::uint32_t count) {
       if (count == 0) return;
       frame.bind(pipeline);

@@ -21,7 +21,7 @@ constexpr std::uint32_t kShadeFrag[] =
 constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 struct DrawPush {
-  vk::DeviceAddress view, objects, list;
+  vk::DeviceAddress view, objects, list, extra;
 };
 
 std::array<std::uint32_t, 4> background() {
@@ -129,24 +129,32 @@ vk::DeviceAddress Renderer::transparent_order() const noexcept {
 
 void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
                              std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
-                             Recorder::Compare compare) const {
+                             Recorder::Compare compare, vk::DeviceAddress extra) const {
   if (count == 0) return;
   frame.bind(pipeline, compare);
-  frame.push(DrawPush{frame.view_address(), buffers_.object_data.address(), list});
+  frame.push(DrawPush{frame.view_address(), buffers_.object_data.address(), list, extra});
   frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
   frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
   frame.commands.drawIndexedIndirect(commands, first * kCommandSize, count, kCommandSize);
 }
 
-void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, bool clear,
+void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
                            Recorder::Compare compare) const {
   const bool lit = style == Style::lit;
   frame.begin_rendering({.colour = lit ? &frame.targets.colour : nullptr,
-                         .clear_colour = clear,
-                         .clear_depth = clear,
+                         .clear_colour = clear == Clear::colour || clear == Clear::both,
+                         .clear_depth = clear == Clear::depth || clear == Clear::both,
                          .clear_value = background()});
   draw_indirect(frame, lit ? lit_pipeline_ : depth_pipeline_, draws.commands.handle(), 0,
                 draws.opaque_commands, draws.list.address(), compare);
+  frame.end_rendering();
+}
+
+void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                           vk::DeviceAddress extra, Recorder::Compare compare) const {
+  frame.begin_rendering({.colour = &frame.targets.colour});
+  draw_indirect(frame, pipeline, draws.commands.handle(), 0, draws.opaque_commands, draws.list.address(),
+                compare, extra);
   frame.end_rendering();
 }
 
@@ -155,14 +163,6 @@ void Renderer::draw_transparent(const Recorder& frame, const DrawBuffers& draws)
   frame.begin_rendering({.colour = &frame.targets.colour});
   draw_indirect(frame, blend_pipeline_, draws.commands.handle(), draws.opaque_commands,
                 draws.transparent_commands, draws.list.address(), Recorder::Compare::nearer_or_equal);
-  frame.end_rendering();
-}
-
-void Renderer::clear(const Recorder& frame, bool colour, bool depth) const {
-  frame.begin_rendering({.colour = colour ? &frame.targets.colour : nullptr,
-                         .clear_colour = colour,
-                         .clear_depth = depth,
-                         .clear_value = background()});
   frame.end_rendering();
 }
 

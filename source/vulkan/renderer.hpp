@@ -44,13 +44,15 @@ public:
   FrameTimes frame(const View& view, const std::function<void(Recorder&)>& record);
 
   enum class Style : std::uint8_t { depth, lit };
-  /// Draws the opaque objects of `draws`; `clear` empties depth and, when lit, colour first.
-  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, bool clear,
+  enum class Clear : std::uint8_t { nothing, colour, depth, both };
+  /// Draws the opaque objects of `draws` after clearing.
+  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
                    Recorder::Compare compare = Recorder::Compare::nearer_or_equal) const;
+  /// The same with a pipeline of one's own and colour; its shaders find `extra` after the list's address.
+  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                   vk::DeviceAddress extra, Recorder::Compare compare) const;
   /// Blends the transparent objects of `draws` over the picture.
   void draw_transparent(const Recorder& frame, const DrawBuffers& draws) const;
-  /// Empties colour, depth or both.
-  void clear(const Recorder& frame, bool colour, bool depth) const;
   /// All transparent objects, farthest first for the frame's view; 0 where there are none.
   [[nodiscard]] vk::DeviceAddress transparent_order() const noexcept;
 
@@ -67,7 +69,7 @@ private:
   void sort_transparent(const View& view);
   void draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
                      std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
-                     Recorder::Compare compare) const;
+                     Recorder::Compare compare, vk::DeviceAddress extra = 0) const;
 
   Device& device_;
   const Scene& scene_;

@@ -21,7 +21,8 @@ constexpr std::uint32_t kBlock = 256;
 
 struct Push {
   vk::DeviceAddress flags, slot_objects, prefix, sums, list, meshes, objects, commands, transparent_order;
-  std::uint32_t mask, value, opaque, mesh_count, transparent;
+  VisibleDraws::Condition condition, transparent_condition;
+  std::uint32_t opaque, mesh_count, transparent;
 };
 
 }  // namespace
@@ -37,16 +38,21 @@ VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
 
 DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
-  return {Buffer(device, std::uint64_t{scene_.objects} * 4, Memory::device, "a draw list"),
-          Buffer(device, (std::uint64_t{scene_.meshes} + transparent) * sizeof(shared::CommandData),
-                 Memory::device, "draw commands"),
-          scene_.meshes, transparent};
+  DrawBuffers out{Buffer(device, std::uint64_t{scene_.objects} * 4, Memory::device, "a draw list"),
+                  Buffer(device, (std::uint64_t{scene_.meshes} + transparent) * sizeof(shared::CommandData),
+                         Memory::device, "draw commands"),
+                  scene_.meshes, transparent};
+  device.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.fillBuffer(out.commands.handle(), 0, VK_WHOLE_SIZE, 0);
+    full_barrier(commands);
+  });
+  return out;
 }
 
-void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, std::uint32_t mask,
-                         std::uint32_t value, vk::DeviceAddress transparent_order,
+void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque,
+                         Condition transparent, vk::DeviceAddress transparent_order,
                          const DrawBuffers& out) const {
-  const std::uint32_t transparent = transparent_order ? out.transparent_commands : 0;
+  const std::uint32_t transparent_count = transparent_order ? out.transparent_commands : 0;
   const Push push{flags,
                   scene_.slot_objects.address(),
                   prefix_.address(),
@@ -56,15 +62,15 @@ void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, std::ui
                   scene_.object_data.address(),
                   out.commands.address(),
                   transparent_order,
-                  mask,
-                  value,
+                  opaque,
+                  transparent,
                   scene_.opaque,
                   scene_.meshes,
-                  transparent};
+                  transparent_count};
   if (scene_.opaque > 0) frame.dispatch(scan_blocks_, push, scene_.opaque, kBlock);
   frame.dispatch(scan_sums_, push, 1, kBlock);
   if (scene_.opaque > 0) frame.dispatch(scan_write_, push, scene_.opaque, kBlock);
-  frame.dispatch(draw_commands_, push, std::max(1u, scene_.meshes + transparent), kBlock);
+  frame.dispatch(draw_commands_, push, std::max(1u, scene_.meshes + transparent_count), kBlock);
 }
 
 }  // namespace sightline::vulkan

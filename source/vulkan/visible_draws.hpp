@@ -18,11 +18,21 @@ class VisibleDraws {
 public:
   VisibleDraws(Device& device, const SceneBuffers& scene);
 
-  /// Lists the objects o with (flags[o] & mask) == value. `transparent_order` holds all transparent objects
-  /// as they are to be drawn; 0 leaves the transparent commands out of date.
-  void build(const Recorder& frame, vk::DeviceAddress flags, std::uint32_t mask, std::uint32_t value,
+  struct Condition {
+    std::uint32_t mask = ~0u, value = 1;  ///< (flags[o] & mask) == value
+  };
+  /// Lists the objects that meet a condition, the transparent ones by one of their own. `transparent_order`
+  /// holds all transparent objects as they are to be drawn; 0 leaves the transparent commands as they were.
+  void build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque, Condition transparent,
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const;
+  void build(const Recorder& frame, vk::DeviceAddress flags, Condition condition,
+             vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
+    build(frame, flags, condition, condition, transparent_order, out);
+  }
+  /// Lists every object.
+  static constexpr Condition kAll{0, 0};
 
+  /// Room for all objects; as yet the commands draw nothing.
   [[nodiscard]] DrawBuffers make_buffers(Device& device) const;
 
 private:

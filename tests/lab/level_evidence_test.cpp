@@ -65,6 +65,16 @@ TEST_P(RealLevel, WalkStaysInOpenSpaceAndGoesSomewhere) {
 INSTANTIATE_TEST_SUITE_P(OpenArena, RealLevel, testing::Values("oasago2", "oa_dm1", "aggressor"),
                          [](const auto& test) { return std::string(test.param); });
 
+TEST(LevelEvidence, TableHasEveryReason) {
+  LevelEvidence evidence;
+  evidence.eyes = 7, evidence.objects_seen = 1000, evidence.objects_denied = 15,
+  evidence.objects = {1, 2, 3, 4, 5};
+  const Table table = evidence_table(evidence);
+  ASSERT_EQ(table.rows.size(), 1 + kPvsExceptions);
+  EXPECT_EQ(table.rows[0][1], "985");
+  for (std::size_t i = 0; i < kPvsExceptions; ++i) EXPECT_EQ(table.rows[i + 1][1], std::to_string(i + 1));
+}
+
 TEST(LevelEvidence, NeedsALevel) {
   const Scene scene = or_throw(generate_world("regular?columns=2&rows=2"));
   const EmbreeJudge judge(scene);

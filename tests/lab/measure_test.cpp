@@ -162,7 +162,7 @@ TEST(Verdict, TiesAreCalledTies) {
   const std::string text = verdict(
       two_views({row("first", Guarantee::exact, 0, 1e6, 1), row("second", Guarantee::exact, 0, 1e6, 1.01)}));
   EXPECT_THAT(text, HasSubstr("wants first"));
-  EXPECT_THAT(text, HasSubstr("second is as good within 5 %"));
+  EXPECT_THAT(text, HasSubstr("second comes within 5 % of that frame"));
 }
 
 TEST(Verdict, NamesNoneWhereAllLost) {

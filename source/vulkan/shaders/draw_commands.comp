@@ -18,6 +18,6 @@ void main() {
   const uint object = transparent_order.at[i];
   const MeshData mesh = meshes.at[objects.at[object].mesh];
   commands.at[mesh_count + i] =
-      CommandData(mesh.index_count, listed(object), mesh.first_index, mesh.first_vertex, opaque + i);
+      CommandData(mesh.index_count, meets(object, transparent_condition), mesh.first_index, mesh.first_vertex, opaque + i);
   list.at[opaque + i] = object;
 }

@@ -5,9 +5,10 @@ layout(push_constant, scalar) uniform Push {
   ObjectBuffer objects;
   CommandBuffer commands;
   WordBuffer transparent_order;
-  uint mask, value, opaque, mesh_count, transparent;
+  uvec2 opaque_condition, transparent_condition;  // mask, value
+  uint opaque, mesh_count, transparent;
 };
 
-uint listed(uint object) {
-  return (flags.at[object] & mask) == value ? 1 : 0;
+uint meets(uint object, uvec2 condition) {
+  return (flags.at[object] & condition.x) == condition.y ? 1 : 0;
 }

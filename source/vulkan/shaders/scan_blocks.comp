@@ -9,7 +9,7 @@ shared uint partial[256];
 
 void main() {
   const uint slot = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;
-  const uint mine = slot < opaque ? listed(slot_objects.at[slot]) : 0;
+  const uint mine = slot < opaque ? meets(slot_objects.at[slot], opaque_condition) : 0;
   partial[lane] = mine;
   barrier();
   for (uint step = 1; step < 256; step *= 2) {

@@ -10,5 +10,5 @@ void main() {
   const uint object = slot_objects.at[slot];
   const uint place = prefix.at[slot] + sums.at[slot / 256];
   prefix.at[slot] = place;
-  if (listed(object) != 0) list.at[place] = object;
+  if (meets(object, opaque_condition) != 0) list.at[place] = object;
 }

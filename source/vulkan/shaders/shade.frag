@@ -1,6 +1,8 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "shading.h"
+
 layout(push_constant, scalar) uniform Push {
   ViewBuffer view;
 };
@@ -11,13 +13,5 @@ layout(location = 3) in flat uint colour;
 layout(location = 0) out vec4 shade;
 
 void main() {
-  const vec4 base = unpackUnorm4x8(colour);
-  const vec3 eye = view.view.eye.xyz;
-  const vec3 to_eye = view.view.eye.w > 0 ? -view.view.forward.xyz : eye - world_position;
-  vec3 n = normalize(world_normal);
-  if (dot(n, to_eye) < 0) n = -n;  // both faces are drawn
-  const vec3 sun = normalize(vec3(0.45, 0.75, 0.5));
-  const vec3 sky = mix(vec3(0.30, 0.27, 0.25), vec3(0.50, 0.58, 0.70), 0.5 + 0.5 * n.y);
-  const vec3 light = sky + vec3(0.95, 0.88, 0.75) * max(dot(n, sun), 0);
-  shade = vec4(base.rgb * light, base.a);
+  shade = shade_of(view.view, world_position, world_normal, colour);
 }

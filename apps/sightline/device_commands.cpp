@@ -1,0 +1,82 @@
+// compare and verify on a Vulkan device.
+#include "device.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include <sightline/error.hpp>
+#include <sightline/io.hpp>
+
+#include "command.hpp"
+#include "lab/device/device_measure.hpp"
+#include "lab/device/device_table.hpp"
+#include "lab/random_views.hpp"
+
+namespace sightline::app {
+
+namespace {
+
+std::vector<std::string> methods_of(const DeviceCall& call, const Scene& scene) {
+  std::vector<std::string> names =
+      call.methods.empty() ? methods::methods_on_device(scene) : split(call.methods);
+  if (names.empty()) throw Error("--methods: expected at least one method");
+  return names;
+}
+
+}  // namespace
+
+std::unique_ptr<vulkan::Device> open_device(const std::string& name) {
+  vulkan::DeviceOptions options;
+  options.choice = name == "any" ? "" : name;
+  options.validation = std::getenv("SIGHTLINE_VALIDATION") != nullptr;
+  return std::make_unique<vulkan::Device>(options);
+}
+
+void expect_silence(const vulkan::Device& device) {
+  if (device.messages() > 0) {
+    throw Error(
+        fmt::format("validation: {} messages, the first: {}", device.messages(), device.first_message()));
+  }
+}
+
+int compare_on_device(const DeviceCall& call) {
+  const auto device = open_device(call.device);
+  Scene scene = load_scene(call.scene);
+  const std::string path_name = call.path.empty() ? std::string(lab::default_path(scene)) : call.path;
+  const lab::CameraPath path = lab::make_path(scene, path_name, call.views);
+  lab::Workbench bench(*device, scene, methods_of(call, scene));
+  lab::DeviceMeasureOptions options;
+  options.measure.width = call.width, options.measure.height = call.height;
+  options.measure.repeats = 5;
+  options.moving = call.moving;
+  const lab::Comparison comparison = lab::compare_on_device(bench, path, options, progress("compare"));
+  expect_silence(*device);
+  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}x{} on {}\n\n", scene.name, scene.size(),
+             triangle_count(scene), path.name, path.cameras.size(), call.width, call.height,
+             comparison.device);
+  fmt::print("{}\n{}\n", lab::render(lab::device_table(comparison)), lab::device_verdict(comparison));
+  if (!call.json.empty()) lab::write_json(call.json, comparison);
+  return Exit::done;
+}
+
+int verify_on_device(const DeviceCall& call) {
+  const auto device = open_device(call.device);
+  Scene scene = load_scene(call.scene);
+  lab::Workbench bench(*device, scene, methods_of(call, scene));
+  const std::vector<Camera> cameras = lab::random_cameras(scene, call.views, call.seed);
+  const lab::DeviceVerification result =
+      lab::verify_on_device(bench, cameras, call.width, call.height, call.moving, progress("verify"));
+  expect_silence(*device);
+  fmt::print(
+      "{}: {} random views of {}x{}, seed {}, each as a camera cut and once more, {:g} of the objects "
+      "moving, on {}\n\n",
+      scene.name, result.views, call.width, call.height, call.seed, call.moving, device->info().name);
+  fmt::print("{}", lab::render(lab::verification_table(result)));
+  for (const lab::MethodVerdict& m : result.methods) {
+    for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
+  }
+  return result.passed() ? Exit::done : Exit::check_failed;
+}
+
+}  // namespace sightline::app

@@ -1,0 +1,265 @@
+// Culling a world: the regions and blocks are sorted here, one by one; what is left goes to the SIMD passes,
+// in as many jobs as the caller has threads.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include <sightline/culling.hpp>
+#include <sightline/occlusion.hpp>
+#include <sightline/projection.hpp>
+
+#include "culling/world_cull.hpp"
+#include "culling/world_state.hpp"
+#include "geometry/linear.hpp"
+
+namespace sightline {
+
+namespace culling {
+
+using namespace geometry;
+
+struct Job {
+  std::size_t first_entry = 0, entries = 0;
+  std::size_t first_output = 0;
+  PassCounts counts;
+};
+
+struct CullerState {
+  std::vector<const ChunkMap*> maps;
+  std::vector<SectorView> views;
+  std::vector<BlockEntry> entries;
+  std::array<Job, kMaxJobs> jobs;
+  /// Last frame's failing plane, one a view and block: the next frame tries it first.
+  std::vector<std::vector<std::uint8_t>> failed;  // by sector
+
+  PassInput input;
+  ObjectId* out = nullptr;
+  std::uint8_t* masks = nullptr;
+};
+
+namespace {
+
+std::uint8_t side_along(float normal, std::uint8_t axis, bool far) {
+  return static_cast<std::uint8_t>(axis + ((normal >= 0) != far ? 3 : 0));
+}
+
+SectorView sector_view(const WorldView& view, const Sector& sector, const CullOptions& options,
+                       const OcclusionBuffer* occlusion) {
+  SectorView out;
+  const glm::dvec3 offset(sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
+                          sector.origin.z - view.origin.z);
+  glm::dmat4 moved(1.0);
+  moved[3] = glm::dvec4(offset, 1.0);
+  const glm::dmat4 to_eye = to_double(view.view.world_to_eye) * moved;
+  const glm::dmat4 clip = to_double(view.view.eye_to_clip) * to_eye;
+  out.frustum = frustum_of(clip, view_direction(view.view), sector.map->nodes()[0].bounds);
+  for (std::size_t p = 0; p < Frustum::sides; ++p) {
+    const Vec3& n = out.frustum.planes[p].normal;
+    out.near_side[p] = {side_along(n.x, 0, false), side_along(n.y, 1, false), side_along(n.z, 2, false)};
+    out.far_side[p] = {side_along(n.x, 0, true), side_along(n.y, 1, true), side_along(n.z, 2, true)};
+  }
+  out.eye = to_vec3(glm::dvec3(glm::inverse(to_eye)[3]));
+  if (options.min_area > 0) {
+    const Projector projector = make_projector(view.view, {});
+    out.orthographic = projector.orthographic;
+    out.area_scale = std::numbers::pi_v<float> * projector.pixels_per_metre * projector.pixels_per_metre /
+                     options.min_area;
+  }
+  if (occlusion) {
+    out.occluders = &occlusion->tiles();
+    out.projection = eye_projection(occlusion->tiles().view, sector.origin);
+  }
+  return out;
+}
+
+// The planes among `planes` that the box crosses, or kOutside; `failed` is tried first, and remembers.
+PlaneSet classify(const Frustum& frustum, const Box& box, PlaneSet planes, std::uint8_t* failed) {
+  const auto far_enough = [&](int p, bool far) {
+    const Plane& plane = frustum.planes[static_cast<std::size_t>(p)];
+    const bool x = (plane.normal.x >= 0) != far, y = (plane.normal.y >= 0) != far,
+               z = (plane.normal.z >= 0) != far;
+    return signed_distance(plane, x ? box.max.x : box.min.x, y ? box.max.y : box.min.y,
+                           z ? box.max.z : box.min.z) >= 0;
+  };
+  if (failed && *failed < Frustum::sides && (planes >> *failed & 1) && !far_enough(*failed, false))
+    return kOutside;
+  PlaneSet crossing = 0;
+  for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
+    const int p = std::countr_zero(rest);
+    if (!far_enough(p, false)) {
+      if (failed) *failed = static_cast<std::uint8_t>(p);
+      return kOutside;
+    }
+    if (!far_enough(p, true)) crossing |= static_cast<PlaneSet>(1u << p);
+  }
+  return crossing;
+}
+
+using ViewPlanes = std::array<PlaneSet, kMaxViews>;
+
+// The region tree of one sector, depth first.
+class RegionWalk {
+public:
+  RegionWalk(CullerState& state, std::uint32_t sector, std::size_t views) noexcept
+      : state_(state), sector_(sector), views_(views), map_(*state.maps[sector]) {}
+
+  std::uint64_t run() noexcept {
+    ViewPlanes all{};
+    all.fill(kAllPlanes);
+    visit(0, all);
+    return visited_;
+  }
+
+private:
+  bool narrow(const Box& box, ViewPlanes& planes, std::uint8_t* failed) const noexcept {
+    bool any = false;
+    for (std::size_t v = 0; v < views_; ++v) {
+      if (planes[v] == kOutside) continue;
+      if (planes[v] != 0) {
+        const Frustum& frustum = state_.views[sector_ * views_ + v].frustum;
+        planes[v] = classify(frustum, box, planes[v], failed ? failed + v : nullptr);
+      }
+      any = any || planes[v] != kOutside;
+    }
+    return any;
+  }
+
+  void visit(std::uint32_t index, ViewPlanes planes) noexcept {
+    const ChunkMap::Node& node = map_.nodes()[index];
+    ++visited_;
+    if (node.objects == 0 || !narrow(node.bounds, planes, nullptr)) return;
+    for (const std::uint32_t block : node.blocks) {
+      ++visited_;
+      ViewPlanes narrowed = planes;
+      if (!narrow(map_.blocks()[block].box, narrowed, &state_.failed[sector_][block * kMaxViews])) continue;
+      state_.entries.push_back({sector_, block, narrowed});
+    }
+    if (node.first_child == ChunkMap::kNone) return;
+    for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
+  }
+
+  CullerState& state_;
+  std::uint32_t sector_;
+  std::size_t views_;
+  const ChunkMap& map_;
+  std::uint64_t visited_ = 0;
+};
+
+void run_job(void* data, std::uint32_t index) {
+  auto& state = *static_cast<CullerState*>(data);
+  Job& job = state.jobs[index];
+  const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
+  job.counts = cull_blocks(state.input, entries, state.out + job.first_output,
+                           state.masks ? state.masks + job.first_output : nullptr);
+}
+
+// Parts of about equally many objects; each writes to where it would stand if all were visible.
+std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
+  const auto objects_of = [&](const BlockEntry& e) {
+    return state.maps[e.sector]->blocks()[e.block].objects;
+  };
+  std::size_t total = 0;
+  for (const BlockEntry& entry : state.entries) total += objects_of(entry);
+  std::uint32_t jobs = 0;
+  std::size_t before = 0;
+  for (std::size_t e = 0; e < state.entries.size(); ++e) {
+    if (jobs == 0 || (jobs < threads && before >= total * jobs / threads)) {
+      state.jobs[jobs] = {e, 0, before + jobs * kCullPadding, {}};
+      ++jobs;
+    }
+    ++state.jobs[jobs - 1].entries;
+    before += objects_of(state.entries[e]);
+  }
+  return jobs;
+}
+
+CullError check_call(const World& world, std::span<const WorldView> views, const CullOptions& options,
+                     std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
+  if (views.empty() || views.size() > kMaxViews) return CullError::views;
+  if (!(options.min_area >= 0) || !std::isfinite(options.min_area)) return CullError::options;
+  if (!options.occlusion.empty() && options.occlusion.size() != views.size()) return CullError::options;
+  for (const OcclusionBuffer* buffer : options.occlusion) {
+    if (buffer && buffer->width() == 0) return CullError::options;  // begin() was never called
+  }
+  if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs) return CullError::options;
+  const std::size_t needed = cull_capacity(world, options);
+  if (visible.size() < needed || (!masks.empty() && masks.size() < needed)) return CullError::buffer;
+  for (const WorldView& view : views) {
+    const WorldPoint& o = view.origin;
+    const bool near =
+        std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach;
+    if (!near || sightline::check(view.view)) return CullError::view;
+  }
+  return CullError::none;
+}
+
+}  // namespace
+}  // namespace culling
+
+std::size_t cull_capacity(const World& world, const CullOptions& options) noexcept {
+  return world.size() + kCullPadding * std::max(options.jobs.threads, 1u);
+}
+
+Culler::Culler() : state_(std::make_unique<culling::CullerState>()) {}
+Culler::~Culler() = default;
+Culler::Culler(Culler&&) noexcept = default;
+Culler& Culler::operator=(Culler&&) noexcept = default;
+
+CullResult Culler::cull(const World& world, std::span<const WorldView> views, const CullOptions& options,
+                        std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
+  CullResult result;
+  result.error = culling::check_call(world, views, options, visible, masks);
+  if (result.error != CullError::none) return result;
+
+  culling::CullerState& state = *state_;
+  const auto& sectors = world.state().sectors;
+  state.maps.clear(), state.views.clear(), state.entries.clear();
+  if (state.failed.size() < sectors.size()) state.failed.resize(sectors.size());
+  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
+    const auto& map = *sectors[s].map;
+    state.maps.push_back(&map);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
+      state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
+    }
+    if (state.failed[s].size() < map.blocks().size() * kMaxViews) {
+      state.failed[s].resize(map.blocks().size() * kMaxViews, 0);
+    }
+    if (map.size() > 0) result.nodes_visited += culling::RegionWalk(state, s, views.size()).run();
+  }
+
+  state.input = {state.maps, state.views, views.size(), !masks.empty()};
+  state.out = visible.data();
+  state.masks = masks.empty() ? nullptr : masks.data();
+  const std::uint32_t threads = options.jobs.run ? options.jobs.threads : 1;
+  const std::uint32_t jobs = culling::split_work(state, threads);
+  if (jobs > 1) {
+    options.jobs.run(options.jobs.user, jobs, culling::run_job, &state);
+  } else if (jobs == 1) {
+    culling::run_job(&state, 0);
+  }
+  for (std::uint32_t j = 0; j < jobs; ++j) {
+    const culling::Job& job = state.jobs[j];
+    if (job.first_output != result.count) {
+      std::memmove(state.out + result.count, state.out + job.first_output,
+                   job.counts.written * sizeof(ObjectId));
+      if (state.masks)
+        std::memmove(state.masks + result.count, state.masks + job.first_output, job.counts.written);
+    }
+    result.count += job.counts.written;
+    result.tested += job.counts.tested;
+    result.nodes_visited += job.counts.chunks;
+    result.culled_occlusion += job.counts.occluded;
+  }
+  return result;
+}
+
+CullResult cull(World& world, std::span<const WorldView> views, const CullOptions& options,
+                std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
+  return world.state().culler.cull(world, views, options, visible, masks);
+}
+
+}  // namespace sightline

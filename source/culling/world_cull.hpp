@@ -1,0 +1,57 @@
+// The inner passes of culling a world: blocks -> chunks -> objects, in SIMD.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include <sightline/frustum.hpp>
+#include <sightline/world.hpp>
+
+#include "culling/depth_tiles.hpp"
+#include "partition/chunk_map.hpp"
+
+namespace sightline::culling {
+
+/// Bit p: the box crosses plane p of the view's frustum. No bit: it is inside. kOutside: the view misses it.
+using PlaneSet = std::uint8_t;
+inline constexpr PlaneSet kAllPlanes = 0x3f;
+inline constexpr PlaneSet kOutside = 0x80;
+
+/// One view as a sector sees it: relative to the sector's origin.
+struct SectorView {
+  Frustum frustum;
+  /// For each plane the sides of a box (as ChunkMap::Block orders them) farthest along its normal, and their
+  /// opposites.
+  std::array<std::array<std::uint8_t, 3>, Frustum::sides> near_side{}, far_side{};
+  Vec3 eye;
+  float area_scale = 0;  ///< π·(pixels per metre)² / min_area; 0: contribution is not tested
+  bool orthographic = false;
+  const DepthTiles* occluders = nullptr;  ///< null: occlusion is not tested
+  EyeProjection projection;               ///< of the occluders' view, about the sector's origin
+};
+
+/// A block that some view may see.
+struct BlockEntry {
+  std::uint32_t sector = 0, block = 0;
+  std::array<PlaneSet, kMaxViews> planes{};
+};
+
+struct PassCounts {
+  std::size_t written = 0;
+  std::uint64_t tested = 0, chunks = 0, occluded = 0;
+};
+
+/// The maps and the views of a cull; views lie sector by sector.
+struct PassInput {
+  std::span<const partition::ChunkMap* const> maps;  ///< one a sector
+  std::span<const SectorView> views;                 ///< sectors × view_count
+  std::size_t view_count = 1;
+  bool masks = false;
+};
+
+/// Writes the visible objects of the entries; `out` and, where masks are wanted, `masks` have room for all
+/// objects of the entries' blocks and kCullPadding more.
+PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+                       std::uint8_t* masks) noexcept;
+
+}  // namespace sightline::culling

@@ -1,0 +1,67 @@
+// What stands behind sightline::World: sectors, each a chunk map around a double-precision origin.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include <sightline/world.hpp>
+
+#include "partition/chunk_map.hpp"
+
+namespace sightline::culling {
+
+/// Metres. A float within half of it keeps 0.12 mm; and 10⁷ m are a whole number of sectors, as are all round
+/// decimal distances from there on, so that a world shifted by one keeps its bits.
+inline constexpr double kSectorSide = 3200;
+
+using partition::ChunkMap;
+
+struct SectorCell {
+  std::int64_t x = 0, y = 0, z = 0;
+  bool operator==(const SectorCell&) const = default;
+};
+
+struct SectorCellHash {
+  std::size_t operator()(const SectorCell& c) const noexcept {
+    std::uint64_t h = 0;
+    for (const std::int64_t v : {c.x, c.y, c.z}) {
+      h = (h ^ static_cast<std::uint64_t>(v)) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+    return h;
+  }
+};
+
+struct Sector {
+  WorldPoint origin;
+  std::unique_ptr<ChunkMap> map;  ///< relative to the origin; never null
+};
+
+/// In WorldState::objects, one an id.
+struct WorldObject {
+  std::uint32_t sector = ChunkMap::kNone;  ///< kNone: the id is free
+  std::uint32_t generation = 0;
+};
+
+struct WorldState {
+  std::vector<Sector> sectors;
+  std::unordered_map<SectorCell, std::uint32_t, SectorCellHash> sector_of_cell;
+  ChunkMap::Locations locations;  ///< shared by all sectors' maps
+  std::vector<WorldObject> objects;
+  std::vector<ObjectId> free_ids;
+  std::size_t size = 0;
+  Culler culler;  ///< of the free function cull()
+
+  std::uint32_t sector_at(const SectorCell& cell);
+  /// Only the sectors that changed have anything to do.
+  void tighten() noexcept;
+};
+
+/// The sector that holds a box's centre.
+SectorCell sector_cell(const WorldBox& box) noexcept;
+/// The box seen from an origin, rounded outwards.
+Box relative_box(const WorldBox& box, const WorldPoint& origin) noexcept;
+
+}  // namespace sightline::culling

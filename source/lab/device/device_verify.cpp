@@ -1,0 +1,74 @@
+#include "lab/device/device_verify.hpp"
+
+#include <sightline/error.hpp>
+
+#include "lab/loss.hpp"
+
+namespace sightline::lab {
+
+namespace {
+
+constexpr std::size_t kExamples = 10;
+
+std::uint64_t count_different(const vulkan::Picture& a, const vulkan::Picture& b) {
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] != b.pixels[i];
+  return count;
+}
+
+}  // namespace
+
+bool DeviceVerification::passed() const noexcept {
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    if (methods[m].guarantee == Guarantee::exact && different_pixels[m] != 0) return false;
+  }
+  return Verification::passed();
+}
+
+DeviceVerification verify_on_device(Workbench& bench, std::span<const Camera> cameras, std::uint32_t width,
+                                    std::uint32_t height, double moving, const Progress& progress) {
+  DeviceVerification result;
+  result.scene = bench.scene().name;
+  const auto contestants = bench.contestants();
+  for (const DeviceContestant& contestant : contestants) {
+    MethodVerdict verdict;
+    verdict.method = contestant.name;
+    verdict.guarantee = contestant.method->guarantee();
+    result.methods.push_back(std::move(verdict));
+  }
+  result.different_pixels.resize(contestants.size());
+  Mover mover(bench.scene(), moving, 1);
+  Frame frame;
+  for (std::size_t v = 0; v < cameras.size(); ++v) {
+    const View view = or_throw(make_view(cameras[v], width, height));
+    for (int settled = 0; settled < 2; ++settled) {
+      if (moving > 0) bench.update(mover.move());
+      const ItemBuffer truth = bench.judge(view);
+      bench.draw(bench.reference(), view);
+      const vulkan::Picture expected = bench.renderer().picture();
+      for (std::size_t m = 0; m < contestants.size(); ++m) {
+        bench.draw(*contestants[m].method, view);
+        const std::uint64_t different = count_different(bench.renderer().picture(), expected);
+        contestants[m].method->read_back(frame);
+        const Loss loss = compare_to_truth(truth, frame.visible);
+        MethodVerdict& verdict = result.methods[m];
+        result.different_pixels[m] += different;
+        verdict.kept += frame.visible.size();
+        verdict.visible += truth.visible_count();
+        verdict.lost_objects += loss.lost.size();
+        verdict.lost_pixels += loss.lost_pixels;
+        verdict.excess_objects += loss.excess.size();
+        if (loss.lost.empty()) continue;
+        ++verdict.views_with_loss;
+        if (verdict.examples.size() < kExamples) {
+          verdict.examples.push_back({v, cameras[v], width, height, loss.lost.front(), loss.lost_pixels});
+        }
+      }
+    }
+    ++result.views;
+    if (progress) progress(v + 1, cameras.size());
+  }
+  return result;
+}
+
+}  // namespace sightline::lab

@@ -1,0 +1,60 @@
+// The contract of culling methods that work on a Vulkan device: what Method is on the CPU.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <sightline/frame.hpp>
+#include <sightline/method.hpp>
+#include <sightline/parameters.hpp>
+
+#include "vulkan/renderer.hpp"
+
+namespace sightline::methods {
+
+/// One method at work on one renderer's scene. The renderer outlives the method.
+class DeviceMethod {
+public:
+  virtual ~DeviceMethod() = default;
+  DeviceMethod() = default;
+  DeviceMethod(const DeviceMethod&) = delete;
+  DeviceMethod& operator=(const DeviceMethod&) = delete;
+
+  [[nodiscard]] virtual Guarantee guarantee() const noexcept = 0;
+  /// Told after Scene::move_object and Renderer::update of each of `objects`, before the next frame.
+  virtual void update(std::span<const ObjectId> objects) = 0;
+  /// Records culling and drawing, each in named passes. What is left in the targets is the picture.
+  virtual void record(vulkan::Recorder& frame) = 0;
+  /// What the last frame drew, ascending by id, and its counts; not part of a frame, for checking. Draws are
+  /// left empty: they stay on the device.
+  virtual void read_back(Frame& frame) = 0;
+};
+
+struct DeviceMethodInfo {
+  std::string_view name;
+  std::string_view paper;
+  std::string_view summary;
+  Guarantee guarantee;     ///< with default parameters
+  std::string_view needs;  ///< "" or the device feature it needs
+  std::span<const ParameterInfo> parameters;
+  std::unique_ptr<DeviceMethod> (*create)(vulkan::Renderer&, const Parameters&);
+};
+
+/// The methods that have a form of their own on the device.
+std::span<const DeviceMethodInfo> device_methods() noexcept;
+const DeviceMethodInfo* find_device_method(std::string_view name) noexcept;
+
+/// Makes a method from "NAME" or "NAME?key=value&…": its device form where there is one, else its CPU form,
+/// drawn by the renderer. Throws Error for unknown names, keys and values, and for what scene or device lack.
+std::unique_ptr<DeviceMethod> create_device_method(std::string_view specification,
+                                                   vulkan::Renderer& renderer);
+
+/// Any CPU method, drawn by the renderer.
+std::unique_ptr<DeviceMethod> draw_by_device(std::unique_ptr<Method> method, vulkan::Renderer& renderer);
+
+/// Names of all methods, of either form, that fit the scene, in the order of the documentation.
+std::vector<std::string> methods_on_device(const Scene& scene);
+
+}  // namespace sightline::methods

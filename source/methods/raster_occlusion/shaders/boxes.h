@@ -1,0 +1,112 @@
+// What culling shaders ask of a bounding box. Boxes are {centre, half extent}.
+
+// Rounding that a plane's value for a box may carry, four times over.
+float plane_slack(vec4 plane, vec3 centre, vec3 half_extent) {
+  return 1e-6 * (dot(abs(plane.xyz), abs(centre) + half_extent) + min(abs(plane.w), 1e30));
+}
+
+// Whether the box lies wholly behind a plane of the frustum.
+bool outside(ViewData view, vec3 centre, vec3 half_extent) {
+  for (int i = 0; i < 6; ++i) {
+    const vec4 plane = view.planes[i];
+    const float nearest = dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), half_extent);
+    if (nearest < -plane_slack(plane, centre, half_extent)) return true;
+  }
+  return false;
+}
+
+bool outside(ViewData view, vec4 sphere) {
+  for (int i = 0; i < 6; ++i) {
+    const vec4 plane = view.planes[i];
+    const float slack = plane_slack(plane, sphere.xyz, vec3(sphere.w));
+    if (dot(plane.xyz, sphere.xyz) + plane.w < -sphere.w - slack) return true;
+  }
+  return false;
+}
+
+// Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
+// raster test would not see it.
+bool reaches_near_plane(ViewData view, vec3 centre, vec3 half_extent) {
+  const vec4 plane = view.planes[4];
+  const float nearest = dot(plane.xyz, centre) + plane.w - dot(abs(plane.xyz), half_extent);
+  return nearest <= 4 * plane_slack(plane, centre, half_extent);
+}
+
+// The box grown by 1/32 pixel: more than the 1/256 pixel to which the rasteriser snaps vertices, of box and
+// mesh alike, so that no pixel of the mesh is missed at the box's rim, nor at a slant in depth. A depth bias
+// covers what is left.
+vec3 widened(ViewData view, vec3 centre, vec3 half_extent) {
+  float depth = 1;
+  if (view.eye.w == 0) {
+    depth = max(0, dot(view.forward.xyz, centre - view.eye.xyz) + dot(abs(view.forward.xyz), half_extent));
+  }
+  return half_extent + depth / (32 * view.pixels_per_metre) + 1e-6 * (abs(centre) + half_extent);
+}
+
+vec4 clip_position(ViewData view, vec3 at) {
+  return view.world_to_clip * vec4(at, 1);
+}
+
+vec3 corner(vec3 centre, vec3 half_extent, uint bits) {
+  return centre + half_extent * vec3((bits & 1) != 0 ? 1 : -1, (bits & 2) != 0 ? 1 : -1, (bits & 4) != 0 ? 1 : -1);
+}
+
+struct Footprint {
+  vec2 low, high;  // pixels, x right, y down, widened by rounding
+  float nearest;   // depth, 0 … 1, rounded towards the eye
+  bool whole;      // a corner lies at the eye plane: it may be anywhere
+};
+
+Footprint footprint(ViewData view, vec3 centre, vec3 half_extent) {
+  vec2 low = vec2(1e30), high = vec2(-1e30);
+  float nearest = view.reversed != 0 ? 0 : 1, widest = 0;
+  for (uint i = 0; i < 8; ++i) {
+    const vec4 clip = clip_position(view, corner(centre, half_extent, i));
+    if (!(clip.w > 2 * view.coordinate_error)) return Footprint(vec2(0), vec2(view.width, view.height), 0, true);
+    const vec3 at = clip.xyz / clip.w;
+    low = min(low, at.xy);
+    high = max(high, at.xy);
+    nearest = view.reversed != 0 ? max(nearest, at.z) : min(nearest, at.z);
+    widest = max(widest, 2 * view.coordinate_error / clip.w * (1 + max(abs(at.x), abs(at.y))));
+  }
+  const vec2 half_size = 0.5 * vec2(view.width, view.height);
+  const vec2 slack = widest * half_size + 1.0 / 64;
+  const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - slack, b = (vec2(high.x, -low.y) + 1) * half_size + slack;
+  const float away = 16.0 / 16777216;
+  nearest = view.reversed != 0 ? nearest + away * nearest : nearest - away;
+  return Footprint(a, b, nearest, false);
+}
+
+// Whether the rectangle, clipped to the image, holds a pixel centre.
+bool covers_sample(ViewData view, Footprint print) {
+  const vec2 size = vec2(view.width, view.height);
+  const vec2 low = max(print.low, vec2(0)), high = min(print.high, size);
+  return all(greaterThanEqual(floor(high + 0.5) - 0.5, low)) && all(greaterThanEqual(high, vec2(0.5)));
+}
+
+// Lee & Shin 2023, equation (1) with its misprint mended, px².
+float projected_area(ViewData view, vec4 sphere) {
+  float d = 1;
+  if (view.eye.w == 0) {
+    d = distance(view.eye.xyz, sphere.xyz);
+    if (d <= sphere.w) return 1e30;
+  }
+  const float radius = sphere.w * view.pixels_per_metre / d;
+  return 3.14159265 * radius * radius;
+}
+
+// Contribution culling, as the view asks for it.
+bool contributes(ViewData view, vec4 sphere, vec3 half_extent) {
+  if (view.contribution == 1) return covers_sample(view, footprint(view, sphere.xyz, half_extent));
+  if (view.contribution == 2) return projected_area(view, sphere) >= view.threshold;
+  return true;
+}
+
+// A corner of a square about the image's middle at the near plane, for boxes that must be marked without a
+// raster test: nothing can hide it.
+vec4 certain_mark(ViewData view, uint bits) {
+  const vec2 at = vec2((bits & 1) != 0 ? 2 : -2, (bits & 2) != 0 ? 2 : -2) / vec2(view.width, view.height);
+  return vec4(at, view.reversed, 1);
+}
+
+const vec4 kNowhere = vec4(2, 2, 2, 1);  // beyond the far plane and to the side

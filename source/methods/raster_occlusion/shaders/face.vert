@@ -1,0 +1,37 @@
+#version 460
+#include "vulkan/shared.h"
+
+#include "boxes.h"
+
+// Of a box in the list, the faces that look at the eye: at most three, 18 vertices.
+layout(push_constant, scalar) uniform Push {
+  ViewBuffer view_data;
+  BoxBuffer boxes;
+  WordBuffer marks;
+  WordBuffer list;
+};
+
+layout(location = 0) out flat uint id;
+
+const uint kSquare[6] = uint[](0, 1, 2, 2, 1, 3);
+
+void main() {
+  const uint turn = gl_VertexIndex % 18, axis = turn / 6, square = kSquare[turn % 6];
+  id = list.at[gl_VertexIndex / 18];
+  const ViewData view = view_data.view;
+  const BoxData box = boxes.at[id];
+  const vec3 centre = box.centre_radius.xyz;
+  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
+  const bool orthographic = view.eye.w > 0;
+  const float towards = orthographic ? -view.forward[axis] : view.eye[axis] - centre[axis];
+  const float reach = orthographic ? 0 : half_extent[axis];
+  if (abs(towards) <= reach) {
+    gl_Position = kNowhere;
+    return;
+  }
+  vec3 side;
+  side[axis] = towards > 0 ? 1 : -1;
+  side[(axis + 1) % 3] = (square & 1) != 0 ? 1 : -1;
+  side[(axis + 2) % 3] = (square & 2) != 0 ? 1 : -1;
+  gl_Position = clip_position(view, centre + half_extent * side);
+}

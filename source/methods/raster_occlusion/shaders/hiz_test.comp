@@ -1,0 +1,53 @@
+#version 460
+#include "vulkan/shared.h"
+
+#include "boxes.h"
+#include "state.h"
+layout(local_size_x = 256) in;
+
+// The nearest depth of a box against the farthest depths over its rectangle (Greene et al. 1993), in the level
+// where the rectangle is at most three texels wide.
+layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };
+
+layout(push_constant, scalar) uniform Push {
+  ViewBuffer view_data;
+  BoxBuffer boxes;
+  WordBuffer marks, state;
+  FloatBuffer pyramid;
+  uint objects;
+};
+
+void main() {
+  const uint object = gl_GlobalInvocationID.x;
+  if (object >= objects || (state.at[object] & kInView) == 0) return;
+  const ViewData view = view_data.view;
+  const BoxData box = boxes.at[object];
+  const vec3 centre = box.centre_radius.xyz;
+  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
+  const Footprint print = footprint(view, centre, half_extent);
+  if (print.whole || reaches_near_plane(view, centre, half_extent)) {
+    marks.at[object] = 1;
+    return;
+  }
+  const uvec2 image = uvec2(view.width, view.height);
+  if (any(lessThan(print.high, vec2(0))) || any(greaterThan(print.low, vec2(image)))) return;
+  const uvec2 first = uvec2(clamp(floor(print.low), vec2(0), vec2(image - 1)));
+  const uvec2 last = uvec2(clamp(floor(print.high), vec2(0), vec2(image - 1)));
+  const uint span = max(last.x - first.x, last.y - first.y);
+  const uint level = span < 2 ? 0 : findMSB(span);
+  uint offset = 0;
+  uvec2 size = image;
+  for (uint i = 0; i < level; ++i) {
+    offset += size.x * size.y;
+    size = (size + 1) / 2;
+  }
+  for (uint y = first.y >> level; y <= last.y >> level; ++y) {
+    for (uint x = first.x >> level; x <= last.x >> level; ++x) {
+      const float farthest = pyramid.at[offset + y * size.x + x];
+      if (view.reversed != 0 ? print.nearest >= farthest : print.nearest <= farthest) {
+        marks.at[object] = 1;
+        return;
+      }
+    }
+  }
+}

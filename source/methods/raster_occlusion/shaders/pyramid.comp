@@ -1,0 +1,21 @@
+#version 460
+#include "vulkan/shared.h"
+layout(local_size_x = 256) in;
+
+// One level of the depth pyramid: the farthest of up to four depths below.
+layout(buffer_reference, scalar) buffer FloatBuffer { float at[]; };
+
+layout(push_constant, scalar) uniform Push {
+  FloatBuffer from, to;
+  uvec2 from_size, to_size;
+  uint reversed;
+};
+
+void main() {
+  if (gl_GlobalInvocationID.x >= to_size.x * to_size.y) return;
+  const uvec2 at = uvec2(gl_GlobalInvocationID.x % to_size.x, gl_GlobalInvocationID.x / to_size.x);
+  const uvec2 low = 2 * at, high = min(low + 1, from_size - 1);
+  const float a = from.at[low.y * from_size.x + low.x], b = from.at[low.y * from_size.x + high.x];
+  const float c = from.at[high.y * from_size.x + low.x], d = from.at[high.y * from_size.x + high.x];
+  to.at[gl_GlobalInvocationID.x] = reversed != 0 ? min(min(a, b), min(c, d)) : max(max(a, b), max(c, d));
+}

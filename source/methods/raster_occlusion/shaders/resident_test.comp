@@ -1,0 +1,44 @@
+#version 460
+#include "vulkan/shared.h"
+
+#include "boxes.h"
+#include "state.h"
+layout(local_size_x = 96) in;
+
+// One group a chunk that is in, one invocation an object: frustum and contribution; what is left goes to the
+// raster test, but for boxes at the near plane, which are seen untested.
+layout(buffer_reference, scalar) buffer TestBuffer {
+  uint vertex_count, instance_count, first_vertex, first_instance;  // VkDrawIndirectCommand
+};
+
+layout(push_constant, scalar) uniform Push {
+  ViewBuffer view_data;
+  BoxBuffer boxes;
+  WordBuffer marks;
+  WordBuffer list;
+  WordBuffer last_marks, state;
+  WordBuffer chunks_in;  // number of the chunk, bit 31: wholly in the frustum
+  WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
+  TestBuffer test;
+};
+
+const uint kFaceVertices = 18;
+
+void main() {
+  const uint entry = chunks_in.at[gl_WorkGroupID.x];
+  const uint chunk = 97 * (entry & 0x7fffffff);
+  if (gl_LocalInvocationID.x >= chunk_objects.at[chunk]) return;
+  const uint object = chunk_objects.at[chunk + 1 + gl_LocalInvocationID.x];
+  const ViewData view = view_data.view;
+  const BoxData box = boxes.at[object];
+  const vec3 centre = box.centre_radius.xyz;
+  const vec3 half_extent = widened(view, centre, box.half_extent.xyz);
+  if ((entry & 0x80000000) == 0 && outside(view, centre, half_extent)) return;
+  if (view.contribution != 0 && !contributes(view, box.centre_radius, half_extent)) return;
+  state.at[object] = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
+  if (reaches_near_plane(view, centre, half_extent)) {
+    marks.at[object] = 1;
+  } else {
+    list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;
+  }
+}

@@ -1,0 +1,30 @@
+#version 460
+#include "vulkan/shared.h"
+
+#include "boxes.h"
+layout(local_size_x = 256) in;
+
+// Per object: bounding sphere against six planes, then contribution.
+layout(push_constant, scalar) uniform Push {
+  ViewBuffer view_data;
+  BoxBuffer boxes;
+  WordBuffer marks;
+  WordBuffer counters;  // culled by frustum, by contribution
+  uint objects;
+};
+
+void main() {
+  const uint object = gl_GlobalInvocationID.x;
+  if (object >= objects) return;
+  const ViewData view = view_data.view;
+  const BoxData box = boxes.at[object];
+  uint kept = 1;
+  if (outside(view, box.centre_radius)) {
+    kept = 0;
+    atomicAdd(counters.at[0], 1);
+  } else if (view.contribution != 0 && !contributes(view, box.centre_radius, box.half_extent.xyz)) {
+    kept = 0;
+    atomicAdd(counters.at[1], 1);
+  }
+  marks.at[object] = kept;
+}

@@ -1,0 +1,39 @@
+// The frame of resident-chunk and hiz: what was visible last frame is drawn at once, everything in view is
+// tested against its depth, and only what is new is drawn after (Haar & Aaltonen 2015). Nothing is drawn
+// twice, but for ties: where an object drawn late lies at another's very depth, the order of drawing decides
+// the colour, so tiles that late objects touch are coloured once more in that order, at equal depth.
+#pragma once
+
+#include "methods/raster_occlusion/occlusion.hpp"
+
+namespace sightline::methods {
+
+class TwoPhase : public DeviceMethod {
+public:
+  TwoPhase(vulkan::Renderer& renderer, const culling::Contribution& contribution);
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
+  void record(vulkan::Recorder& frame) final;
+  void read_back(Frame& frame) final;
+
+protected:
+  /// Sets the state of every object that is in view (state.h), clears marks.
+  virtual void find_in_view(vulkan::Recorder& frame) = 0;
+  /// Marks objects in view that the depth so far does not hide.
+  virtual void test(vulkan::Recorder& frame) = 0;
+  virtual void count(CullStats& stats) = 0;
+
+  vulkan::Renderer& renderer_;
+  culling::Contribution contribution_;
+  vulkan::Buffer state_, marks_, last_marks_;
+
+private:
+  void settle_ties(vulkan::Recorder& frame);
+
+  vulkan::ComputePipeline new_tiles_, tied_;
+  vulkan::GraphicsPipeline tied_pipeline_;
+  vulkan::Buffer tiles_;
+  vulkan::DrawBuffers early_, late_;
+};
+
+}  // namespace sightline::methods

@@ -1,0 +1,89 @@
+// Device methods beside the picture without culling and the rasteriser's item buffer, frame by frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "methods/device_method.hpp"
+#include "scene/random.hpp"
+#include "vulkan/fixtures.hpp"
+
+namespace sightline {
+
+class Examination {
+public:
+  Examination(vulkan::Device& device, Scene& scene, const std::vector<std::string>& specifications)
+      : scene_(scene), renderer_(device, scene), judge_(renderer_), reference_(make("none")) {
+    for (const std::string& specification : specifications) {
+      methods_.push_back({specification, make(specification)});
+    }
+  }
+
+  vulkan::Renderer& renderer() { return renderer_; }
+
+  /// Moves that share of the objects a little.
+  void move(double share, scene::Random& random) {
+    moved_.clear();
+    const auto count = static_cast<std::uint32_t>(share * static_cast<double>(scene_.size()));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const ObjectId object = random.below(static_cast<std::uint32_t>(scene_.size()));
+      if (std::ranges::find(moved_, object) != moved_.end()) continue;
+      Affine transform = scene_.transform[object];
+      for (Vec4& row : transform.rows) row.w += random.between(-1, 1);
+      scene_.move_object(object, transform);
+      moved_.push_back(object);
+    }
+    renderer_.update(moved_);
+    reference_->update(moved_);
+    for (auto& [name, method] : methods_) method->update(moved_);
+  }
+
+  /// Every method's frame from the view: nothing lost, the same picture to the bit.
+  void look(const View& view, const std::string& where) {
+    const vulkan::ItemBuffer truth = judge_.render(view);
+    visible_ += static_cast<std::uint64_t>(std::ranges::count(truth.visible, 1));
+    renderer_.frame(view, [&](vulkan::Recorder& frame) { reference_->record(frame); });
+    const vulkan::Picture expected = renderer_.picture();
+    for (auto& [name, method] : methods_) {
+      renderer_.frame(view, [&](vulkan::Recorder& frame) { method->record(frame); });
+      const vulkan::Picture picture = renderer_.picture();
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < picture.pixels.size(); ++i) different += picture.pixels[i] != expected.pixels[i];
+      method->read_back(frame_);
+      kept_ += frame_.visible.size();
+      std::vector<std::uint8_t> kept(scene_.size());
+      for (const ObjectId object : frame_.visible) kept[object] = 1;
+      std::size_t lost = 0;
+      for (ObjectId object = 0; object < scene_.size(); ++object) lost += truth.visible[object] && !kept[object];
+      EXPECT_EQ(lost, 0u) << name << " lost objects " << where;
+      EXPECT_EQ(different, 0u) << name << " drew another picture " << where;
+    }
+  }
+
+  [[nodiscard]] std::uint64_t visible() const { return visible_; }
+  [[nodiscard]] std::uint64_t kept() const { return kept_; }
+  [[nodiscard]] const Frame& last_frame() const { return frame_; }
+
+private:
+  std::unique_ptr<methods::DeviceMethod> make(const std::string& specification) {
+    return methods::create_device_method(specification, renderer_);
+  }
+
+  struct Examined {
+    std::string name;
+    std::unique_ptr<methods::DeviceMethod> method;
+  };
+
+  Scene& scene_;
+  vulkan::Renderer renderer_;
+  vulkan::ItemBufferPass judge_;
+  std::unique_ptr<methods::DeviceMethod> reference_;
+  std::vector<Examined> methods_;
+  std::vector<ObjectId> moved_;
+  Frame frame_;
+  std::uint64_t visible_ = 0, kept_ = 0;
+};
+
+inline const std::vector<std::string> kOcclusionMethods{"roc", "hroc", "vertex-chunk", "resident-chunk", "hiz"};
+
+}  // namespace sightline

@@ -1,0 +1,108 @@
+// The same bits for any number of threads, any SIMD width, either depth direction, and anywhere.
+#include <gtest/gtest.h>
+
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include <sightline/world.hpp>
+
+#include "scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+std::uint64_t hash_of(std::uint64_t h, std::span<const std::uint8_t> bytes) {
+  for (const std::uint8_t byte : bytes) h = (h ^ byte) * 0x100000001b3u;
+  return h;
+}
+
+void run_threads(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 0; i < count; ++i) threads.emplace_back(job, data, i);
+  for (std::thread& thread : threads) thread.join();
+}
+
+// Multiples of 1/256 m, so that shifting by 10⁷ m is exact in a double.
+double coarse(float x) {
+  return std::floor(static_cast<double>(x) * 256) / 256;
+}
+
+struct Run {
+  std::uint32_t threads = 1;
+  Depth depth = Depth::standard;
+  double shift = 0;
+  float far_plane = 3000;
+};
+
+// Inserts, moves, removes and culls; the hash of all that was written.
+std::uint64_t hash_of_run(const Run& run) {
+  Random random(11);
+  const auto box = [&] {
+    const Vec3 at = random.inside({{-2500, -100, -2500}, {2500, 100, 2500}});
+    const double x = coarse(at.x) + run.shift, y = coarse(at.y), z = coarse(at.z) - run.shift;
+    const double w = coarse(random.between(0.1f, 9)), h = coarse(random.between(0.1f, 9));
+    return WorldBox{{x - w, y - h, z - w}, {x + w, y + h, z + w}};
+  };
+  World world;
+  std::vector<WorldBox> boxes(20000);
+  std::vector<Handle> handles(boxes.size());
+  for (WorldBox& b : boxes) b = box();
+  EXPECT_FALSE(world.insert(boxes, handles));
+  const CullOptions options{.min_area = 0, .occlusion = {}, .jobs = {run_threads, nullptr, run.threads}};
+  std::uint64_t h = 0xcbf29ce484222325u;
+  for (int frame = 0; frame < 12; ++frame) {
+    std::vector<Handle> some(handles.begin() + frame * 500, handles.begin() + frame * 500 + 1000);
+    for (std::size_t i = 0; i < some.size(); ++i) boxes[i] = box();
+    EXPECT_FALSE(world.move(some, std::span(boxes).first(some.size())));
+    std::vector<WorldView> views;
+    for (int v = 0; v < 1 + frame % 3; ++v) {
+      Camera camera;
+      camera.eye = {static_cast<float>(coarse(random.between(-900, 900))), 2,
+                    static_cast<float>(coarse(random.between(-900, 900)))};
+      camera.forward = random.direction();
+      camera.forward.y *= 0.2f;
+      camera.far_plane = run.far_plane;
+      camera.depth = run.depth;
+      views.push_back({*make_view(camera, 1280, 720), {run.shift, 0, -run.shift}});
+    }
+    std::vector<ObjectId> visible(cull_capacity(world, options));
+    std::vector<std::uint8_t> masks(visible.size());
+    const CullResult result =
+        cull(world, views, options, visible, frame % 2 ? std::span(masks) : std::span<std::uint8_t>());
+    EXPECT_EQ(result.error, CullError::none);
+    EXPECT_GT(result.count, 100u);
+    h = hash_of(h, {reinterpret_cast<const std::uint8_t*>(visible.data()), result.count * sizeof(ObjectId)});
+    if (frame % 2) h = hash_of(h, {masks.data(), result.count});
+  }
+  return h;
+}
+
+TEST(Determinism, SameBitsForThreadsTargetsDepthAndPlace) {
+  const std::uint64_t expected = hash_of_run({});
+  for (const std::uint32_t threads : {2u, 3u, 8u, 64u}) {
+    EXPECT_EQ(hash_of_run({.threads = threads}), expected) << threads << " threads";
+  }
+  EXPECT_EQ(hash_of_run({.shift = 1e7}), expected);
+  EXPECT_EQ(hash_of_run({.threads = 2, .shift = -1e7}), expected);
+  // A float matrix rounds a far plane of 3,000 m by metres, and standard depth's by more than reversed
+  // depth's; without one both matrices say the same frustum.
+  const float none = std::numeric_limits<float>::infinity();
+  const std::uint64_t endless = hash_of_run({.far_plane = none});
+  EXPECT_NE(endless, expected);
+  EXPECT_EQ(hash_of_run({.depth = Depth::reversed, .far_plane = none}), endless);
+  EXPECT_EQ(hash_of_run({.depth = Depth::reversed, .shift = 1e7, .far_plane = none}), endless);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    EXPECT_EQ(hash_of_run({}), expected) << hwy::TargetName(target);
+    EXPECT_EQ(hash_of_run({.threads = 2}), expected) << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,209 @@
+#include <sightline/world.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "culling/world_state.hpp"
+#include "geometry/linear.hpp"
+#include "scene/random.hpp"
+#include "support/random_views.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+WorldBox wide(const Box& b, const WorldPoint& by = {}) {
+  return {{b.min.x + by.x, b.min.y + by.y, b.min.z + by.z}, {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
+}
+
+// Least signed distance of the box's best corner over all planes, in double precision, from the matrices
+// alone.
+double depth_in(const WorldView& view, const WorldBox& b) {
+  using namespace geometry;
+  const glm::dmat4 rows =
+      glm::transpose(to_double(view.view.eye_to_clip) * to_double(view.view.world_to_eye));
+  double least = 1e300;
+  for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
+                                  rows[2], rows[3] - rows[2]}) {
+    const double length = glm::length(glm::dvec3(plane));
+    if (length < 1e-12 * std::fabs(plane.w)) continue;
+    const glm::dvec3 corner((plane.x >= 0 ? b.max.x : b.min.x) - view.origin.x,
+                            (plane.y >= 0 ? b.max.y : b.min.y) - view.origin.y,
+                            (plane.z >= 0 ? b.max.z : b.min.z) - view.origin.z);
+    least = std::min(least, (glm::dot(glm::dvec3(plane), corner) + plane.w) / length);
+  }
+  return least;
+}
+
+void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
+                  std::span<const WorldView> views, double tolerance) {
+  std::vector<ObjectId> visible(cull_capacity(world));
+  std::vector<std::uint8_t> masks(visible.size());
+  const CullResult with_masks = culler.cull(world, views, {}, visible, masks);
+  ASSERT_EQ(with_masks.error, CullError::none);
+  std::map<ObjectId, std::uint8_t> seen;
+  for (std::size_t i = 0; i < with_masks.count; ++i) {
+    ASSERT_TRUE(twin.contains(visible[i]));
+    ASSERT_NE(masks[i], 0);
+    ASSERT_TRUE(seen.emplace(visible[i], masks[i]).second) << "written twice: " << visible[i];
+  }
+  for (const auto& [id, box] : twin) {
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const double depth = depth_in(views[v], box);
+      const bool kept = seen.contains(id) && (seen[id] >> v & 1);
+      if (depth >= 0) ASSERT_TRUE(kept) << "lost object " << id << " in view " << v;
+      if (depth < -tolerance)
+        ASSERT_FALSE(kept) << "kept object " << id << " in view " << v << " at " << depth;
+    }
+  }
+  // The plain passes say the same, in the same order.
+  const CullResult plain = culler.cull(world, views, {}, visible);
+  ASSERT_EQ(plain.count, with_masks.count);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::vector<ObjectId> single(visible.size());
+    const CullResult one = culler.cull(world, views.subspan(v, 1), {}, single);
+    std::size_t expected = 0;
+    for (const auto& [id, mask] : seen) expected += mask >> v & 1;
+    ASSERT_EQ(one.count, expected);
+    for (std::size_t i = 0; i < one.count; ++i) ASSERT_TRUE(seen[single[i]] >> v & 1);
+  }
+}
+
+TEST(World, EqualsBruteForceAfterTenThousandRandomOperations) {
+  for (const double shift : {0.0, 1e7}) {
+    const WorldPoint origin{shift, 0, -shift};
+    Random random(7);
+    World world;
+    Culler culler;
+    std::map<ObjectId, WorldBox> twin;
+    std::vector<Handle> standing;
+    const Box around{{-4000, -300, -4000}, {4000, 300, 4000}};
+    for (int step = 0; step < 10000; ++step) {
+      const std::uint32_t dice = random.below(20);
+      const std::size_t batch = 1 + random.below(8);
+      std::vector<WorldBox> boxes;
+      for (std::size_t i = 0; i < batch; ++i) boxes.push_back(wide(test::random_box(random, around), origin));
+      if (dice < 9) {
+        std::vector<Handle> handles(batch);
+        ASSERT_FALSE(world.insert(boxes, handles));
+        for (std::size_t i = 0; i < batch; ++i) {
+          ASSERT_TRUE(twin.emplace(handles[i].index, boxes[i]).second);
+          standing.push_back(handles[i]);
+        }
+      } else if (dice < 17 && standing.size() > batch) {
+        std::vector<Handle> chosen;
+        for (std::size_t i = 0; i < batch; ++i) {
+          std::swap(standing[random.below(static_cast<std::uint32_t>(standing.size()))], standing.back());
+          chosen.push_back(standing.back());
+          standing.pop_back();
+        }
+        if (dice < 12) {
+          ASSERT_FALSE(world.move(chosen, boxes));
+          for (std::size_t i = 0; i < batch; ++i) twin[chosen[i].index] = boxes[i];
+          standing.insert(standing.end(), chosen.begin(), chosen.end());
+        } else {
+          ASSERT_FALSE(world.remove(chosen));
+          for (const Handle& handle : chosen) {
+            twin.erase(handle.index);
+            ASSERT_FALSE(world.contains(handle));
+          }
+        }
+      } else if (dice == 19 && step % 3 == 0) {
+        std::vector<WorldView> views;
+        for (std::size_t v = 1 + random.below(3); v > 0; --v)
+          views.push_back({test::random_view(random, around), origin});
+        expect_right(world, culler, twin, views, 0.02);
+        if (HasFatalFailure()) return;
+      }
+      ASSERT_EQ(world.size(), twin.size());
+    }
+    for (const Handle& handle : standing) {
+      const WorldBox stored = world.box(handle), &given = twin[handle.index];
+      ASSERT_LE(stored.min.x, given.min.x);
+      ASSERT_GE(stored.max.z, given.max.z);
+      ASSERT_NEAR(stored.min.x, given.min.x, 1e-3);
+      ASSERT_NEAR(stored.max.z, given.max.z, 1e-3);
+    }
+    for (const auto& sector : world.state().sectors) ASSERT_FALSE(sector.map->check());
+  }
+}
+
+TEST(World, FindsStaleHandlesOut) {
+  World world;
+  std::array<Handle, 2> first, second;
+  const std::array<WorldBox, 2> boxes{wide({{0, 0, 0}, {1, 1, 1}}), wide({{2, 0, 0}, {3, 1, 1}})};
+  ASSERT_FALSE(world.insert(boxes, first));
+  ASSERT_FALSE(world.remove(first));
+  ASSERT_FALSE(world.insert(boxes, second));
+  EXPECT_TRUE(world.contains(second[0]));
+  EXPECT_FALSE(world.contains(first[0]));
+  const Check moved = world.move(first, boxes);
+  ASSERT_TRUE(moved);
+  EXPECT_NE(moved->message.find("handle 0 of 2"), std::string::npos);
+  EXPECT_TRUE(world.remove(first));
+  EXPECT_TRUE(world.remove(std::array{second[0], second[0]}));
+  EXPECT_TRUE(world.contains(second[0]));  // nothing changed
+  EXPECT_EQ(world.size(), 2u);
+  EXPECT_FALSE(world.remove(second));
+}
+
+TEST(World, RefusesBadBoxesAndChangesNothing) {
+  World world;
+  std::array<Handle, 2> handles;
+  const double nan = std::nan("");
+  for (const WorldBox& bad : {WorldBox{{0, 0, 0}, {1, nan, 1}}, WorldBox{{2, 0, 0}, {1, 1, 1}},
+                              WorldBox{{-2e11, 0, 0}, {1, 1, 1}}, WorldBox{{0, 0, 0}, {INFINITY, 1, 1}}}) {
+    const std::array boxes{WorldBox{{0, 0, 0}, {1, 1, 1}}, bad};
+    const Check check = world.insert(boxes, handles);
+    ASSERT_TRUE(check);
+    EXPECT_NE(check->message.find("box 1 of 2"), std::string::npos);
+    EXPECT_EQ(world.size(), 0u);
+  }
+}
+
+TEST(World, RefusesBadCalls) {
+  World world;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  Random random(1);
+  WorldView view{test::random_view(random, {{-1, -1, -1}, {1, 1, 1}}), {}};
+  EXPECT_EQ(cull(world, {}, {}, visible).error, CullError::views);
+  EXPECT_EQ(cull(world, std::vector(kMaxViews + 1, view), {}, visible).error, CullError::views);
+  EXPECT_EQ(cull(world, {&view, 1}, {}, std::span(visible).first(1)).error, CullError::buffer);
+  EXPECT_EQ(cull(world, {&view, 1}, {.min_area = NAN}, visible).error, CullError::options);
+  EXPECT_EQ(cull(world, {&view, 1}, {}, visible).error, CullError::none);
+  view.origin.x = NAN;
+  EXPECT_EQ(cull(world, {&view, 1}, {}, visible).error, CullError::view);
+  view = {};
+  view.view.eye_to_clip.m[5] = 0;
+  EXPECT_EQ(cull(world, {&view, 1}, {}, visible).error, CullError::view);
+}
+
+TEST(World, DropsWhatCoversLessThanTheAreaAsked) {
+  World world;
+  std::vector<WorldBox> boxes;
+  for (int i = 1; i <= 200; ++i) boxes.push_back({{-0.5, -0.5, -5.0 * i - 0.5}, {0.5, 0.5, -5.0 * i + 0.5}});
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_FALSE(world.insert(boxes, handles));
+  const View view = *make_view(Camera{}, 1280, 720);
+  std::vector<ObjectId> visible(cull_capacity(world));
+  const auto expected = [&](float area) {
+    std::size_t count = 0;
+    for (int i = 1; i <= 200; ++i) {
+      const double scale = 720 / 2.0 / std::tan(0.5 * 1.04719755), d = 5.0 * i;
+      count += M_PI * 0.75 * scale * scale / (d * d) >= area;
+    }
+    return count;
+  };
+  const WorldView at{view, {}};
+  for (const float area : {1.0f, 4.0f, 100.0f}) {
+    EXPECT_EQ(cull(world, {&at, 1}, {.min_area = area}, visible).count, expected(area));
+  }
+  EXPECT_EQ(cull(world, {&at, 1}, {}, visible).count, 200u);
+}
+
+}  // namespace
+}  // namespace sightline
