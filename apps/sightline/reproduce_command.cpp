@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "device.hpp"
+#include "lab/reproduce/draw_calls.hpp"
 #include "lab/reproduce/object_frustum.hpp"
 #include "lab/reproduce/vertex_chunk.hpp"
 #include "page.hpp"
@@ -91,6 +92,30 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 
+int run_draw_calls(const Options& options) {
+  const auto opened = open_device(options.device.empty() ? "any" : options.device);
+  vulkan::Device& device = *opened;
+  const lab::DrawCallOptions how{.quick = options.quick};
+  fmt::print("Serpa, Serpa & Rodrigues on {} ({})\n\n", device.info().name, device.info().driver);
+  const lab::CallGrid grid = lab::measure_call_grid(device, how, progress("table 1"));
+  fmt::print("Table 1: random triangles in draw calls, {}x{}\n\n{}\n", how.width, how.height,
+             render(lab::table_of(grid)));
+  fmt::print("On this device a draw call costs {:.2f} µs, a triangle {:.0f} ns.\n", grid.call_us,
+             grid.triangle_ns);
+  std::vector<lab::LevelWalk> walks;
+  for (const lab::LevelChoice& level : lab::draw_call_levels()) {
+    walks.push_back(lab::walk_level(device, level, how, progress(level.kind)));
+    const lab::LevelWalk& walk = walks.back();
+    fmt::print("\n{}: {}, {} triangles, {} views of {}x{}\n\n{}\n{}\n{}\n{}", walk.level, walk.kind,
+               lab::format_count(static_cast<double>(walk.triangles)), walk.views, how.width, how.height,
+               render(lab::heights_table(walk)), render(lab::methods_table(walk)),
+               render(lab::submission_table(walk)), lab::findings(walk));
+    std::fflush(stdout);
+  }
+  if (!options.report.empty()) lab::write_draw_call_report(options.report, device.info().name, grid, walks);
+  return Exit::done;
+}
+
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit) {
@@ -116,6 +141,13 @@ void add_reproduce(CLI::App& app, int& exit) {
       ->type_name("NAME");
   on_run(chunks, exit, [options] { return run_vertex_chunk(*options); });
   add_ray_pvs(command, exit);
+  CLI::App& calls = *command.add_subcommand(
+      "draw-calls", "Serpa, Serpa & Rodrigues: triangles x draw calls, and walks through three game levels");
+  calls.add_flag("--quick", options->quick, "fewer views and repeats");
+  calls.add_option("--report", options->report, "also write an HTML page to DIR")->type_name("DIR");
+  calls.add_option("--device", options->device, "Vulkan device: its number or part of its name")
+      ->type_name("NAME");
+  on_run(calls, exit, [options] { return run_draw_calls(*options); });
 }
 
 }  // namespace sightline::app

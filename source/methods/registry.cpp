@@ -22,7 +22,8 @@ std::span<const MethodInfo> cpu_methods() noexcept {
   static const std::vector<MethodInfo> kMethods = [] {
     std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked};
     all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
-    all.insert(all.end(), {kClusterCone, kToca, kBoca, kWideRays, kTrianglePvs, kGuided, kLevelPvs, kBaked});
+    all.insert(all.end(),
+               {kClusterCone, kAdaptive, kToca, kBoca, kWideRays, kTrianglePvs, kGuided, kLevelPvs, kBaked});
     return all;
   }();
   return kMethods;

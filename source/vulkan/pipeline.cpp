@@ -46,6 +46,7 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
   const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, state.topology};
   const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
   vk::PipelineRasterizationStateCreateInfo raster;
+  raster.cullMode = state.cull_back ? vk::CullModeFlagBits::eBack : vk::CullModeFlagBits::eNone;
   raster.depthBiasEnable = VK_TRUE;
   raster.lineWidth = 1;
   const vk::PipelineMultisampleStateCreateInfo samples;

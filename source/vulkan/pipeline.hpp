@@ -32,9 +32,10 @@ struct GraphicsState {
   vk::Format colour = vk::Format::eUndefined;  ///< of the one colour attachment, if there is one
   bool blend = false;
   bool depth_write = true;
+  bool cull_back = false;  ///< drops triangles that run clockwise as seen
 };
 
-/// Draws with a depth attachment, both faces. Viewport, scissor, the depth comparison and the depth bias are
+/// Draws with a depth attachment. Viewport, scissor, the depth comparison and the depth bias are
 /// dynamic; Recorder::bind sets them.
 class GraphicsPipeline {
 public:

@@ -74,6 +74,9 @@ layout(buffer_reference, scalar) readonly buffer MeshBuffer {
 layout(buffer_reference, scalar) buffer CommandBuffer {
   CommandData at[];
 };
+layout(buffer_reference, scalar) readonly buffer PositionBuffer {
+  vec3 at[];
+};
 layout(buffer_reference, scalar) buffer WordBuffer {
   uint at[];
 };

@@ -17,9 +17,10 @@
 namespace sightline {
 namespace {
 
-const std::array<std::string, 9> kNine{"simple-grid",        "simple-octree",        "simple-kd-tree",
-                                       "drawcall-wise-grid", "drawcall-wise-octree", "drawcall-wise-kd-tree",
-                                       "zhang-grid",         "zhang-octree",         "zhang-kd-tree"};
+const std::array<std::string, 11> kAll{
+    "simple-grid",          "simple-octree",         "simple-kd-tree", "drawcall-wise-grid",
+    "drawcall-wise-octree", "drawcall-wise-kd-tree", "zhang-grid",     "zhang-octree",
+    "zhang-kd-tree",        "cluster-cone",          "adaptive"};
 
 std::set<std::uint32_t> submitted(const Method& method, const Frame& frame) {
   std::set<std::uint32_t> out;
@@ -31,7 +32,7 @@ std::set<std::uint32_t> submitted(const Method& method, const Frame& frame) {
 }
 
 TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
-  std::vector<std::string> names(kNine.begin(), kNine.end());
+  std::vector<std::string> names(kAll.begin(), kAll.end());
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     const Scene scene = test::scene_of(triangles);
     const auto contestants = lab::make_contestants(scene, names);
@@ -50,7 +51,7 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
   const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
   const Scene triangles = lab::one_object_a_triangle(scene);
   const auto cameras = lab::random_cameras(scene, 6, 9);
-  for (const std::string& name : kNine) {
+  for (const std::string& name : kAll) {
     const auto method = *create_method(name, scene);
     const lab::Faces faces = method->geometry()->front_faces_only ? lab::Faces::front : lab::Faces::both;
     const lab::EmbreeJudge judge(triangles, faces);
@@ -143,6 +144,39 @@ TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
   EXPECT_LT(static_cast<double>(fewer), 0.85 * static_cast<double>(all));
 }
 
+// Dear calls want few of them, dear triangles want few of those.
+TEST(DrawCalls, AdaptivePicksByWhatTheDeviceCharges) {
+  const Scene scene = *generate_world("soup?triangles=6000&size=60");
+  const auto dear_calls = *create_method("adaptive?call-ns=1000000&command-ns=1000000&triangle-ns=1", scene);
+  const auto dear_triangles = *create_method("adaptive?call-ns=1&command-ns=1&triangle-ns=1000", scene);
+  scene::Random random(63);
+  CullStats a, b;
+  for (int v = 0; v < 20; ++v) {
+    const View view = test::random_view(random, {{-30, -30, -30}, {30, 30, 30}});
+    Frame frame;
+    dear_calls->cull(view, frame);
+    a.draw_calls += frame.draws.size(), a.triangles += frame.stats.triangles;
+    dear_triangles->cull(view, frame);
+    b.draw_calls += frame.draws.size(), b.triangles += frame.stats.triangles;
+  }
+  EXPECT_LT(10 * a.draw_calls, b.draw_calls);
+  EXPECT_LT(b.triangles, a.triangles);
+}
+
+TEST(DrawCalls, AdaptiveFollowsMovedObjects) {
+  Scene scene = *generate_world("soup?triangles=3000&size=60");
+  const auto method = *create_method("adaptive", scene);
+  Affine away;
+  away.rows[0].w = 500;
+  scene.move_object(0, away);
+  const std::array<ObjectId, 1> moved{0};
+  method->update(moved);
+  const Vec3 centre = scene.sphere(0).centre;
+  Frame frame;
+  method->cull(*make_view({.eye = {centre.x, centre.y, centre.z + 60}}, 64, 64), frame);
+  EXPECT_NE(std::ranges::find(frame.visible, ObjectId{0}), frame.visible.end());
+}
+
 TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
   const Scene scene = *generate_world("soup?triangles=5000&size=60");
   const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
@@ -155,7 +189,7 @@ TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
 
 TEST(DrawCalls, AllocateNothingOnceTheyHaveGrown) {
   const Scene scene = *generate_world("soup?triangles=5000&size=60");
-  for (const std::string& name : kNine) {
+  for (const std::string& name : kAll) {
     const auto method = *create_method(name, scene);
     const View view = *make_view({.eye = {0, 0, 0}}, 320, 200);
     Frame frame;

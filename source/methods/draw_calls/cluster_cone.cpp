@@ -1,5 +1,6 @@
-// Beyond paper D: triangles grouped into clusters that lie together and face alike, each with bounds and a cone
-// of normals in three dimensions, under a tree of bounds; the draws of clusters that stand side by side merged.
+// Beyond paper D: triangles grouped into clusters that lie together and face alike, each with bounds and a
+// cone of normals in three dimensions, under a tree of bounds; the draws of clusters that stand side by side
+// merged.
 #include "methods/draw_calls/draw_call_method.hpp"
 #include "methods/draw_calls/draw_calls.hpp"
 

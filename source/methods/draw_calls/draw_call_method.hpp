@@ -34,6 +34,8 @@ public:
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
 
   [[nodiscard]] const DrawCallPlan& plan() const noexcept { return plan_; }
+  /// Changes how the ranges are submitted, from the next cull on.
+  void submit_by(Submission submission) noexcept { plan_.submission = geometry_.submission = submission; }
   /// Cells of the structure, for pictures: opaque triangles' first.
   [[nodiscard]] std::vector<Box> cells() const;
 

@@ -9,6 +9,7 @@ namespace sightline::methods {
 
 extern const std::array<MethodInfo, 9> kDrawCallMethods;
 extern const MethodInfo kClusterCone;
+extern const MethodInfo kAdaptive;
 
 /// The parameter `submission`.
 Submission submission_from(const Parameters& parameters) noexcept;

@@ -1,0 +1,90 @@
+// Serpa, Serpa & Rodrigues: table 1 (triangles × draw calls) and walks through game levels with every
+// structure, variant and height, drawn by Vulkan.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lab/camera_path.hpp"
+#include "lab/measure.hpp"
+#include "lab/table.hpp"
+#include "vulkan/device.hpp"
+
+namespace sightline::lab {
+
+struct DrawCallOptions {
+  bool quick = false;
+  std::uint32_t width = 320, height = 180;
+};
+
+/// Frame times of n triangles in d draw calls.
+struct CallGrid {
+  std::vector<std::uint32_t> triangles, calls;
+  std::vector<double> ms;  ///< triangles × calls, medians
+  double call_us = 0;      ///< what a call adds, microseconds: the slope along the calls, mean of all rows
+  double triangle_ns = 0;  ///< what a triangle adds: the slope along the triangles with one call
+};
+
+CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& options,
+                           const Progress& progress = {});
+/// Ours beside the paper's, both as shares of their first cell. Of the paper's cells METHODS.md gives two.
+Table table_of(const CallGrid& grid);
+
+/// What draws cost on a device, fitted to measured frames by least squares.
+struct DrawCosts {
+  double call_ns = 0, command_ns = 0, triangle_ns = 0;
+};
+
+/// One method along the walk. Means are over the views.
+struct WalkRow {
+  std::string method;  ///< its specification
+  std::string family;  ///< without parameters
+  std::uint32_t height = 0;
+  Submission submission = Submission::calls;
+  /// Means of the views' medians; recording is the CPU's part: culling and submitting.
+  double frame_ms = 0, cull_ms = 0, record_ms = 0;
+  double draw_calls = 0, ranges = 0, triangles = 0;
+  std::uint64_t bytes = 0, lost_pixels = 0;
+  std::vector<double> frame_ms_by_view;
+
+  [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
+};
+
+struct LevelWalk {
+  std::string level, kind;
+  std::uint64_t triangles = 0;
+  std::size_t views = 0;
+  DrawCosts costs;
+  std::string adaptive_plan;
+  std::vector<WalkRow> rows;
+  CameraPath path;
+
+  [[nodiscard]] const WalkRow& row(std::string_view method) const;
+  /// The quickest exact one, `adaptive` and `none` apart.
+  [[nodiscard]] const WalkRow& best() const;
+};
+
+struct LevelChoice {
+  const char *specification, *kind;
+};
+/// Small, middle and large; in doors, out of doors, both.
+std::span<const LevelChoice> draw_call_levels() noexcept;
+
+/// Everything opaque, as in the paper. Methods take turns view by view. Throws Error where the level is
+/// missing.
+LevelWalk walk_level(vulkan::Device& device, const LevelChoice& level, const DrawCallOptions& options,
+                     const Progress& progress = {});
+
+Table heights_table(const LevelWalk& walk);     ///< fps of every structure × variant × height
+Table methods_table(const LevelWalk& walk);     ///< each method at its best height, and what beats it
+Table submission_table(const LevelWalk& walk);  ///< calls, multi-draw, merged
+/// Sentences on the paper's claims: what held, with figures.
+std::string findings(const LevelWalk& walk);
+
+/// index.html with tables, charts of the frame rate along the walks, and each level from above with its
+/// cells.
+void write_draw_call_report(const std::filesystem::path& folder, const std::string& device,
+                            const CallGrid& grid, const std::vector<LevelWalk>& walks);
+
+}  // namespace sightline::lab

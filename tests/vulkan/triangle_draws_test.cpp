@@ -1,0 +1,101 @@
+// Ranges of triangles on the device: what methods submit looks like all triangles, however it is submitted.
+#include <algorithm>
+
+#include <sightline/method.hpp>
+
+#include "fixtures.hpp"
+#include "lab/embree_judge.hpp"
+#include "lab/random_views.hpp"
+#include "support/triangles.hpp"
+#include "vulkan/triangle_draws.hpp"
+
+namespace sightline {
+namespace {
+
+class TriangleDrawsTest : public DeviceTest {};
+
+// The whole geometry as one range: drawn without any culling but the rasteriser's own of back faces.
+std::vector<DrawCommand> everything(const Scene& scene, const TriangleGeometry& geometry) {
+  std::vector<DrawCommand> draws;
+  const auto count = static_cast<std::uint32_t>(geometry.objects.size());
+  for (std::uint32_t first = 0; first < count;) {
+    const Surface surface = scene.surface[geometry.objects[first]];
+    std::uint32_t end = first;
+    while (end < count && scene.surface[geometry.objects[end]] == surface) ++end;
+    if (surface == Surface::opaque) draws.push_back({3 * (end - first), 1, 3 * first, 0, first});
+    first = end;
+  }
+  return draws;
+}
+
+TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
+  std::vector<Scene> scenes;
+  scenes.push_back(*generate_world("soup?triangles=4000&size=60"));
+  scenes.push_back(test::scene_of(test::awkward_triangles()[0].triangles));
+  for (const Scene& scene : scenes) {
+    vulkan::Renderer renderer(device(), scene);
+    for (const std::string name :
+         {"simple-octree", "drawcall-wise-kd-tree", "zhang-grid", "zhang-octree", "cluster-cone"}) {
+      const auto method = *create_method(name, scene);
+      vulkan::TriangleDraws draws(renderer, *method->geometry());
+      const auto all = everything(scene, *method->geometry());
+      std::size_t shown = 0;
+      for (const Camera& camera : lab::random_cameras(scene, 12, 5)) {
+        const View view = view_of(camera, 160, 100);
+        Frame frame;
+        method->cull(view, frame);
+        const auto truth = draws.item_buffer(view, all, Submission::calls);
+        for (const Submission submission : {Submission::calls, Submission::multi_draw}) {
+          const auto picture = draws.item_buffer(view, frame.draws, submission);
+          ASSERT_EQ(std::ranges::mismatch(picture, truth).in1, picture.end()) << name;
+        }
+        shown += static_cast<std::size_t>(
+            std::ranges::count_if(truth, [](ObjectId id) { return id != kNoObject; }));
+      }
+      EXPECT_GT(shown, 1000u) << name;
+    }
+  }
+}
+
+// Two independent judges of facing: the rasteriser's winding and the rays' normals.
+TEST_F(TriangleDrawsTest, BackFacesAreThoseOfTheRayJudge) {
+  const Scene scene = *generate_world("soup?triangles=4000&size=60");
+  vulkan::Renderer renderer(device(), scene);
+  const auto zhang = *create_method("zhang-octree", scene);
+  vulkan::TriangleDraws draws(renderer, *zhang->geometry());
+  const lab::EmbreeJudge judge(scene, lab::Faces::front);
+  std::size_t differ = 0, all = 0;
+  for (const Camera& camera : lab::random_cameras(scene, 8, 6)) {
+    const View view = view_of(camera, 160, 100);
+    const auto picture = draws.item_buffer(view, everything(scene, *zhang->geometry()), Submission::calls);
+    const auto rays = judge.render(view).ids;
+    for (std::size_t p = 0; p < rays.size(); ++p) differ += picture[p] != rays[p];
+    all += rays.size();
+  }
+  EXPECT_LT(differ, all / 200);  // silhouettes round differently
+}
+
+TEST_F(TriangleDrawsTest, DrawsAPictureWithBlendedTrianglesLast) {
+  const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
+  vulkan::Renderer renderer(device(), scene);
+  const auto method = *create_method("drawcall-wise-octree", scene);
+  vulkan::TriangleDraws draws(renderer, *method->geometry());
+  const View view = view_of({.eye = {0, 5, 90}, .forward = {0, 0, -1}});
+  Frame frame;
+  method->cull(view, frame);
+  std::vector<vulkan::Picture> pictures;
+  for (const Submission submission : {Submission::calls, Submission::multi_draw}) {
+    renderer.frame(view, [&](vulkan::Recorder& recorder) { draws.draw(recorder, frame.draws, submission); });
+    pictures.push_back(renderer.picture());
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_GT(std::ranges::count_if(pictures[0].pixels, [&](auto p) { return p != pictures[0].pixels[0]; }),
+            1000);
+  EXPECT_GT(draws.bytes(), 0u);
+  frame.draws.clear();
+  renderer.frame(
+      view, [&](vulkan::Recorder& recorder) { draws.draw(recorder, frame.draws, Submission::multi_draw); });
+}
+
+}  // namespace
+}  // namespace sightline
