@@ -20,7 +20,7 @@ constexpr std::uint32_t kIdFrag[] =
 constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 struct Push {
-  vk::DeviceAddress view, objects, positions, owners;
+  vk::DeviceAddress objects, positions, owners;
 };
 
 const Device& with_triangle_numbers(const Device& device) {
@@ -76,8 +76,7 @@ void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeli
   frame.bind(pipeline);
   // Strictly nearer: a triangle that crosses cells is drawn once for each, and shaded once all the same.
   frame.commands.setDepthCompareOp(frame.reversed() ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
-  frame.push(Push{frame.view_address(), renderer_.buffers().object_data.address(), positions_.address(),
-                  owners_.address()});
+  frame.push(Push{renderer_.buffers().object_data.address(), positions_.address(), owners_.address()});
   frame.commands.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint32);
   if (submission != Submission::multi_draw) {
     for (const DrawCommand& draw : draws)

@@ -1,10 +1,11 @@
 #version 460
 #include "vulkan/shared.h"
 
+#include "vulkan/shaders/view.h"
+
 // Draws ranges of world-space triangles. The first instance of a range is its first triangle, so that with the
 // primitive's number in the draw every fragment knows its triangle.
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
   ObjectBuffer objects;
   PositionBuffer positions;
   WordBuffer owners;
@@ -17,5 +18,5 @@ invariant gl_Position;
 void main() {
   world_position = positions.at[gl_VertexIndex];
   first_triangle = gl_InstanceIndex;
-  gl_Position = view.view.world_to_clip * vec4(world_position, 1);
+  gl_Position = view.world_to_clip * vec4(world_position, 1);
 }

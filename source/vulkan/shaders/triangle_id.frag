@@ -2,7 +2,6 @@
 #include "vulkan/shared.h"
 
 layout(push_constant, scalar) uniform Push {
-  ViewBuffer view;
   ObjectBuffer objects;
   PositionBuffer positions;
   WordBuffer owners;
