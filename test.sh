@@ -29,6 +29,6 @@ cmake --build --preset asan
 ctest --preset asan -j"$(nproc)"
 
 echo "== fuzzers"
-scripts/fuzz.sh build/asan "${FUZZ_SECONDS:-10}"
+fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan
 
 echo "All tests passed in $(elapsed "$start")."

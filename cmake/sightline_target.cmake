@@ -12,6 +12,8 @@ function(sightline_target name)
     -Wall -Wextra -Wpedantic $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>
     # GCC 12 sees overlaps in std::string concatenation that are not there (its bug 105651).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    # Clang 19 complains about std::stable_sort as Debian's libstdc++ 12 implements it.
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>
     # The same bits on every machine: a fused multiply-add rounds once, mul and add twice.
     -ffp-contract=off)
   target_include_directories(${name} PUBLIC

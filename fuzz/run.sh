@@ -5,8 +5,9 @@ seconds=${1:-20}
 build=${2:-$(dirname "$0")/../build/asan}
 cd "$build/fuzz"
 ./fuzz_seeds seeds
-for target in fuzz_bsp fuzz_pk3 fuzz_gltf; do
-  mkdir -p "corpus/$target"
+for target in fuzz_*; do
+  [ -f "$target" ] && [ -x "$target" ] && [ "$target" != fuzz_seeds ] || continue
+  mkdir -p "corpus/$target" "seeds/$target"
   echo "$target for $seconds s"
   "./$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="$target-" "corpus/$target" "seeds/$target" 2>"$target.log" || { tail -40 "$target.log"; exit 1; }

@@ -44,7 +44,7 @@ refused() {
 
 world=world:forest?trees=300\&size=100
 
-expect 0 "object-frustum" "$sightline" --help
+expect 0 "reproduce" "$sightline" --help
 expect 0 "object-frustum" "$sightline" methods --json methods.json
 expect 0 "--path" "$sightline" compare --help
 for command in methods verify reproduce generate info; do expect 0 "Usage" "$sightline" $command --help; done

@@ -37,11 +37,22 @@ std::vector<std::string> split(const std::string& list) {
 
 namespace {
 
+// CLI11's own words, but for the one case in which they hide what was typed.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error, const std::string& first) {
+  std::string known;
+  bool is_known = first.empty() || first.starts_with('-');
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    known.append(known.empty() ? "" : ", ").append(command->get_name());
+    is_known = is_known || command->get_name() == first;
+  }
+  if (is_known) return std::string(error.what()) + "; see sightline --help";
+  return "'" + first + "': no such command, expected one of " + known;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Sightline decides what not to draw: visibility culling, measured and proven.", "sightline"};
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
   int exit = Exit::done;
   add_methods(app, exit);
   add_compare(app, exit);
@@ -52,8 +63,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);  // prints help, version, or the complaint
-    return code == 0 ? Exit::done : Exit::wrong_call;
+    if (error.get_exit_code() == 0) return app.exit(error);  // prints help or version
+    throw Error(complaint(app, error, argc > 1 ? argv[1] : ""));
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw Error("standard output: cannot be written to");
   return exit;

@@ -54,17 +54,7 @@ void add_methods(CLI::App& app, int& exit) {
   auto json = std::make_shared<std::string>();
   command.add_option("--json", *json, "also write the list as JSON to FILE")->type_name("FILE");
   on_run(command, exit, [json] {
-    fmt::print("On the CPU (--device cpu):\n");
-    for (const MethodInfo& info : cpu_methods()) print(info);
-    fmt::print(
-        "\nOn a Vulkan device (--device NAME), where CPU methods without a form of their own are drawn "
-        "too:\n");
-    for (const methods::DeviceMethodInfo& info : methods::device_methods()) print(info);
     const std::vector<vulkan::DeviceInfo> devices = vulkan::list_devices();
-    fmt::print("\nVulkan devices:{}\n", devices.empty() ? " none" : "");
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-      fmt::print("{:>3}  {} ({}, {})\n", i, devices[i].name, devices[i].kind, devices[i].driver);
-    }
     if (!json->empty()) {
       using Json = nlohmann::ordered_json;
       Json document{{"sightline", kVersion},
@@ -79,6 +69,16 @@ void add_methods(CLI::App& app, int& exit) {
         document["devices"].push_back({{"name", info.name}, {"kind", info.kind}, {"driver", info.driver}});
       }
       lab::write_file(*json, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    }
+    fmt::print("On the CPU (--device cpu):\n");
+    for (const MethodInfo& info : cpu_methods()) print(info);
+    fmt::print(
+        "\nOn a Vulkan device (--device NAME), where CPU methods without a form of their own are drawn "
+        "too:\n");
+    for (const methods::DeviceMethodInfo& info : methods::device_methods()) print(info);
+    fmt::print("\nVulkan devices:{}\n", devices.empty() ? " none" : "");
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      fmt::print("{:>3}  {} ({}, {})\n", i, devices[i].name, devices[i].kind, devices[i].driver);
     }
     return Exit::done;
   });

@@ -8,7 +8,9 @@
 
 #include "command.hpp"
 #include "device.hpp"
+#include "lab/level_evidence.hpp"
 #include "lab/random_views.hpp"
+#include "lab/table.hpp"
 #include "lab/verify.hpp"
 
 namespace sightline::app {
@@ -21,6 +23,15 @@ struct Options {
   std::uint64_t seed = 1;
   double moving = 0;
 };
+
+// What the level's own visibility denies and rays see all the same, reason by reason.
+void print_level_evidence(const Scene& scene, std::uint64_t seed) {
+  constexpr std::size_t kEyes = 100;
+  constexpr std::uint32_t kSide = 96;
+  const lab::EmbreeJudge judge(scene);
+  fmt::print("\nThe level's own PVS against what rays see from open leaves:\n{}",
+             lab::render(lab::evidence_table(lab::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
+}
 
 int run(const Options& options) {
   const auto [width, height] = parse_size(options.size);
@@ -52,6 +63,7 @@ int run(const Options& options) {
   for (const lab::MethodVerdict& m : result.methods) {
     for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
   }
+  if (scene.level) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
 }
 

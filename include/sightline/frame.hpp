@@ -13,7 +13,9 @@ namespace sightline {
 struct DrawCommand {
   std::uint32_t index_count = 0, instance_count = 0, first_index = 0;
   std::int32_t vertex_offset = 0;
-  std::uint32_t first_instance = 0;  ///< position in Frame::visible of the first instance's object
+  /// Position in Frame::visible of the first instance's object. Where the method draws a geometry of its own
+  /// (Method::geometry), the first triangle of the range instead, of which there is one instance.
+  std::uint32_t first_instance = 0;
 };
 
 /// The work of one cull, in counts. Fields that make no sense for a method stay 0.
@@ -22,8 +24,10 @@ struct CullStats {
   std::uint64_t tested = 0;         ///< objects tested one by one
   std::uint64_t nodes_visited = 0;  ///< cells, chunks or tree nodes looked at
   std::uint64_t cull_vertices = 0;  ///< vertices fed to the culling pass
+  std::uint64_t rays = 0;              ///< cast
   std::uint64_t culled_frustum = 0;
   std::uint64_t culled_contribution = 0;
+  std::uint64_t culled_facing = 0;  ///< no triangle of theirs can face the eye
   std::uint64_t culled_occlusion = 0;
   std::uint64_t draw_calls = 0;
   std::uint64_t triangles = 0;  ///< submitted

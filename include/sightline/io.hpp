@@ -40,7 +40,8 @@ Scene load_scene(std::string_view specification, const LoadOptions& options = {}
 ///   to centre, at the flare's origin, transparent.
 /// - A face without a triangle stays an object of its vertices, or of one point, so that ids stay face
 /// indices.
-/// - Faces whose shader has translucent or fog contents, or that the game never draws, are transparent.
+/// - Faces whose shader has translucent or fog contents or the flag 'no draw' are transparent.
+/// - Moving parts (doors, lifts) stand at the origin of the entity that shows them, and belong to no leaf.
 /// Scene::level holds the tree, the leaves' faces and the visibility lump (without one: all see all).
 /// Viewpoints are the players' spawn points at eye height, 50 units over the floor; waypoints are those and
 /// the items.

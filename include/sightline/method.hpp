@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <sightline/frame.hpp>
+#include <sightline/geometry.hpp>
 #include <sightline/parameters.hpp>
 #include <sightline/result.hpp>
 #include <sightline/scene.hpp>
@@ -37,6 +38,10 @@ public:
   /// Fills `frame` with what to draw. The view has passed check(). Same view and scene, same answer, in the
   /// same order. Allocates nothing once frame and method have grown to their sizes.
   virtual void cull(const View& view, Frame& frame) noexcept = 0;
+  /// The triangles that the frame's draws are ranges of, for a method that draws triangles instead of
+  /// objects; null where draws are ranges of the scene's own meshes. Valid until update() or the method's
+  /// end.
+  [[nodiscard]] virtual const TriangleGeometry* geometry() const noexcept { return nullptr; }
 };
 
 struct MethodInfo {

@@ -5,8 +5,10 @@
 #include <sightline/culling.hpp>
 #include <sightline/frame.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/geometry.hpp>
 #include <sightline/level_pvs.hpp>
 #include <sightline/method.hpp>
+#include <sightline/occlusion.hpp>
 #include <sightline/parameters.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/ray.hpp>
@@ -15,4 +17,5 @@
 #include <sightline/types.hpp>
 #include <sightline/version.hpp>
 #include <sightline/view.hpp>
+#include <sightline/world.hpp>
 #include <sightline/worlds.hpp>

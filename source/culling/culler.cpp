@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sightline/culling.hpp>
+#include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 
 #include "culling/world_cull.hpp"
@@ -45,7 +46,8 @@ std::uint8_t side_along(float normal, std::uint8_t axis, bool far) {
   return static_cast<std::uint8_t>(axis + ((normal >= 0) != far ? 3 : 0));
 }
 
-SectorView sector_view(const WorldView& view, const Sector& sector, const CullOptions& options) {
+SectorView sector_view(const WorldView& view, const Sector& sector, const CullOptions& options,
+                       const OcclusionBuffer* occlusion) {
   SectorView out;
   const glm::dvec3 offset(sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
                           sector.origin.z - view.origin.z);
@@ -65,6 +67,10 @@ SectorView sector_view(const WorldView& view, const Sector& sector, const CullOp
     out.orthographic = projector.orthographic;
     out.area_scale = std::numbers::pi_v<float> * projector.pixels_per_metre * projector.pixels_per_metre /
                      options.min_area;
+  }
+  if (occlusion) {
+    out.occluders = &occlusion->tiles();
+    out.projection = eye_projection(occlusion->tiles().view, sector.origin);
   }
   return out;
 }
@@ -175,6 +181,9 @@ CullError check_call(const World& world, std::span<const WorldView> views, const
   if (views.empty() || views.size() > kMaxViews) return CullError::views;
   if (!(options.min_area >= 0) || !std::isfinite(options.min_area)) return CullError::options;
   if (!options.occlusion.empty() && options.occlusion.size() != views.size()) return CullError::options;
+  for (const OcclusionBuffer* buffer : options.occlusion) {
+    if (buffer && buffer->width() == 0) return CullError::options;  // begin() was never called
+  }
   if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs) return CullError::options;
   const std::size_t needed = cull_capacity(world, options);
   if (visible.size() < needed || (!masks.empty() && masks.size() < needed)) return CullError::buffer;
@@ -212,8 +221,10 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
     const auto& map = *sectors[s].map;
     state.maps.push_back(&map);
-    for (const WorldView& view : views)
-      state.views.push_back(culling::sector_view(view, sectors[s], options));
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
+      state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
+    }
     if (state.failed[s].size() < map.blocks().size() * kMaxViews) {
       state.failed[s].resize(map.blocks().size() * kMaxViews, 0);
     }

@@ -206,6 +206,36 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
   }
 }
 
+// Takes out the chunks whose bounds the occluders hide.
+void drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const SectorView& view,
+                        ChunkBits& bits, PassCounts& counts) {
+  const auto& b = block.bounds;
+  std::array<std::uint8_t, kBlock> visible;
+  query_boxes(*view.occluders, view.projection,
+              {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), block.count},
+              visible.data());
+  for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    if (visible[i]) continue;
+    bits.kept &= ~(1u << i);
+    counts.occluded += map.chunk(block.chunks[i]).count;
+  }
+}
+
+// Takes out the objects that the occluders hide, of those that the view sees otherwise.
+void drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, ObjectBits& seen,
+                         PassCounts& counts) {
+  std::array<std::uint8_t, ChunkMap::kCapacity> visible;
+  query_boxes(*view.occluders, view.projection,
+              {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
+              visible.data());
+  for (std::uint32_t i = 0; i < chunk.count; ++i) {
+    if (visible[i] || (seen.at(i) & 1) == 0) continue;
+    seen.bytes[i / 8] &= static_cast<std::uint8_t>(~(1u << (i % 8)));
+    ++counts.occluded;
+  }
+}
+
 // Any views, any tests.
 PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* HWY_RESTRICT out,
                       std::uint8_t* HWY_RESTRICT masks) {
@@ -222,12 +252,11 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
     const ChunkMap::Block& block = map.blocks()[entry.block];
     const SectorView* views = &input.views[entry.sector * input.view_count];
     std::uint32_t any = 0;
-    bool contribution = false;
     for (std::size_t v = 0; v < input.view_count; ++v) {
       bits[v] = {};
       if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
+      if (views[v].occluders && bits[v].kept != 0) drop_hidden_chunks(map, block, views[v], bits[v], counts);
       any |= bits[v].kept;
-      contribution = contribution || views[v].area_scale > 0;
     }
     counts.chunks += block.count;
     for (; any != 0; any &= any - 1) {
@@ -236,7 +265,7 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
       std::uint8_t whole = 0, part = 0;  // views
       for (std::size_t v = 0; v < input.view_count; ++v) {
         if ((bits[v].kept >> i & 1) == 0) continue;
-        const bool all = (bits[v].crossing >> i & 1) == 0 && !contribution;
+        const bool all = (bits[v].crossing >> i & 1) == 0 && views[v].area_scale == 0 && !views[v].occluders;
         (all ? whole : part) |= static_cast<std::uint8_t>(1u << v);
       }
       if (part == 0 || (whole != 0 && masks == nullptr)) {
@@ -249,6 +278,7 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
         const int v = std::countr_zero(rest);
         counts.tested += chunk.count;
         view_objects(chunk, views[v], planes_of(bits[v], i), seen[v]);
+        if (views[v].occluders) drop_hidden_objects(chunk, views[v], seen[v], counts);
       }
       for (std::size_t k = 0; k < chunk.count; k += lanes) {
         auto mask = hn::Set(u, whole);
@@ -274,7 +304,7 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
 PassCounts run_pass(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
                     std::uint8_t* masks) {
   bool plain = input.view_count == 1 && !masks;
-  for (const SectorView& view : input.views) plain = plain && view.area_scale == 0;
+  for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
   return plain ? one_view(input, entries, out) : many_views(input, entries, out, masks);
 }
 

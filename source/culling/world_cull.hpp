@@ -7,6 +7,7 @@
 #include <sightline/frustum.hpp>
 #include <sightline/world.hpp>
 
+#include "culling/depth_tiles.hpp"
 #include "partition/chunk_map.hpp"
 
 namespace sightline::culling {
@@ -25,6 +26,8 @@ struct SectorView {
   Vec3 eye;
   float area_scale = 0;  ///< π·(pixels per metre)² / min_area; 0: contribution is not tested
   bool orthographic = false;
+  const DepthTiles* occluders = nullptr;  ///< null: occlusion is not tested
+  EyeProjection projection;               ///< of the occluders' view, about the sector's origin
 };
 
 /// A block that some view may see.

@@ -1,5 +1,6 @@
 #include "io/files.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -25,10 +26,10 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-void write_pieces(const std::filesystem::path& to, const std::filesystem::path& named,
+void write_pieces(const std::filesystem::path& to, const std::filesystem::path& named, const char* mode,
                   std::span<const std::span<const std::byte>> pieces) {
   const auto fail = [&] { throw Error(named.string() + ": cannot be written: " + reason(errno)); };
-  File file(std::fopen(to.c_str(), "wb"));
+  File file(std::fopen(to.c_str(), mode));
   if (!file) fail();
   for (const std::span<const std::byte> piece : pieces) {
     if (!piece.empty() && std::fwrite(piece.data(), 1, piece.size(), file.get()) != piece.size()) fail();
@@ -66,11 +67,12 @@ void write_file(const std::filesystem::path& path, std::span<const std::span<con
     throw Error(path.string() + ": is a folder, expected a file to write");
   const bool device =
       std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-  if (device) return write_pieces(path, path, pieces);
+  if (device) return write_pieces(path, path, "wb", pieces);
   std::filesystem::path temporary = path;
-  temporary += "." + std::to_string(::getpid()) + ".tmp";
+  static std::atomic<unsigned> count = 0;
+  temporary += "." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
   try {
-    write_pieces(temporary, path, pieces);
+    write_pieces(temporary, path, "wbx", pieces);
     std::filesystem::rename(temporary, path);
   } catch (const std::filesystem::filesystem_error& error) {
     std::filesystem::remove(temporary, ignored);

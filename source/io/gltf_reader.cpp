@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::size_t kMaxObjects = std::size_t{1} << 24;
 constexpr std::uint32_t kMaxDepth = 4096;
+// Bounds are computed from the vertices of each object: more than this takes minutes.
+constexpr std::uint64_t kMaxTransformed = std::uint64_t{1} << 35;
 
 void refuse_unknown_extensions(const Json& root) {
   static constexpr std::string_view kKnown[] = {"EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
@@ -213,6 +215,10 @@ private:
   void add_object(std::uint32_t shape, const Affine& affine, Surface surface, std::uint64_t id) {
     if (scene_.size() >= kMaxObjects)
       throw Error(fmt::format("brings the scene over {} objects", kMaxObjects));
+    transformed_ += scene_.meshes[shape].vertex_count;
+    if (transformed_ > kMaxTransformed) {
+      throw Error(fmt::format("brings all objects together over {} vertices", kMaxTransformed));
+    }
     scene_.add_object(shape, affine, surface);
     ids_.push_back(id);
   }
@@ -244,6 +250,7 @@ private:
   Document& document_;
   Scene& scene_;
   MeshReader meshes_;
+  std::uint64_t transformed_ = 0;   ///< vertices of all objects, a shared mesh counted for each
   std::vector<std::uint64_t> ids_;  ///< one an object: kNone, or the id it had when it was written
 };
 

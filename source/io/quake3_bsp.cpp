@@ -93,11 +93,11 @@ public:
       : vertices_(level.lump(LumpId::vertices), "vertices"),
         mesh_vertices_(level.lump(LumpId::mesh_vertices), "mesh vertices"),
         patch_level_(patch_level),
-        // Faces own their vertices, and compilers share lists of indices between faces of one form. The slack
-        // lets both be shared more, but keeps a small file from claiming them for each of 100,000 faces.
-        vertex_budget_(8 * std::uint64_t{vertices_.size()} + 1024),
-        index_budget_(64 * std::uint64_t{vertices_.size()} + 8 * std::uint64_t{mesh_vertices_.size()} +
-                      1024) {}
+        // In real levels each vertex belongs to one face, and faces of one form share their indices, fewer
+        // than three a vertex. The slack is for compilers we have not met; without the limit a small file
+        // could claim its vertices once for each of 100,000 faces.
+        vertex_budget_(2 * std::uint64_t{vertices_.size()} + 1024),
+        index_budget_(16 * std::uint64_t{vertices_.size()} + 1024) {}
 
   Shape read(const FaceRecord& face) {
     Shape shape;
@@ -196,7 +196,44 @@ private:
   std::uint64_t vertex_budget_, index_budget_;
 };
 
-void read_faces(const Level& level, std::uint32_t patch_level, Scene& scene) {
+/// The faces of each model: model 0 is the world, the others are its moving parts.
+std::vector<std::pair<std::size_t, std::size_t>> read_models(const Level& level, std::size_t face_count) {
+  const Records<ModelRecord> records(level.lump(LumpId::models), "models");
+  std::vector<std::pair<std::size_t, std::size_t>> models;
+  std::uint64_t budget = face_count;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const ModelRecord model = records.at(static_cast<std::int64_t>(i));
+    if (model.first_face < 0 || model.face_count < 0 ||
+        !fits(static_cast<std::uint64_t>(model.first_face), static_cast<std::uint64_t>(model.face_count),
+              face_count) ||
+        static_cast<std::uint64_t>(model.face_count) > budget) {
+      throw Error(fmt::format("model {} refers to faces {} … +{}, but the level holds {}, each in one model",
+                              i, model.first_face, model.face_count, face_count));
+    }
+    budget -= static_cast<std::uint64_t>(model.face_count);
+    models.emplace_back(model.first_face, model.face_count);
+  }
+  if (models.empty()) throw Error("has no models, expected at least that of the world");
+  return models;
+}
+
+/// Where each face's model stands: a moving part's vertices count from the origin of the entity that shows
+/// it.
+std::vector<Affine> place_faces(const std::vector<Entity>& entities,
+                                std::span<const std::pair<std::size_t, std::size_t>> models,
+                                std::size_t face_count) {
+  std::vector<Affine> places(face_count);
+  for (const auto& [model, origin] : model_origins(entities)) {
+    if (model == 0 || model >= models.size()) continue;
+    const Vec3 p = to_point(origin);
+    const auto [first, count] = models[model];
+    std::fill_n(places.begin() + static_cast<std::ptrdiff_t>(first), count,
+                Affine{{Vec4{1, 0, 0, p.x}, Vec4{0, 1, 0, p.y}, Vec4{0, 0, 1, p.z}}});
+  }
+  return places;
+}
+
+void read_faces(const Level& level, std::uint32_t patch_level, std::span<const Affine> places, Scene& scene) {
   const Records<FaceRecord> faces(level.lump(LumpId::faces), "faces");
   const Records<ShaderRecord> shaders(level.lump(LumpId::shaders), "shaders");
   FaceReader reader(level, patch_level);
@@ -218,7 +255,7 @@ void read_faces(const Level& level, std::uint32_t patch_level, Scene& scene) {
       const bool see_through = face.type == flare ||
                                (shader.content_flags & (kTranslucentContents | kFogContents)) != 0 ||
                                (shader.surface_flags & kNoDrawSurface) != 0;
-      scene.add_object(scene.add_mesh(positions, normals, shape.indices), {},
+      scene.add_object(scene.add_mesh(positions, normals, shape.indices), places[i],
                        see_through ? Surface::transparent : Surface::opaque);
     } catch (const Error& error) {
       throw Error(fmt::format("face {} {}", i, error.what()));
@@ -270,6 +307,8 @@ void read_leaves(const Level& level, std::size_t face_count, LevelPvs& pvs) {
     }
     pvs.leaf_objects[i] = static_cast<std::uint32_t>(face);
   }
+  // As with the faces' vertices: leaves own their ranges, and what walks all leaves must not walk for ever.
+  std::uint64_t budget = 2 * std::uint64_t{leaf_faces.size()} + 1024;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const LeafRecord leaf = leaves.at(static_cast<std::int64_t>(i));
     try {
@@ -277,6 +316,10 @@ void read_leaves(const Level& level, std::size_t face_count, LevelPvs& pvs) {
     } catch (const Error& error) {
       throw Error(fmt::format("leaf {} {}", i, error.what()));
     }
+    if (static_cast<std::uint64_t>(leaf.face_count) > budget) {
+      throw Error(fmt::format("leaf {} claims {} faces that other leaves claim too", i, leaf.face_count));
+    }
+    budget -= static_cast<std::uint64_t>(leaf.face_count);
     // A compiler numbers clusters through; more of them than leaves is nonsense that others would allocate
     // for.
     if (leaf.cluster >= static_cast<std::int64_t>(leaves.size())) {
@@ -287,7 +330,6 @@ void read_leaves(const Level& level, std::size_t face_count, LevelPvs& pvs) {
     const auto first = static_cast<std::uint32_t>(leaf.first_face),
                count = static_cast<std::uint32_t>(leaf.face_count);
     pvs.leaves.push_back({std::max(leaf.cluster, -1), box_of(leaf.min, leaf.max), first, count});
-    for (std::uint32_t f = 0; f < count; ++f) pvs.in_some_leaf[pvs.leaf_objects[first + f]] = 1;
   }
 }
 
@@ -313,22 +355,46 @@ void read_visibility(const Level& level, LevelPvs& pvs) {
   pvs.visibility.assign(data, data + std::size_t{clusters} * bytes);
 }
 
-LevelPvs read_level_pvs(const Level& level, std::size_t face_count) {
+/// Each moving part has a leaf of its own that the world's tree does not reach, with a cluster that says
+/// nothing: the part moves. Such leaves are emptied, so that their faces belong to no leaf.
+void drop_unreached_leaves(LevelPvs& pvs) {
+  std::vector<std::uint8_t> node_reached(pvs.nodes.size(), 0), leaf_reached(pvs.leaves.size(), 0);
+  if (pvs.nodes.empty()) {
+    leaf_reached[0] = 1;
+  } else {
+    node_reached[0] = 1;
+  }
+  for (std::size_t i = 0; i < pvs.nodes.size(); ++i) {  // children come after their parents
+    if (node_reached[i] == 0) continue;
+    for (const std::int32_t child : {pvs.nodes[i].front, pvs.nodes[i].back}) {
+      (child >= 0 ? node_reached[static_cast<std::size_t>(child)]
+                  : leaf_reached[static_cast<std::size_t>(-(child + 1))]) = 1;
+    }
+  }
+  for (std::size_t i = 0; i < pvs.leaves.size(); ++i) {
+    LevelPvs::Leaf& leaf = pvs.leaves[i];
+    if (leaf_reached[i] == 0) {
+      leaf.cluster = -1;
+      leaf.object_count = 0;
+    }
+    for (std::uint32_t f = 0; f < leaf.object_count; ++f) {
+      pvs.in_some_leaf[pvs.leaf_objects[leaf.first_object + f]] = 1;
+    }
+  }
+}
+
+LevelPvs read_level_pvs(const Level& level, const std::pair<std::size_t, std::size_t>& world_faces,
+                        std::size_t face_count) {
   LevelPvs pvs;
   pvs.in_some_leaf.assign(face_count, 0);
   pvs.in_world_model.assign(face_count, 0);
-  const Records<ModelRecord> models(level.lump(LumpId::models), "models");
-  const ModelRecord world = models.at(0);
-  if (world.first_face < 0 || world.face_count < 0 ||
-      !fits(static_cast<std::uint64_t>(world.first_face), static_cast<std::uint64_t>(world.face_count),
-            face_count)) {
-    throw Error(fmt::format("model 0 refers to faces {} … +{}, but the level holds {}", world.first_face,
-                            world.face_count, face_count));
-  }
-  std::fill_n(pvs.in_world_model.begin() + world.first_face, world.face_count, std::uint8_t{1});
+  std::fill_n(pvs.in_world_model.begin() + static_cast<std::ptrdiff_t>(world_faces.first), world_faces.second,
+              std::uint8_t{1});
   read_tree(level, pvs);
   read_leaves(level, face_count, pvs);
   read_visibility(level, pvs);
+  or_throw(check(pvs, face_count));
+  drop_unreached_leaves(pvs);
   return pvs;
 }
 
@@ -336,11 +402,15 @@ Scene read(Bytes bytes, std::string name, std::uint32_t patch_level) {
   const Level level(bytes);
   Scene scene;
   scene.name = std::move(name);
-  read_faces(level, patch_level, scene);
-  scene.level = read_level_pvs(level, scene.size());
-  or_throw(check(scene));
   const Bytes text = level.lump(LumpId::entities);
-  add_places(parse_entities({reinterpret_cast<const char*>(text.data()), text.size()}), scene);
+  const std::vector<Entity> entities =
+      parse_entities({reinterpret_cast<const char*>(text.data()), text.size()});
+  const std::size_t face_count = Records<FaceRecord>(level.lump(LumpId::faces), "faces").size();
+  const auto models = read_models(level, face_count);
+  read_faces(level, patch_level, place_faces(entities, models, face_count), scene);
+  scene.level = read_level_pvs(level, models[0], face_count);
+  or_throw(check(scene));
+  add_places(entities, scene);
   return scene;
 }
 

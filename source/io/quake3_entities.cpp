@@ -6,8 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include "io/quake3_format.hpp"
-
 namespace sightline::io::quake3 {
 
 namespace {
@@ -111,6 +109,19 @@ std::vector<Entity> parse_entities(std::string_view text) {
     entities.push_back(std::move(entity));
   }
   return entities;
+}
+
+std::map<std::size_t, Float3> model_origins(const std::vector<Entity>& entities) {
+  std::map<std::size_t, Float3> origins;
+  for (const Entity& entity : entities) {
+    const std::string_view model = value(entity, "model");
+    Float3 origin;
+    if (!model.starts_with('*') || parse_numbers(value(entity, "origin"), origin) != 3) continue;
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(model.data() + 1, model.data() + model.size(), number);
+    if (error == std::errc{} && end == model.data() + model.size()) origins.insert_or_assign(number, origin);
+  }
+  return origins;
 }
 
 void add_places(const std::vector<Entity>& entities, Scene& scene) {

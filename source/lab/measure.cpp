@@ -8,6 +8,7 @@
 
 #include "lab/file.hpp"
 #include "lab/loss.hpp"
+#include "lab/triangle_judge.hpp"
 
 namespace sightline::lab {
 namespace {
@@ -47,6 +48,7 @@ Json row_json(const Comparison& comparison, const Row& row) {
   out["culled"] = row.stats.objects - std::min(row.kept, row.stats.objects);
   out["culled_frustum"] = row.stats.culled_frustum;
   out["culled_contribution"] = row.stats.culled_contribution;
+  out["culled_facing"] = row.stats.culled_facing;
   out["culled_occlusion"] = row.stats.culled_occlusion;
   out["nodes_visited"] = row.stats.nodes_visited;
   out["draw_calls"] = row.stats.draw_calls;
@@ -90,13 +92,21 @@ Comparison compare(const Scene& scene, const EmbreeJudge& judge, std::span<const
   result.width = options.width, result.height = options.height;
   result.cameras = path.cameras;
   for (const Contestant& contestant : contestants) result.methods.push_back(contestant.name);
+  TriangleJudge triangle_judge(scene);
   std::vector<Frame> frames(contestants.size());
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], options.width, options.height));
     std::vector<std::vector<double>> times = take_times(contestants, view, v, options, frames);
     const ItemBuffer truth = judge.render(view);
     for (std::size_t m = 0; m < contestants.size(); ++m) {
-      const Loss loss = confirmed_loss(judge, view, truth, frames[m].visible);
+      Loss loss;
+      std::size_t truly_visible = truth.visible_count();
+      if (const TriangleGeometry* geometry = contestants[m].method->geometry()) {
+        TriangleJudge::Verdict found = triangle_judge.judge(view, *geometry, frames[m]);
+        loss = std::move(found.loss), truly_visible = found.truly_visible;
+      } else {
+        loss = confirmed_loss(judge, view, truth, frames[m].visible);
+      }
       Row row;
       row.method = contestants[m].name;
       row.guarantee = contestants[m].method->guarantee();
@@ -104,7 +114,7 @@ Comparison compare(const Scene& scene, const EmbreeJudge& judge, std::span<const
       row.stats = frames[m].stats;
       row.stats.objects = scene.size();
       row.kept = frames[m].visible.size();
-      row.truly_visible = truth.visible_count();
+      row.truly_visible = truly_visible;
       row.cull = timing_of(times[m]);
       row.lost_objects = loss.lost.size();
       row.lost_pixels = loss.lost_pixels;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "lab/table.hpp"
 
@@ -48,13 +49,16 @@ double estimated_frame_ms(const MethodSummary& s) noexcept {
 
 namespace {
 
+std::string draw_calls_of(const MethodSummary& s) {
+  return format_count(s.draw_calls) + (s.draw_calls == 1 ? " draw call" : " draw calls");
+}
+
 /// How the second best compares; `safe` begins with the best.
 std::string next_best(const std::vector<MethodSummary>& safe) {
   if (safe.size() < 2) return "";
   const MethodSummary &best = safe[0], &next = safe[1];
-  const std::string figures =
-      fmt::format("{} ms, {} triangles and {} draw calls", format_ms(next.cull.median),
-                  format_count(next.triangles), format_count(next.draw_calls));
+  const std::string figures = fmt::format("{} ms, {} triangles and {}", format_ms(next.cull.median),
+                                          format_count(next.triangles), draw_calls_of(next));
   // Timing alone does not repeat to a few percent.
   if (estimated_frame_ms(next) < 1.05 * estimated_frame_ms(best)) {
     return fmt::format(" {} comes within 5 % of that frame: {}.", next.method, figures);
@@ -73,8 +77,8 @@ std::string verdict(const Comparison& comparison) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(safe), [](const MethodSummary& s) {
     return s.lost_objects == 0 && s.guarantee != Guarantee::approximate;
   });
-  std::stable_sort(safe.begin(), safe.end(), [](const MethodSummary& a, const MethodSummary& b) {
-    return estimated_frame_ms(a) < estimated_frame_ms(b);
+  std::sort(safe.begin(), safe.end(), [](const MethodSummary& a, const MethodSummary& b) {
+    return std::pair(estimated_frame_ms(a), a.method) < std::pair(estimated_frame_ms(b), b.method);
   });
   std::string text;
   double least_triangles = std::numeric_limits<double>::infinity();
@@ -88,9 +92,9 @@ std::string verdict(const Comparison& comparison) {
     text = fmt::format(
         "This scene wants {}. Over {} views it lost nothing that a pixel shows; it decides in {} ms, keeps "
         "{} objects "
-        "where {} are visible, and leaves {} triangles in {} draw calls.",
+        "where {} are visible, and leaves {} triangles in {}.",
         best.method, views, format_ms(best.cull.median), format_count(best.kept),
-        format_count(best.truly_visible), format_count(best.triangles), format_count(best.draw_calls));
+        format_count(best.truly_visible), format_count(best.triangles), draw_calls_of(best));
     text += next_best(safe);
   }
   for (const MethodSummary& s : all) {

@@ -9,11 +9,15 @@
 #include "lab/embree_judge.hpp"
 #include "lab/loss.hpp"
 #include "lab/path_file.hpp"
+#include "lab/triangle_judge.hpp"
 
 namespace sightline::lab {
 namespace {
 
-constexpr std::size_t kExamples = 10;
+/// One is enough to show where an approximate method gives way; a defect wants several.
+std::size_t examples_wanted(Guarantee guarantee) {
+  return guarantee == Guarantee::approximate ? 1 : 10;
+}
 
 }  // namespace
 
@@ -25,6 +29,7 @@ Verification verify(const Scene& scene, std::span<const Contestant> contestants,
                     std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
                     const Progress& progress) {
   const EmbreeJudge judge(scene);
+  TriangleJudge triangle_judge(scene);
   Verification result;
   result.scene = scene.name;
   for (const Contestant& contestant : contestants) {
@@ -42,15 +47,22 @@ Verification verify(const Scene& scene, std::span<const Contestant> contestants,
       MethodVerdict& verdict = result.methods[m];
       frame.clear();
       contestants[m].method->cull(view, frame);
-      const Loss loss = confirmed_loss(judge, view, truth, frame.visible);
+      Loss loss;
+      std::size_t truly_visible = visible;
+      if (const TriangleGeometry* geometry = contestants[m].method->geometry()) {
+        TriangleJudge::Verdict found = triangle_judge.judge(view, *geometry, frame);
+        loss = std::move(found.loss), truly_visible = found.truly_visible;
+      } else {
+        loss = confirmed_loss(judge, view, truth, frame.visible);
+      }
       verdict.kept += frame.visible.size();
-      verdict.visible += visible;
+      verdict.visible += truly_visible;
       verdict.lost_objects += loss.lost.size();
       verdict.lost_pixels += loss.lost_pixels;
       verdict.excess_objects += loss.excess.size();
       if (loss.lost.empty()) continue;
       ++verdict.views_with_loss;
-      if (verdict.examples.size() < kExamples) {
+      if (verdict.examples.size() < examples_wanted(verdict.guarantee)) {
         verdict.examples.push_back({v, cameras[v], width, height, loss.lost.front(), loss.lost_pixels});
       }
     }

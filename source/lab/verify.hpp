@@ -29,7 +29,7 @@ struct MethodVerdict {
   std::uint64_t kept = 0, visible = 0;  ///< objects, summed over the views
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
   std::size_t views_with_loss = 0;
-  std::vector<LostObject> examples;  ///< the first lost object of each of the first views with a loss
+  std::vector<LostObject> examples;  ///< from the first views with a loss, one for approximate methods
 
   /// False where an exact or conservative method lost something; an approximate one only reports.
   [[nodiscard]] bool holds() const noexcept {

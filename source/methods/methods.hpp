@@ -7,9 +7,15 @@ namespace sightline::methods {
 
 extern const MethodInfo kNone;
 extern const MethodInfo kVfcVc;
+extern const MethodInfo kMasked;
 extern const MethodInfo kGridCell;
 extern const MethodInfo kObjectFrustum;
 extern const MethodInfo kLevelPvs;
+extern const MethodInfo kToca;
+extern const MethodInfo kBoca;
+extern const MethodInfo kWideRays;
+extern const MethodInfo kTrianglePvs;
+extern const MethodInfo kGuided;
 
 inline bool fits_any_scene(const Scene&) {
   return true;

@@ -1,5 +1,6 @@
-#include <array>
+#include <vector>
 
+#include "methods/draw_calls/draw_calls.hpp"
 #include "methods/methods.hpp"
 
 namespace sightline {
@@ -18,7 +19,12 @@ std::string_view to_string(Guarantee guarantee) noexcept {
 
 std::span<const MethodInfo> cpu_methods() noexcept {
   using namespace methods;
-  static const std::array kMethods{kNone, kVfcVc, kGridCell, kObjectFrustum, kLevelPvs};
+  static const std::vector<MethodInfo> kMethods = [] {
+    std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked};
+    all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
+    all.insert(all.end(), {kClusterCone, kToca, kBoca, kWideRays, kTrianglePvs, kGuided, kLevelPvs});
+    return all;
+  }();
   return kMethods;
 }
 

@@ -7,7 +7,7 @@ namespace sightline {
 
 std::span<const WorldInfo> worlds() noexcept {
   using namespace scene;
-  static const std::array kWorlds{kRegularWorld, kIrregularWorld, kForestWorld, kSoupWorld};
+  static const std::array kWorlds{kRegularWorld, kIrregularWorld, kForestWorld, kSoupWorld, kStrataWorld};
   return kWorlds;
 }
 

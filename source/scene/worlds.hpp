@@ -9,6 +9,7 @@ extern const WorldInfo kRegularWorld;
 extern const WorldInfo kIrregularWorld;
 extern const WorldInfo kForestWorld;
 extern const WorldInfo kSoupWorld;
+extern const WorldInfo kStrataWorld;
 
 /// A transform that scales, turns about y, and moves.
 Affine place(const Vec3& position, float scale, float heading = 0) noexcept;

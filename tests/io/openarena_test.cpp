@@ -1,4 +1,6 @@
 // Levels that nobody here made. Skipped, with a word, where the package openarena-081-maps is absent.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <random>
 
@@ -64,10 +66,14 @@ TEST_F(OpenArena, FiguresOfOneLevel) {
   EXPECT_LT(fewest, scene.size() / 2);
 }
 
-/// Whether the nearest triangle along the ray shows its front (1) or its back (-1); 0 for a miss.
-int side_hit(const Scene& scene, const Vec3& from, const Vec3& along) {
+struct Hit {
+  ObjectId object = kNoObject;
+  int side = 0;  ///< of the nearest triangle along the ray: its front (1) or its back (-1); 0 for a miss
+};
+
+Hit nearest_hit(const Scene& scene, const Vec3& from, const Vec3& along) {
   double nearest = 1e30;
-  int side = 0;
+  Hit hit;
   for (ObjectId o = 0; o < scene.size(); ++o) {
     const Mesh& mesh = scene.meshes[scene.mesh[o]];
     for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
@@ -89,10 +95,10 @@ int side_hit(const Scene& scene, const Vec3& from, const Vec3& along) {
       const double t = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / determinant;
       if (u < 0 || v < 0 || u + v > 1 || t <= 0 || t >= nearest) continue;
       nearest = t;
-      side = determinant > 0 ? 1 : -1;
+      hit = {o, determinant > 0 ? 1 : -1};
     }
   }
-  return side;
+  return hit;
 }
 
 TEST_F(OpenArena, PlayersSeeTheFrontsOfWalls) {
@@ -102,7 +108,7 @@ TEST_F(OpenArena, PlayersSeeTheFrontsOfWalls) {
   int fronts = 0, backs = 0;
   for (const Viewpoint& view : scene.viewpoints) {
     for (int ray = 0; ray < 40; ++ray) {
-      const int side = side_hit(scene, view.eye, {axis(random), axis(random), axis(random)});
+      const int side = nearest_hit(scene, view.eye, {axis(random), axis(random), axis(random)}).side;
       fronts += side > 0;
       backs += side < 0;
     }
@@ -110,6 +116,25 @@ TEST_F(OpenArena, PlayersSeeTheFrontsOfWalls) {
   EXPECT_GT(fronts, 300);
   // Two-sided surfaces such as banners may show their back.
   EXPECT_LT(backs, fronts / 20);
+}
+
+/// A level with doors and lifts, whose faces belong to no leaf.
+TEST_F(OpenArena, WhatPlayersSeeIsInTheReferencePvs) {
+  const Scene scene = load_scene("pak1-maps.pk3:maps/ce1m7.bsp");
+  std::mt19937 random(3);
+  std::normal_distribution<float> axis;
+  std::vector<std::uint8_t> mask(scene.size());
+  int moving = 0;
+  for (const Viewpoint& view : scene.viewpoints) {
+    scene.level->potentially_visible(view.eye, mask);
+    for (int ray = 0; ray < 100; ++ray) {
+      const Hit hit = nearest_hit(scene, view.eye, {axis(random), axis(random), axis(random)});
+      ASSERT_NE(hit.object, kNoObject) << "the level is closed";
+      EXPECT_EQ(mask[hit.object], 1) << view.name << " sees face " << hit.object;
+      moving += scene.level->in_world_model[hit.object] == 0;
+    }
+  }
+  EXPECT_GT(moving, 0) << "expected a door in sight";
 }
 
 TEST_F(OpenArena, MissingLevelNamesItsNeighbours) {

@@ -99,6 +99,20 @@ TEST(Quake3, TreeAndVisibilityComeAlong) {
             (Box{{0, -128 * kUnit, -128 * kUnit}, {128 * kUnit, 128 * kUnit, 128 * kUnit}}));
 }
 
+TEST(Quake3, MovingPartsStandWhereTheirEntityIsAndAreAlwaysPotentiallyVisible) {
+  const Scene scene = read(two_rooms());
+  EXPECT_FLOAT_EQ(scene.bounds[5].max.z, -100 * kUnit);
+  EXPECT_EQ(scene.level->in_some_leaf[5], 0);
+  EXPECT_EQ(scene.level->leaves[2].object_count, 0u) << "no view is ever in the leaf of a moving part";
+  // Nor does it matter which cluster the file gives that leaf.
+  Level level = two_rooms();
+  level.leaves[2].cluster = 1;
+  const Scene other = read(level);
+  std::vector<std::uint8_t> mask(other.size());
+  other.level->potentially_visible({1, 0, 0}, mask);
+  EXPECT_EQ(mask[5], 1);
+}
+
 TEST(Quake3, WithoutVisibilityAllSeeAll) {
   Level level = two_rooms();
   level.visibility.clear();
@@ -193,6 +207,8 @@ TEST(Quake3Hostile, ReferencesOutOfRange) {
         {"leaf face 2", [&](Level& l) { l.leaf_faces[2] = bad; }},
         {"model 0", [&](Level& l) { l.models[0].first_face = bad; }},
         {"model 0", [&](Level& l) { l.models[0].face_count = bad; }},
+        {"model 1", [&](Level& l) { l.models[1].first_face = bad; }},
+        {"model 1", [&](Level& l) { l.models[1].face_count = bad; }},
     };
     for (std::size_t i = 0; i < breaks.size(); ++i) {
       Level level = two_rooms();
@@ -203,7 +219,7 @@ TEST(Quake3Hostile, ReferencesOutOfRange) {
 }
 
 TEST(Quake3Hostile, TreeWithACircleOrAHoleIsRefused) {
-  for (const std::int32_t child : {0, 1, 7, -3, std::numeric_limits<std::int32_t>::min()}) {
+  for (const std::int32_t child : {0, 1, 7, -4, std::numeric_limits<std::int32_t>::min()}) {
     Level level = two_rooms();
     level.nodes[0].back = child;
     EXPECT_THAT(refusal(level), HasSubstr("node 0")) << child;
@@ -252,6 +268,12 @@ TEST(Quake3Hostile, FacesThatAllClaimTheSameVerticesAreRefused) {
   Level level = two_rooms();
   level.faces.assign(5000, level.faces[1]);
   EXPECT_THAT(refusal(level), HasSubstr("no more than a level of its size needs"));
+}
+
+TEST(Quake3Hostile, LeavesThatAllClaimTheSameFacesAreRefused) {
+  Level level = two_rooms();
+  level.leaves.assign(1000, level.leaves[0]);
+  EXPECT_THAT(refusal(level), HasSubstr("that other leaves claim too"));
 }
 
 TEST(Quake3Hostile, BrokenEntities) {

@@ -47,14 +47,16 @@ Level two_rooms() {
       "{\n\"classname\" \"info_player_deathmatch\"\n\"origin\" \"64 0 24\"\n\"angle\" \"90\"\n}\n"
       "{\n\"classname\" \"info_player_deathmatch\"\n\"origin\" \"-64 0 24\"\n\"angles\" \"0 180 0\"\n}\n"
       "{\n\"classname\" \"weapon_railgun\"\n\"origin\" \"32 32 16\"\n}\n"
+      "{\n\"classname\" \"func_door\"\n\"model\" \"*1\"\n\"origin\" \"0 100 0\"\n}\n"
       "{\n\"classname\" \"light\"\n\"origin\" \"0 0 0\"\n}\n"
       "{\n\"classname\" \"info_player_deathmatch\"\n\"origin\" \"nowhere\"\n}\n";
   level.shaders = {{{"textures/wall"}, 0, 1}, {{"textures/glass"}, 0, 0x20000001}};
   level.planes = {{{1, 0, 0}, 0}};
   level.nodes = {{0, -1, -2, {-128, -128, -128}, {128, 128, 128}}};
   level.leaves = {{0, 0, {0, -128, -128}, {128, 128, 128}, 0, 3, 0, 0},
-                  {1, 0, {-128, -128, -128}, {0, 128, 128}, 3, 2, 0, 0}};
-  level.leaf_faces = {0, 3, 4, 1, 2};
+                  {1, 0, {-128, -128, -128}, {0, 128, 128}, 3, 2, 0, 0},
+                  {0, 0, {0, 0, 0}, {1, 1, 1}, 5, 1, 0, 0}};
+  level.leaf_faces = {0, 3, 4, 1, 2, 5};
   level.models = {{{-128, -128, -128}, {128, 128, 128}, 0, 5, 0, 0}, {{0, 0, 0}, {1, 1, 1}, 5, 1, 0, 0}};
   // 0 … 3: the wall, clockwise as seen from its front (from smaller x).
   const Float3 towards_room{-1, 0, 0};

@@ -33,8 +33,9 @@ struct Level {
 
 /// Two rooms, x >= 0 (leaf 0, cluster 0) and x < 0 (leaf 1, cluster 1); room 1 sees room 0, not the other
 /// way. Faces: 0 a wall of room 0 that looks along -x, 1 a patch and 2 a triangle of room 1 (translucent), 3
-/// a flare and 4 a face without triangles of room 0, 5 a face of a door. Two spawn points, an item, one spawn
-/// in nothing.
+/// a flare and 4 a face without triangles of room 0, 5 a face of a door,
+/// which stands 100 units along y and has a leaf that the tree does not reach, as compilers write it. Two
+/// spawn points, an item, one spawn in nothing.
 Level two_rooms();
 Blob to_bsp(const Level& level);
 

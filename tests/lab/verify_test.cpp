@@ -52,6 +52,25 @@ TEST(Loss, RefusesSetsThatNoMethodMayGive) {
   EXPECT_THROW(compare_to_truth(truth_of({1, 1}), std::vector<ObjectId>{2}), Error);
 }
 
+// A pixel that single precision alone gives to an object accuses nobody; one that double precision confirms
+// does.
+TEST(Loss, CountsOnlyWhatDoublePrecisionConfirms) {
+  const Scene scene = or_throw(generate_world("regular?columns=2&rows=1&spacing=10"));
+  const EmbreeJudge judge(scene);
+  Camera camera;
+  camera.eye = {scene.sphere(0).centre.x, scene.sphere(0).centre.y, scene.sphere(0).centre.z + 5};
+  const View view = or_throw(make_view(camera, 40, 40));
+  ItemBuffer truth = judge.render(view);
+  ASSERT_GT(truth.pixels[0], 100u);
+  ASSERT_EQ(truth.pixels[1], 0u);
+  const std::uint32_t seen = truth.pixels[0];
+  truth.ids[0] = 1, truth.pixels[1] = 1;    // a corner in which there is nothing
+  truth.ids[39] = 0, truth.pixels[0] += 1;  // one pixel too many
+  const Loss loss = confirmed_loss(judge, view, truth, {});
+  EXPECT_THAT(loss.lost, ElementsAre(0u));
+  EXPECT_EQ(loss.lost_pixels, seen);
+}
+
 /// Every box against the frustum, but the left plane has moved `metres` inwards.
 class BrokenFrustum final : public Method {
 public:

@@ -40,6 +40,48 @@ TEST(Worlds, HaveThePublishedSizes) {
   EXPECT_EQ(generate_world("regular?detail=2")->triangles(0), 320u);
 }
 
+TEST(Worlds, StrataHaveThePublishedMeshCountsAndStandCentred) {
+  constexpr std::uint32_t kMeshes[] = {1371, 2684, 4433, 6744, 17773};
+  for (int model = 1; model <= 5; ++model) {
+    const Scene scene = *generate_world("strata?triangles=400000&model=" + std::to_string(model));
+    EXPECT_EQ(scene.size(), kMeshes[model - 1]);
+    EXPECT_EQ(scene.meshes.size(), scene.size());
+    EXPECT_FALSE(check(scene)) << check(scene)->message;
+    EXPECT_NEAR(static_cast<double>(triangle_count(scene)), 4e5, 1e5) << model;
+    const Box all = extent(scene);
+    EXPECT_NEAR(all.min.x + all.max.x, 0, 1e-2);
+    EXPECT_NEAR(all.min.y + all.max.y, 0, 1e-2);
+    EXPECT_NEAR(all.min.z + all.max.z, 0, 1e-2);
+    const Vec3 eye = scene.viewpoints[1].eye;
+    EXPECT_TRUE(eye.x > all.max.x || eye.y > all.max.y || eye.z > all.max.z);
+  }
+}
+
+// The divergence theorem: a closed body whose triangles face outwards has a positive volume.
+TEST(Worlds, StrataAreBodiesThatFaceOutwards) {
+  const Scene scene = *generate_world("strata");
+  for (const Mesh& mesh : scene.meshes) {
+    double volume = 0;
+    Vec3 area;
+    for (std::uint32_t i = mesh.first_index; i < mesh.first_index + mesh.index_count; i += 3) {
+      const auto corner = [&](std::uint32_t k) {
+        return scene.positions[mesh.first_vertex + scene.indices[i + k]];
+      };
+      const Vec3 a = corner(0), b = corner(1), c = corner(2);
+      const Vec3 n{(b.y - a.y) * (c.z - a.z) - (b.z - a.z) * (c.y - a.y),
+                   (b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z),
+                   (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)};
+      volume += a.x * n.x + a.y * n.y + a.z * n.z;
+      area = {area.x + n.x, area.y + n.y, area.z + n.z};
+    }
+    ASSERT_GT(volume, 0);
+    // Closed: the outward areas cancel.
+    ASSERT_NEAR(area.x, 0, 2);
+    ASSERT_NEAR(area.y, 0, 2);
+    ASSERT_NEAR(area.z, 0, 2);
+  }
+}
+
 TEST(Worlds, AnotherSeedIsAnotherWorld) {
   const Scene a = *generate_world("forest?trees=50&seed=1"), b = *generate_world("forest?trees=50&seed=2");
   EXPECT_FALSE(same_bytes(a.transform, b.transform));

@@ -1,0 +1,82 @@
+// Occlusion on the CPU, with no GPU: occluders are rasterised into a tiled hierarchical depth buffer, then
+// boxes are tested against it. After masked software occlusion culling (Hasselgren, Andersson &
+// Akenine-Möller 2016), but with a depth a pixel, and conservative: an occluder counts at a pixel only where
+// it surely covers the pixel's centre, with a depth that surely is not nearer than its own; a box is hidden
+// only where its nearest depth lies behind every pixel centre of its outward-rounded rectangle.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <sightline/culling.hpp>
+#include <sightline/result.hpp>
+#include <sightline/scene.hpp>
+#include <sightline/world.hpp>
+
+namespace sightline {
+
+namespace culling {
+struct DepthTiles;
+struct OccluderTopology;
+}  // namespace culling
+
+/// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
+/// the seams between triangles are tight while the outline is drawn a little smaller than it is.
+class OccluderMesh {
+public:
+  /// Three indices a triangle, each below positions.size(); a triangle with an index out of range, or without
+  /// area, is left out. Coordinates must be finite. Both faces of a triangle occlude.
+  OccluderMesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
+  ~OccluderMesh();
+  OccluderMesh(OccluderMesh&&) noexcept;
+  OccluderMesh& operator=(OccluderMesh&&) noexcept;
+
+  [[nodiscard]] std::size_t triangles() const noexcept;
+  [[nodiscard]] const culling::OccluderTopology& topology() const noexcept { return *topology_; }
+
+private:
+  std::unique_ptr<culling::OccluderTopology> topology_;
+};
+
+/// One view's depth of occluders. Drawing is for one thread, queries for many at once.
+class OcclusionBuffer {
+public:
+  OcclusionBuffer();
+  ~OcclusionBuffer();
+  OcclusionBuffer(OcclusionBuffer&&) noexcept;
+  OcclusionBuffer& operator=(OcclusionBuffer&&) noexcept;
+
+  /// Empties the buffer and takes the view. Allocates where the view is larger than any before. Refuses a
+  /// view that culling refuses, and one larger than 8192 pixels a side.
+  Check begin(const WorldView& view);
+
+  /// Draws solid boxes, relative to the view's origin; every point inside a box must be solid. Invalid ones
+  /// are skipped. Front to back is fastest; the result does not depend on the order.
+  void draw_boxes(std::span<const Box> boxes) noexcept;
+  void draw_boxes(std::span<const WorldBox> boxes) noexcept;
+  /// Draws the mesh moved by `transform`, relative to the view's origin. Allocates until it has seen its
+  /// largest mesh.
+  void draw_mesh(const OccluderMesh& mesh, const Affine& transform);
+
+  /// Whether some pixel centre may see the box, relative to the view's origin. False is certain.
+  [[nodiscard]] bool may_see(const Box& box) const noexcept;
+  /// The same for many: visible[i] is 1 or 0. The arrays need no padding.
+  void may_see(const BoxSpan& boxes, std::span<std::uint8_t> visible) const noexcept;
+  /// The same for boxes relative to another origin.
+  void may_see(const BoxSpan& boxes, const WorldPoint& origin,
+               std::span<std::uint8_t> visible) const noexcept;
+
+  [[nodiscard]] std::uint32_t width() const noexcept;
+  [[nodiscard]] std::uint32_t height() const noexcept;
+  /// 1 / (depth along the view) of the occluder at a pixel (perspective), -depth (orthographic), -infinity
+  /// where there is none. Pixels row by row, width × height.
+  void read_nearness(std::span<float> pixels) const noexcept;
+
+  [[nodiscard]] const culling::DepthTiles& tiles() const noexcept { return *tiles_; }
+
+private:
+  std::unique_ptr<culling::DepthTiles> tiles_;
+};
+
+}  // namespace sightline

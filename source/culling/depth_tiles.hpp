@@ -1,0 +1,117 @@
+// The memory of an OcclusionBuffer, and a view prepared for drawing and querying.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <sightline/occlusion.hpp>
+
+#include "partition/chunk_map.hpp"
+
+namespace sightline::culling {
+
+/// A view's projection about its eye, so that coordinates near the eye keep their digits: a point p is first
+/// moved to q = (p - eye_high) - eye_low. Then (pixel x, pixel y, 1)·w = rows · (q, 1).
+struct EyeProjection {
+  Vec3 eye_high, eye_low;
+  Vec4 x, y, w;
+  Vec4 nearness;  ///< · (q, 1): orthographic only, minus the depth along the view; else 1/w is used
+  bool orthographic = false;
+};
+
+/// What drawing needs besides: which way a pixel looks.
+struct PixelRays {
+  /// Per axis a: L_a(x, y) = at + x·across + y·down. Perspective: the direction through pixel (x, y) that has
+  /// w = 1; orthographic: where its ray crosses depth 0, relative to the eye.
+  std::array<float, 3> at{}, across{}, down{};
+  std::array<float, 3> forward{};  ///< orthographic: the ray's direction
+  Vec4 near_plane;                 ///< · (q, 1) >= 0 in front of the near plane
+  bool turns_right =
+      false;  ///< corners that go counterclockwise round a face do so to the right on the image
+};
+
+inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
+
+struct DepthTiles {
+  WorldView view;
+  EyeProjection projection;
+  PixelRays rays;
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t columns = 0, rows = 0;  ///< tiles
+  std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
+  /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
+  partition::AlignedVector<float> farthest;
+  /// One a tile: no pixel of it is nearer.
+  partition::AlignedVector<float> nearest;
+  /// 64 a tile, row by row; undefined where `covered` is 0. Pixels beyond the image hold +infinity.
+  partition::AlignedVector<float> nearness;
+  /// One a tile: the pixels that have an occluder, and those beyond the image, once it was touched.
+  std::vector<std::uint64_t> covered;
+
+  // scratch of draw_mesh
+  std::vector<float> screen_x, screen_y, screen_near, clearance, eye_x, eye_y, eye_z;
+  std::vector<Vec3> moved;
+  std::vector<std::int8_t> facing;
+};
+
+/// A convex polygon of the image and the planes in front of it: nearness there is the least of the planes'.
+struct Convex {
+  static constexpr std::size_t kMaxEdges = 10;
+  std::size_t left_edges = 0, right_edges = 0, planes = 0;
+  std::array<float, kMaxEdges + 1> left_at, left_slope, right_at, right_slope;  // x = at + slope·y
+  float top = 0, bottom = 0;  // pixel centres y with top <= y <= bottom
+  float left = 0, right = 0;  // bounds of the same kind
+  std::array<float, 3> at{}, across{}, down{};
+};
+
+// How far inside its outline, in pixels, an occluder must hold a pixel centre; and how much the rounding of
+// far-off coordinates adds.
+inline constexpr float kInset = 1.0f / 256, kInsetGrowth = 2e-6f;
+// Edges flatter than this are the top or the bottom of a polygon.
+inline constexpr float kFlat = 1e-3f;
+
+/// Adds the edge from a to b, whose interior lies to its left or right on the image, moved inwards by `inset`
+/// pixels.
+inline void add_edge(Convex& polygon, float ax, float ay, float bx, float by, bool interior_left,
+                     float inset) noexcept {
+  const float dy = by - ay;
+  const bool steep = std::fabs(dy) >= kFlat;
+  const float slope = (bx - ax) / dy, at = ax - ay * slope;
+  const float inwards = inset * (1 + std::fabs(slope));
+  // Written to both lists and counted in one: no branch to guess.
+  polygon.right_at[polygon.right_edges] = at - inwards;
+  polygon.right_slope[polygon.right_edges] = slope;
+  polygon.left_at[polygon.left_edges] = at + inwards;
+  polygon.left_slope[polygon.left_edges] = slope;
+  polygon.right_edges += steep && interior_left;
+  polygon.left_edges += steep && !interior_left;
+}
+
+/// Moves plane p away by what rounding can have brought it nearer: of the numbers, and of the pixel's place
+/// on a surface seen edge on.
+inline void move_back(Convex& polygon, std::size_t p, float nearest) noexcept {
+  polygon.at[p] -=
+      2e-5f * std::fabs(nearest) + (std::fabs(polygon.across[p]) + std::fabs(polygon.down[p])) / 64;
+}
+
+struct OccluderTopology {
+  std::vector<Vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
+  std::vector<std::array<std::uint32_t, 3>> neighbours;
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+};
+
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept;
+void draw_convex(DepthTiles& tiles, const Convex& polygon) noexcept;
+/// A box that crosses the near plane, about the eye.
+void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
+                      const std::array<float, 3>& high) noexcept;
+void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
+void project(const EyeProjection& projection, std::span<const Vec3> points, DepthTiles& scratch) noexcept;
+void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
+                 std::uint8_t* visible) noexcept;
+
+}  // namespace sightline::culling

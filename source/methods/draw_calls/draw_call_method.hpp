@@ -1,0 +1,68 @@
+// The frame of all methods of paper D: cells that the frustum touches, of them the units that can face the
+// eye, of them ranges of triangles, as draws.
+#pragma once
+
+#include <vector>
+
+#include "methods/draw_calls/units.hpp"
+#include "methods/methods.hpp"
+
+namespace sightline::methods {
+
+/// How triangles are put in cells and cells are drawn.
+struct DrawCallPlan {
+  bool clusters = false;  ///< else a structure of some height
+  partition::Structure structure = partition::Structure::octree;
+  std::uint32_t height = 4;
+  std::uint32_t cluster_size = 64;
+  Strategy strategy = Strategy::drawcall_wise;
+  FacingRule facing = FacingRule::none;
+  Submission submission = Submission::calls;
+  bool operator==(const DrawCallPlan&) const = default;
+};
+
+class DrawCallMethod : public Method {
+public:
+  DrawCallMethod(const Scene& scene, const DrawCallPlan& plan);
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override {
+    return plan_.facing == FacingRule::printed ? Guarantee::approximate : Guarantee::exact;
+  }
+  /// Builds everything anew: meant for what stands still.
+  void update(std::span<const ObjectId> moved) override;
+  void cull(const View& view, Frame& frame) noexcept override;
+  [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
+
+  [[nodiscard]] const DrawCallPlan& plan() const noexcept { return plan_; }
+  /// Cells of the structure, for pictures: opaque triangles' first.
+  [[nodiscard]] std::vector<Box> cells() const;
+
+private:
+  /// Opaque and transparent triangles apart, so that the latter can be blended over the former.
+  struct Layer {
+    partition::TrianglePartition partition;
+    Units units;
+  };
+
+  void rebuild();
+  void take(const Layer& layer, const Facing& facing, Frame& frame) noexcept;
+  void submit(Frame& frame) noexcept;
+
+  const Scene& scene_;
+  DrawCallPlan plan_;
+  Box extent_;
+  std::array<Layer, 2> layers_;
+  std::vector<Vec3> positions_;
+  std::vector<std::uint32_t> indices_, sources_;
+  std::vector<ObjectId> objects_;
+  TriangleGeometry geometry_;
+
+  // of the frame
+  std::vector<partition::TrianglePartition::Run> runs_;
+  std::vector<TriangleRange> ranges_;
+  std::vector<std::uint64_t>
+      seen_;  ///< one an object: 2 · frame where in a visible cell, + 1 where submitted
+  std::uint64_t frame_ = 0, touched_ = 0;
+};
+
+}  // namespace sightline::methods

@@ -1,0 +1,16 @@
+// What paper D gives to the registry.
+#pragma once
+
+#include <array>
+
+#include "methods/methods.hpp"
+
+namespace sightline::methods {
+
+extern const std::array<MethodInfo, 9> kDrawCallMethods;
+extern const MethodInfo kClusterCone;
+
+/// The parameter `submission`.
+Submission submission_from(const Parameters& parameters) noexcept;
+
+}  // namespace sightline::methods

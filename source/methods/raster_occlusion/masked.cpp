@@ -1,0 +1,179 @@
+// Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
+// 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles,
+// then all against the tiles. Where a scene is one built thing of few triangles, like a game level, all of it
+// occludes.
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include <sightline/occlusion.hpp>
+#include <sightline/projection.hpp>
+#include <sightline/world.hpp>
+
+#include "culling/draw_list.hpp"
+#include "methods/methods.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::array kParameters{
+    ParameterInfo{"occluders", "at most so many objects occlude, the largest on the image", "64", 0, 100000,
+                  true},
+    ParameterInfo{"pixels", "px², the least area of an occluder's bounding sphere", "150", 0, 1e9},
+    ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
+};
+
+WorldBox wide(const Box& b) {
+  return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
+}
+
+class Masked final : public Method {
+public:
+  Masked(const Scene& scene, const Parameters& parameters)
+      : scene_(scene),
+        most_occluders_(parameters.count("occluders")),
+        least_area_(static_cast<float>(parameters.number("pixels"))),
+        draw_list_(scene),
+        handles_(scene.size()),
+        moved_(scene.size(), 0) {
+    std::vector<WorldBox> boxes(scene.size());
+    for (ObjectId o = 0; o < scene.size(); ++o) boxes[o] = wide(scene.bounds[o]);
+    usable_ = !world_.insert(boxes, handles_);
+    // Objects that share few meshes are instances, whose triangles would be too many in one.
+    const bool one_thing = 2 * scene.meshes.size() >= scene.size();
+    if (one_thing && triangle_count(scene) <= parameters.count("whole")) {
+      build_whole();
+    } else {
+      meshes_.resize(scene.meshes.size());
+    }
+  }
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
+
+  void update(std::span<const ObjectId> objects) override {
+    bool first_time = false;
+    for (const ObjectId o : objects) {
+      const WorldBox box = wide(scene_.bounds[o]);
+      usable_ = usable_ && !world_.move({&handles_[o], 1}, {&box, 1});
+      first_time = first_time || !moved_[o];
+      moved_[o] = 1;
+    }
+    if (whole_ && first_time) build_whole();
+  }
+
+  void cull(const View& view, Frame& frame) noexcept override {
+    frame.clear();
+    CullStats& stats = frame.stats;
+    stats.objects = scene_.size();
+    frame.visible.resize(cull_capacity(world_));
+    const WorldView at{view, {}};
+    CullResult result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+    // A world or view beyond what the tiles hold is culled by frustum alone, or not at all.
+    if (usable_ && result.error == CullError::none && result.count > 1 && !buffer_.begin(at)) {
+      draw_occluders(view, std::span(frame.visible).first(result.count));
+      const OcclusionBuffer* buffer = &buffer_;
+      result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
+    }
+    if (!usable_ || result.error != CullError::none) {
+      frame.visible.resize(scene_.size());
+      for (ObjectId o = 0; o < scene_.size(); ++o) frame.visible[o] = o;
+    } else {
+      frame.visible.resize(result.count);
+      stats.culled_occlusion = result.culled_occlusion;
+    }
+    stats.tested = result.tested;
+    stats.nodes_visited = result.nodes_visited;
+    stats.culled_frustum = scene_.size() - frame.visible.size() - stats.culled_occlusion;
+    draw_list_.build(scene_, view, frame);
+  }
+
+private:
+  struct Occluder {
+    float area, distance;
+    ObjectId object;
+  };
+
+  // All opaque objects that never moved, in world space, so that their seams are joined across objects.
+  void build_whole() {
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> indices;
+    for (ObjectId o = 0; o < scene_.size(); ++o) {
+      if (moved_[o] || scene_.surface[o] != Surface::opaque) continue;
+      const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+        positions.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + v]));
+      }
+      for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+        indices.push_back(first + scene_.indices[mesh.first_index + i]);
+      }
+    }
+    whole_ = std::make_unique<OccluderMesh>(positions, indices);
+  }
+
+  const OccluderMesh& mesh_of(ObjectId object) {
+    const std::uint32_t index = scene_.mesh[object];
+    if (!meshes_[index]) {
+      const Mesh& mesh = scene_.meshes[index];
+      meshes_[index] = std::make_unique<OccluderMesh>(
+          std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count),
+          std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count));
+    }
+    return *meshes_[index];
+  }
+
+  void draw_occluders(const View& view, std::span<const ObjectId> candidates) {
+    if (whole_) return buffer_.draw_mesh(*whole_, {});
+    const Projector projector = make_projector(view, extent(scene_));
+    picked_.clear();
+    for (const ObjectId o : candidates) {
+      if (scene_.surface[o] != Surface::opaque) continue;
+      const Sphere sphere = scene_.sphere(o);
+      const float area = projected_area(projector, sphere);
+      const Vec3 to{sphere.centre.x - projector.eye.x, sphere.centre.y - projector.eye.y,
+                    sphere.centre.z - projector.eye.z};
+      if (area >= least_area_) picked_.push_back({area, to.x * to.x + to.y * to.y + to.z * to.z, o});
+    }
+    if (picked_.size() > most_occluders_) {
+      std::nth_element(picked_.begin(), picked_.begin() + most_occluders_, picked_.end(),
+                       [](const Occluder& a, const Occluder& b) {
+                         return a.area != b.area ? a.area > b.area : a.object < b.object;
+                       });
+      picked_.resize(most_occluders_);
+    }
+    std::sort(picked_.begin(), picked_.end(), [](const Occluder& a, const Occluder& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.object < b.object;
+    });
+    for (const Occluder& occluder : picked_) {
+      buffer_.draw_mesh(mesh_of(occluder.object), scene_.transform[occluder.object]);
+    }
+  }
+
+  const Scene& scene_;
+  std::uint32_t most_occluders_;
+  float least_area_;
+  culling::DrawList draw_list_;
+  World world_;
+  Culler culler_;
+  OcclusionBuffer buffer_;
+  std::vector<Handle> handles_;
+  std::vector<std::uint8_t> moved_;
+  std::unique_ptr<OccluderMesh> whole_;
+  std::vector<std::unique_ptr<OccluderMesh>> meshes_;
+  std::vector<Occluder> picked_;
+  bool usable_ = false;
+};
+
+}  // namespace
+
+const MethodInfo kMasked{"masked",
+                         "Hasselgren et al. 2016",
+                         "occluders into a hierarchical depth buffer on the CPU, then boxes against it",
+                         Guarantee::conservative,
+                         "",
+                         kParameters,
+                         fits_any_scene,
+                         make<Masked>};
+
+}  // namespace sightline::methods

@@ -1,0 +1,220 @@
+#include "pvs/wide_rays.hpp"
+
+#include <bit>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pvs/wide_rays.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include "pvs/wide_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::pvs::HWY_NAMESPACE {
+
+constexpr std::size_t kPacket = 16;
+
+struct WideResult {
+  float distance;
+  ObjectId object;
+
+  void offer(float t, ObjectId id) {
+    if (t < distance || (t == distance && id < object)) distance = t, object = id;
+  }
+};
+
+// As many rays as a vector has lanes, going down the tree together: a box is tested against all at once, and
+// where few are left that meet a node, each goes on alone.
+using P = hn::CappedTag<float, kPacket>;
+using PU = hn::RebindToUnsigned<P>;
+using VP = hn::Vec<P>;
+
+struct Packet {
+  alignas(64) float origin[3][kPacket], inverse[3][kPacket];
+  alignas(64) float best[kPacket];
+  alignas(64) std::uint32_t object[kPacket];
+};
+
+constexpr int kFew = 3;
+
+struct PacketSlab {
+  VP origin, inverse;
+  std::size_t first, last;
+};
+
+HWY_INLINE std::uint32_t bits_of(hn::Mask<P> mask) {
+  std::uint8_t some[8] = {};
+  hn::StoreMaskBits(P(), mask, some);
+  return some[0] | std::uint32_t{some[1]} << 8;
+}
+
+// All directions have the same signs, and none is 0.
+HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const PreparedRay* const* rays,
+                            std::uint64_t* stack, std::uint32_t* stack_rays, Work& work) {
+  const P p;
+  const PU pu;
+  PacketSlab slabs[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t low = axis * kWide, high = low + 3 * kWide;
+    const bool backwards = packet.inverse[axis][0] < 0;
+    slabs[axis] = {hn::Load(p, packet.origin[axis]), hn::Load(p, packet.inverse[axis]),
+                   backwards ? high : low, backwards ? low : high};
+  }
+  VP best = hn::Load(p, packet.best);
+  auto object = hn::Load(pu, packet.object);
+  std::size_t waits = 0;
+  std::uint32_t current = WideNode::kInner;
+  while (true) {
+    const WideNode& node = nodes[current & WideNode::kIndex];
+    const float* planes = node.min_x.data();
+    const bool leaf = (current & WideNode::kLeaf) != 0;
+    (leaf ? work.leaves : work.inner) += hn::Lanes(p);
+    const std::size_t before = waits;
+    for (std::uint32_t lane = 0; lane < kWide; ++lane) {
+      const std::uint32_t child = node.child[lane];
+      if (child == kNoObject) break;  // filled from the first lane on
+      VP entry = hn::Zero(p), exit = best;
+      for (const PacketSlab& slab : slabs) {
+        const VP first = hn::Set(p, planes[slab.first + lane]), last = hn::Set(p, planes[slab.last + lane]);
+        entry = hn::Max(hn::Mul(hn::Sub(first, slab.origin), slab.inverse), entry);
+        exit = hn::Min(hn::Mul(hn::Sub(last, slab.origin), slab.inverse), exit);
+      }
+      const auto hit = hn::Le(entry, exit);
+      if (leaf || child < WideNode::kInner) {
+        const auto id = hn::Set(pu, child);
+        const auto lower = hn::RebindMask(p, hn::Lt(id, object));
+        const auto nearer = hn::And(hit, hn::Or(hn::Lt(entry, best), lower));
+        best = hn::IfThenElse(nearer, entry, best);
+        object = hn::IfThenElse(hn::RebindMask(pu, nearer), id, object);
+        continue;
+      }
+      const std::uint32_t meeting = bits_of(hit);
+      if (meeting == 0) continue;
+      prefetch(nodes[child & WideNode::kIndex]);
+      const float nearest = hn::GetLane(
+          hn::MinOfLanes(p, hn::IfThenElse(hit, entry, hn::Set(p, std::numeric_limits<float>::max()))));
+      const std::uint64_t entry_bits = waiting(nearest, child);
+      std::size_t at = waits++;
+      for (; at > before && stack[at - 1] < entry_bits; --at) {
+        stack[at] = stack[at - 1], stack_rays[at] = stack_rays[at - 1];
+      }
+      stack[at] = entry_bits, stack_rays[at] = meeting;
+    }
+    bool found = false;
+    while (!found && waits > 0) {
+      const std::uint64_t next = stack[--waits];
+      const float distance = std::bit_cast<float>(static_cast<std::uint32_t>(next >> 32));
+      current = static_cast<std::uint32_t>(next);
+      std::uint32_t going = stack_rays[waits] & bits_of(hn::Ge(best, hn::Set(p, distance)));
+      if (std::popcount(going) > kFew) {
+        found = true;
+      } else if (going != 0) {
+        hn::Store(best, p, packet.best);
+        hn::Store(object, pu, packet.object);
+        for (; going != 0; going &= going - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(going));
+          WideResult alone{packet.best[i], packet.object[i]};
+          walk_as<false>(nodes, current, *rays[i], alone, stack + waits, work);
+          packet.best[i] = alone.distance, packet.object[i] = alone.object;
+        }
+        best = hn::Load(p, packet.best);
+        object = hn::Load(pu, packet.object);
+      }
+    }
+    if (!found) break;
+  }
+  hn::Store(best, p, packet.best);
+  hn::Store(object, pu, packet.object);
+}
+
+bool same_signs(const Packet& packet, std::size_t lanes) {
+  for (const auto& inverse : packet.inverse) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      if (inverse[i] == 0 || (inverse[i] < 0) != (inverse[0] < 0)) return false;
+    }
+  }
+  return true;
+}
+
+void cast(const WideNode* nodes, const PreparedRay* rays, const std::uint32_t* order, std::size_t count,
+          bool together, ObjectId* object, float* distance, WideStack* stack, RayStats* stats) {
+  Work work;
+  std::uint64_t hits = 0;
+  const std::size_t lanes = hn::Lanes(P());
+  std::size_t r = 0;
+  const auto at_turn = [&](std::size_t turn) { return order ? order[turn] : turn; };
+  const auto store = [&](std::size_t turn, float t, ObjectId id) {
+    const std::size_t at = at_turn(turn);
+    const bool hit = id != kNoObject;
+    object[at] = id;
+    distance[at] = hit ? t : -1;
+    hits += hit;
+  };
+  while (r < count) {
+    Packet packet;
+    const PreparedRay* members[kPacket];
+    if (together && lanes >= 8 && count - r >= lanes) {
+      for (std::size_t i = 0; i < lanes; ++i) {
+        const PreparedRay& ray = rays[at_turn(r + i)];
+        members[i] = &ray;
+        packet.origin[0][i] = ray.origin.x, packet.inverse[0][i] = ray.inverse.x;
+        packet.origin[1][i] = ray.origin.y, packet.inverse[1][i] = ray.inverse.y;
+        packet.origin[2][i] = ray.origin.z, packet.inverse[2][i] = ray.inverse.z;
+        packet.best[i] = ray.max_distance, packet.object[i] = kNoObject;
+      }
+      if (same_signs(packet, lanes)) {
+        cast_packet(nodes, packet, members, stack->entries.data(), stack->rays.data(), work);
+        for (std::size_t i = 0; i < lanes; ++i) store(r + i, packet.best[i], packet.object[i]);
+        r += lanes;
+        continue;
+      }
+    }
+    const PreparedRay& ray = rays[at_turn(r)];
+    WideResult best{ray.max_distance, kNoObject};
+    walk(nodes, WideNode::kInner, ray, best, stack->entries.data(), work);
+    store(r, best.distance, best.object);
+    ++r;
+  }
+  stats->hits += hits;
+  stats->nodes += work.inner * kWide;
+  stats->boxes += work.leaves * kWide;
+}
+
+}  // namespace sightline::pvs::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::pvs {
+
+HWY_EXPORT(cast);
+
+void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
+               std::span<const std::uint32_t> order, std::span<ObjectId> object, std::span<float> distance,
+               WideStack& stack, RayStats& stats) {
+  const std::size_t count = order.empty() ? rays.size() : order.size();
+  stats.rays += count;
+  if (bvh.nodes().empty()) {
+    for (std::size_t r = 0; r < rays.size(); ++r) object[r] = kNoObject, distance[r] = -1;
+    return;
+  }
+  // A ray that leaves its packet walks on above what waits for the packet.
+  const std::size_t room = 2 * std::size_t{bvh.stack_size()};
+  if (stack.entries.size() < room) stack.entries.resize(room), stack.rays.resize(room);
+  // With many more objects than rays even neighbours part soon, and a packet only drags them along.
+  constexpr std::size_t kObjectsARay = 16;
+  const bool together = bvh.size() < kObjectsARay * count;
+  HWY_DYNAMIC_DISPATCH(cast)
+  (bvh.nodes().data(), rays.data(), order.empty() ? nullptr : order.data(), count, together, object.data(),
+   distance.data(), &stack, &stats);
+}
+
+void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits) {
+  hits.reset(grid.size());
+  hits.stats.rays = 0;
+  cast_wide(bvh, grid.prepared, grid.order, hits.object, hits.distance, stack, hits.stats);
+}
+
+}  // namespace sightline::pvs
+#endif

@@ -1,0 +1,31 @@
+// The nearest box of each ray down the wide tree, eight boxes at once, nearest nodes first.
+#pragma once
+
+#include <span>
+
+#include <sightline/ray.hpp>
+
+#include "partition/wide_bvh.hpp"
+#include "pvs/ray_grid.hpp"
+#include "pvs/ray_hits.hpp"
+
+namespace sightline::pvs {
+
+/// Waiting nodes, and which rays of a packet they wait for; reused, so that casting allocates nothing once it
+/// has grown. One a thread.
+struct WideStack {
+  std::vector<std::uint64_t> entries;
+  std::vector<std::uint32_t> rays;
+};
+
+/// Casts the rays whose indices stand in `order`, or all as they stand where it is empty; neighbours in that
+/// order share their way down. Writes object[r] and distance[r] for each ray r with the meaning of RayHits,
+/// and adds to `stats`. The same hits to the bit as testing every box, in any order.
+void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
+               std::span<const std::uint32_t> order, std::span<ObjectId> object, std::span<float> distance,
+               WideStack& stack, RayStats& stats);
+
+/// A whole grid, tile by tile, into a result that is reset first.
+void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits);
+
+}  // namespace sightline::pvs

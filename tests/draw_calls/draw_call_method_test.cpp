@@ -1,0 +1,172 @@
+// The methods of paper D draw the picture that all triangles draw: nothing less, down to the triangle.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include <sightline/frustum.hpp>
+#include <sightline/method.hpp>
+#include <sightline/worlds.hpp>
+
+#include "lab/random_views.hpp"
+#include "lab/triangle_judge.hpp"
+#include "lab/verify.hpp"
+#include "support/random_views.hpp"
+#include "support/triangles.hpp"
+
+namespace sightline {
+namespace {
+
+const std::array<std::string, 9> kNine{"simple-grid",        "simple-octree",        "simple-kd-tree",
+                                       "drawcall-wise-grid", "drawcall-wise-octree", "drawcall-wise-kd-tree",
+                                       "zhang-grid",         "zhang-octree",         "zhang-kd-tree"};
+
+std::set<std::uint32_t> submitted(const Method& method, const Frame& frame) {
+  std::set<std::uint32_t> out;
+  for (const DrawCommand& draw : frame.draws) {
+    const auto sources = method.geometry()->sources.subspan(draw.first_instance, draw.index_count / 3);
+    out.insert(sources.begin(), sources.end());
+  }
+  return out;
+}
+
+TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
+  std::vector<std::string> names(kNine.begin(), kNine.end());
+  for (const auto& [name, triangles] : test::awkward_triangles()) {
+    const Scene scene = test::scene_of(triangles);
+    const auto contestants = lab::make_contestants(scene, names);
+    const auto cameras = lab::random_cameras(scene, 25, 7);
+    const lab::Verification result = lab::verify(scene, contestants, cameras, 96, 64);
+    for (const auto& verdict : result.methods) {
+      EXPECT_EQ(verdict.guarantee, Guarantee::exact);
+      EXPECT_EQ(verdict.lost_pixels, 0u) << name << ' ' << verdict.method;
+      if (name != "single" && name != "degenerate") EXPECT_GT(verdict.visible, 0u) << name;
+    }
+  }
+}
+
+// Independent of the judge's own book-keeping: rays against a scene of only the submitted triangles.
+TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
+  const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
+  const Scene triangles = lab::one_object_a_triangle(scene);
+  const auto cameras = lab::random_cameras(scene, 6, 9);
+  for (const std::string& name : kNine) {
+    const auto method = *create_method(name, scene);
+    const lab::Faces faces = method->geometry()->front_faces_only ? lab::Faces::front : lab::Faces::both;
+    const lab::EmbreeJudge judge(triangles, faces);
+    for (const Camera& camera : cameras) {
+      const View view = *make_view(camera, 120, 80);
+      Frame frame;
+      method->cull(view, frame);
+      const std::set<std::uint32_t> drawn = submitted(*method, frame);
+      Scene only;
+      std::vector<std::uint32_t> number;
+      for (const std::uint32_t t : drawn) {
+        const Mesh& mesh = triangles.meshes[t];
+        const std::uint32_t added =
+            only.add_mesh(std::span(triangles.positions).subspan(mesh.first_vertex, 3),
+                          std::span(triangles.normals).subspan(mesh.first_vertex, 3),
+                          std::span(triangles.indices).subspan(mesh.first_index, 3));
+        only.add_object(added, {}, triangles.surface[t]);
+        number.push_back(t);
+      }
+      const lab::ItemBuffer truth = judge.render(view);
+      if (only.empty()) {
+        EXPECT_EQ(truth.visible_count(), 0u);
+        continue;
+      }
+      const lab::ItemBuffer picture = lab::EmbreeJudge(only, faces).render(view);
+      for (std::size_t p = 0; p < truth.ids.size(); ++p) {
+        const ObjectId shown = picture.ids[p] == kNoObject ? kNoObject : number[picture.ids[p]];
+        ASSERT_EQ(shown, truth.ids[p]) << name << " pixel " << p;
+      }
+    }
+  }
+}
+
+// Brute force: a triangle whose box overlaps the frustum is submitted by simple and drawcall-wise whatever
+// the structure, its height and the submission.
+TEST(DrawCalls, EveryTriangleWithACornerInViewIsSubmitted) {
+  for (const auto& [name, triangles] : test::awkward_triangles()) {
+    const Scene scene = test::scene_of(triangles);
+    for (const char* structure : {"grid", "octree", "kd-tree"}) {
+      for (const char* height : {"1", "3", "6"}) {
+        std::vector<std::unique_ptr<Method>> methods;
+        for (const std::string strategy : {"simple-", "drawcall-wise-"}) {
+          for (const std::string submission : {"calls", "multi-draw", "merged"}) {
+            methods.push_back(*create_method(
+                strategy + structure + "?height=" + height + "&submission=" + submission, scene));
+          }
+        }
+        scene::Random random(61);
+        for (int v = 0; v < 12; ++v) {
+          const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
+          const Frustum frustum = make_frustum(view, extent(scene));
+          std::vector<std::set<std::uint32_t>> drawn;
+          std::vector<Frame> frames(methods.size());
+          for (std::size_t m = 0; m < methods.size(); ++m) {
+            methods[m]->cull(view, frames[m]);
+            drawn.push_back(submitted(*methods[m], frames[m]));
+            ASSERT_EQ(drawn[m], drawn[0]) << name << ' ' << structure << height << " method " << m;
+          }
+          for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+            const bool corner_in_view = std::ranges::any_of(triangles[t], [&](const Vec3& corner) {
+              return overlaps(frustum, Box{corner, corner});
+            });
+            if (corner_in_view) ASSERT_TRUE(drawn[0].contains(t)) << name << ' ' << structure << ' ' << t;
+          }
+          // Merging never adds calls; what is merged in the global list is drawn once.
+          EXPECT_EQ(frames[1].stats.draw_calls, frames[1].draws.empty() ? 0u : 1u);
+          EXPECT_LE(frames[2].stats.draw_calls, frames[0].stats.draw_calls);
+          EXPECT_EQ(frames[2].stats.triangles, drawn[2].size());
+          EXPECT_LE(frames[5].stats.draw_calls, frames[3].stats.draw_calls);
+          EXPECT_EQ(frames[5].stats.triangles, frames[3].stats.triangles);
+        }
+      }
+    }
+  }
+}
+
+TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
+  const Scene scene = *generate_world("soup?triangles=20000&size=60");
+  const auto zhang = *create_method("zhang-octree", scene),
+             plain = *create_method("drawcall-wise-octree", scene);
+  scene::Random random(62);
+  std::uint64_t fewer = 0, all = 0;
+  for (int v = 0; v < 40; ++v) {
+    const View view = test::random_view(random, {{-30, -30, -30}, {30, 30, 30}});
+    Frame a, b;
+    zhang->cull(view, a), plain->cull(view, b);
+    ASSERT_LE(a.stats.triangles, b.stats.triangles);
+    fewer += a.stats.triangles, all += b.stats.triangles;
+  }
+  EXPECT_LT(static_cast<double>(fewer), 0.85 * static_cast<double>(all));
+}
+
+TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
+  const Scene scene = *generate_world("soup?triangles=5000&size=60");
+  const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
+  const auto contestants = lab::make_contestants(scene, names);
+  const auto result = lab::verify(scene, contestants, lab::random_cameras(scene, 20, 3), 96, 64);
+  EXPECT_EQ(result.methods[0].guarantee, Guarantee::approximate);
+  EXPECT_GT(result.methods[0].lost_pixels, 0u);
+  EXPECT_EQ(result.methods[1].lost_pixels, 0u);
+}
+
+TEST(DrawCalls, AllocateNothingOnceTheyHaveGrown) {
+  const Scene scene = *generate_world("soup?triangles=5000&size=60");
+  for (const std::string& name : kNine) {
+    const auto method = *create_method(name, scene);
+    const View view = *make_view({.eye = {0, 0, 0}}, 320, 200);
+    Frame frame;
+    method->cull(view, frame);
+    const auto* draws = frame.draws.data();
+    const auto* visible = frame.visible.data();
+    for (int i = 0; i < 3; ++i) method->cull(view, frame);
+    EXPECT_EQ(frame.draws.data(), draws);
+    EXPECT_EQ(frame.visible.data(), visible);
+  }
+}
+
+}  // namespace
+}  // namespace sightline

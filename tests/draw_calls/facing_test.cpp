@@ -1,0 +1,125 @@
+// The facing rule against every triangle it would drop.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/linear.hpp"
+#include "methods/draw_calls/facing.hpp"
+#include "methods/draw_calls/flat_triangles.hpp"
+#include "support/random_views.hpp"
+#include "support/triangles.hpp"
+
+namespace sightline::methods {
+namespace {
+
+using geometry::to_double;
+
+double angle(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::acos(std::clamp(glm::dot(a, b) / (glm::length(a) * glm::length(b)), -1.0, 1.0));
+}
+
+/// A bundle of triangles whose normals lie around a direction.
+struct Bundle {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices, ids;
+
+  Bundle(scene::Random& random, const Box& room, float spread) {
+    const Vec3 around = random.direction();
+    const std::uint32_t count = 1 + random.below(6);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      const Vec3 w = random.direction();
+      const glm::dvec3 n = glm::normalize(to_double(around) + double{spread} * to_double(w));
+      const glm::dvec3 side =
+          glm::normalize(glm::cross(n, std::fabs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0)));
+      const glm::dvec3 up = glm::cross(n, side), at = to_double(random.inside(room));
+      for (const glm::dvec3& corner : {at, at + 2.0 * side, at + 2.0 * up})
+        positions.push_back(geometry::to_vec3(corner));
+      ids.push_back(t);
+    }
+    for (std::uint32_t i = 0; i < positions.size(); ++i) indices.push_back(i);
+  }
+  [[nodiscard]] partition::TriangleSpan span() const { return {positions, indices}; }
+};
+
+constexpr Box kEverywhere{{-1e4f, -1e4f, -1e4f}, {1e4f, 1e4f, 1e4f}};
+
+TEST(Facing, DropsOnlyWhatIsSeenFromBehindAndAllThatTheSumOfAnglesDrops) {
+  scene::Random random(51);
+  std::size_t dropped = 0, kept = 0, by_angles = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Bundle bundle(random, {{-5, -5, -5}, {5, 5, 5}}, random.between(0, 0.8f));
+    const FacingCone cone = cone_of(bundle.span(), bundle.ids, kEverywhere);
+    const View view = test::random_view(random, {{-40, -40, -40}, {40, 40, 40}});
+    const bool may_face = Facing(view, FacingRule::cone).may_face(cone);
+    (may_face ? kept : dropped)++;
+    const glm::dvec3 eye = to_double(eye_position(view));
+    if (!may_face) {
+      for (const std::uint32_t t : bundle.ids) {
+        const auto corners = bundle.span()[t];
+        const glm::dvec3 n = to_double(unit_normal(corners));
+        const glm::dvec3 way =
+            is_orthographic(view) ? to_double(view_direction(view)) : to_double(corners[0]) - eye;
+        ASSERT_GT(glm::dot(n, way), 0) << "bundle " << i;
+      }
+    }
+    if (is_orthographic(view) || cone.reach > 1) continue;
+    // METHODS' rule: angle(a, d) + α + β <= 90°.
+    const glm::dvec3 low = to_double(cone.bounds.min) - eye, high = to_double(cone.bounds.max) - eye;
+    const glm::dvec3 d = 0.5 * (low + high);
+    double beta = 0;
+    for (int c = 0; c < 8; ++c)
+      beta =
+          std::max(beta, angle(d, {c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z}));
+    const double alpha = std::asin(double{cone.reach});
+    if (angle(to_double(cone.axis), d) + alpha + beta <= std::numbers::pi / 2 - 1e-6) {
+      ++by_angles;
+      ASSERT_FALSE(may_face) << "bundle " << i;
+    }
+  }
+  EXPECT_GT(dropped, 2000u);
+  EXPECT_GT(kept, 2000u);
+  EXPECT_GT(by_angles, 1000u);
+  EXPECT_GT(dropped, by_angles);
+}
+
+TEST(Facing, TrianglesWithoutAreaMayFaceAnywhere) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  const std::vector<std::uint32_t> indices{0, 1, 2, 3, 4, 5}, ids{0, 1}, first{0};
+  const View behind = *make_view({.eye = {0, 0, -5}, .forward = {0, 0, 1}}, 64, 64);
+  const Facing facing(behind, FacingRule::cone);
+  EXPECT_TRUE(facing.may_face(cone_of({positions, indices}, ids, kEverywhere)));
+  EXPECT_FALSE(facing.may_face(cone_of({positions, indices}, first, kEverywhere)));
+  EXPECT_EQ(part_of({0, 0, 0}), kSteep);
+}
+
+TEST(Facing, PartsAreSectorsOf45Degrees) {
+  for (int degrees = 0; degrees < 360; ++degrees) {
+    const double turn = (degrees + 0.5) * std::numbers::pi / 180;
+    const Vec3 level{static_cast<float>(std::cos(turn)), 0, static_cast<float>(std::sin(turn))};
+    EXPECT_EQ(part_of(level), static_cast<std::uint32_t>((degrees + 180) % 360 / 45)) << degrees;
+  }
+  EXPECT_EQ(part_of({0.5f, 0.8f, 0}), kSteep);
+  EXPECT_EQ(part_of({0, -1, 0}), kSteep);
+}
+
+// A wall to the side, seen under perspective from in front, faces the eye although its sector is next to the
+// view vector's: what the printed rule loses.
+TEST(Facing, ThePrintedRuleDropsWallsThatFaceTheEye) {
+  const float turn = 30 * std::numbers::pi_v<float> / 180;
+  const Vec3 n{std::sin(turn), 0, std::cos(turn)};  // leans away from a viewer who looks along +z
+  const Vec3 side{n.z, 0, -n.x};
+  const Vec3 at{-30, 0, 5};
+  const std::vector<Vec3> positions{{at.x, 1, at.z}, {at.x, -1, at.z}, {at.x + side.x, -1, at.z + side.z}};
+  std::vector<std::uint32_t> indices{0, 1, 2}, ids{0};
+  if (to_double(unit_normal({positions[0], positions[1], positions[2]})).z < 0)
+    std::swap(indices[1], indices[2]);
+  const FacingCone cone = cone_of({positions, indices}, ids, kEverywhere);
+  ASSERT_NEAR(cone.axis.x, n.x, 1e-5);
+  const View view = *make_view({.eye = {0, 0, 0}, .forward = {0, 0, 1}, .vertical_fov = 2.8f}, 64, 64);
+  EXPECT_TRUE(Facing(view, FacingRule::cone).may_face(cone));
+  EXPECT_FALSE(Facing(view, FacingRule::printed).may_face(cone));
+}
+
+}  // namespace
+}  // namespace sightline::methods

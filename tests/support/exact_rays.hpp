@@ -1,0 +1,82 @@
+// Rays through pixel centres and their boxes, in double precision and from the matrices alone: the truth that
+// occlusion is tested against.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <sightline/view.hpp>
+
+#include "geometry/linear.hpp"
+
+namespace sightline::test {
+
+/// Hits are told as nearness: 1 / w (perspective) or -depth (orthographic), -infinity for a miss.
+class ExactRays {
+public:
+  explicit ExactRays(const View& view) : view_(view), orthographic_(is_orthographic(view)) {
+    using namespace geometry;
+    const glm::dmat4 clip = to_double(view.eye_to_clip) * to_double(view.world_to_eye);
+    inverse_ = glm::inverse(clip);
+    rows_ = glm::transpose(clip);
+    const glm::dmat4 to_world = glm::inverse(to_double(view.world_to_eye));
+    eye_ = glm::dvec3(to_world[3]);
+    forward_ = glm::normalize(-glm::dvec3(to_world[2]));
+    const Plane front = make_frustum(view, {}).planes[Frustum::front];
+    near_ = {front.normal.x, front.normal.y, front.normal.z, front.distance};
+  }
+
+  /// The nearest point in front of the near plane where the pixel's ray meets the box's surface; `front_only`: where
+  /// it enters.
+  [[nodiscard]] double hit(double x, double y, const Box& box, bool front_only = false) const {
+    const double u = 2 * x / view_.width - 1, v = 1 - 2 * y / view_.height;
+    glm::dvec3 origin, direction;
+    if (orthographic_) {
+      origin = eye_ + across(u, v);
+      direction = forward_;
+    } else {
+      origin = eye_;
+      const glm::dmat3 m(
+          glm::transpose(glm::dmat3(glm::dvec3(rows_[0]), glm::dvec3(rows_[1]), glm::dvec3(rows_[3]))));
+      direction = glm::inverse(m) * glm::dvec3(u, v, 1);  // w grows by 1 along it
+    }
+    double from = -1e30, to = 1e30;
+    const double low[3] = {box.min.x, box.min.y, box.min.z}, high[3] = {box.max.x, box.max.y, box.max.z};
+    for (int a = 0; a < 3; ++a) {
+      if (direction[a] == 0) {
+        if (origin[a] < low[a] || origin[a] > high[a]) return kMiss;
+        continue;
+      }
+      const double s = (low[a] - origin[a]) / direction[a], t = (high[a] - origin[a]) / direction[a];
+      from = std::max(from, std::min(s, t)), to = std::min(to, std::max(s, t));
+    }
+    // The near plane cuts surfaces, so a box that it cuts shows its inside: its far faces.
+    const double slope = glm::dot(glm::dvec3(near_), direction),
+                 start = glm::dot(glm::dvec3(near_), origin) + near_.w;
+    const double first = slope > 0 ? -start / slope : -1e30;
+    if (from > to || to < first || (front_only && from < first)) return kMiss;
+    const double at = from >= first ? from : to;
+    return orthographic_ ? -at : 1 / at;
+  }
+
+  static constexpr double kMiss = -std::numeric_limits<double>::infinity();
+
+private:
+  glm::dvec3 across(double u, double v) const {
+    const glm::dvec3 x(rows_[0]), y(rows_[1]);
+    const glm::dvec3 at(u * rows_[3].w - (glm::dot(x, eye_) + rows_[0].w),
+                        v * rows_[3].w - (glm::dot(y, eye_) + rows_[1].w), 0);
+    const glm::dmat3 m(glm::transpose(glm::dmat3(x, y, forward_)));
+    return glm::inverse(m) * at;
+  }
+
+  View view_;
+  bool orthographic_;
+  glm::dmat4 inverse_, rows_;
+  glm::dvec3 eye_, forward_;
+  glm::dvec4 near_;
+};
+
+}  // namespace sightline::test

@@ -1,0 +1,88 @@
+// cull() allocates nothing once it has grown: every allocation of this program is counted.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <sightline/occlusion.hpp>
+#include <sightline/world.hpp>
+
+#include "scene/random.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  if (void* p = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)) return p;
+  std::abort();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace sightline {
+namespace {
+
+void run_here(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
+  for (std::uint32_t i = 0; i < count; ++i) job(data, i);
+}
+
+TEST(Allocation, CullAllocatesNothingOnceWarm) {
+  scene::Random random(1);
+  World world;
+  std::vector<WorldBox> boxes(20000);
+  std::vector<Box> occluders;
+  for (WorldBox& b : boxes) {
+    const Vec3 at = random.inside({{-3000, 0, -3000}, {3000, 30, 3000}});
+    b = {{at.x - 1.0, at.y - 1.0, at.z - 1.0}, {at.x + 1.0, at.y + 1.0, at.z + 1.0}};
+    if (occluders.size() < 200) occluders.push_back({{at.x - 20, 0, at.z - 20}, {at.x + 20, 50, at.z + 20}});
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_FALSE(world.insert(boxes, handles));
+  Culler culler;
+  OcclusionBuffer buffer;
+  const std::array<const OcclusionBuffer*, 2> buffers{&buffer, nullptr};
+  const CullOptions options{.min_area = 1, .occlusion = buffers, .jobs = {run_here, nullptr, 4}};
+  std::vector<ObjectId> visible(cull_capacity(world, options));
+  std::vector<std::uint8_t> masks(visible.size());
+  std::size_t warm = 0, kept = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    // The first frame sees everything: nothing after it can need more room.
+    Camera camera;
+    camera.eye =
+        frame == 0 ? Vec3{0, 9000, 0.1f} : Vec3{random.between(-2000, 2000), 5, random.between(-2000, 2000)};
+    camera.forward = frame == 0 ? Vec3{0, -1, -0.001f} : random.direction();
+    camera.far_plane = 20000;
+    const View view = *make_view(camera, 640, 480);
+    const std::array views{WorldView{view, {}}, WorldView{view, {10, 0, 0}}};
+    if (frame == 1) warm = allocations;
+    ASSERT_FALSE(buffer.begin(views[0]));
+    buffer.draw_boxes(occluders);
+    kept += culler.cull(world, views, options, visible, masks).count;
+    kept += culler.cull(world, std::span(views).first(1), {}, visible).count;
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+  EXPECT_GT(kept, 1000u);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,185 @@
+#include <sightline/occlusion.hpp>
+
+#include <gtest/gtest.h>
+
+#include <hwy/targets.h>
+
+#include <algorithm>
+
+#include <sightline/projection.hpp>
+
+#include "scene/random.hpp"
+#include "scene/shapes.hpp"
+#include "support/exact_rays.hpp"
+#include "support/random_views.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+using test::ExactRays;
+
+constexpr Box kAround{{-50, -20, -50}, {50, 20, 50}};
+
+View small_view(Random& random) {
+  for (;;) {
+    const Result<View> view =
+        make_view(test::random_camera(random, kAround), 20 + random.below(80), 20 + random.below(60));
+    if (view) return *view;
+  }
+}
+
+Box box_of(Random& random, float largest) {
+  const Vec3 at = random.inside(kAround),
+             half = random.inside({{0.05f, 0.05f, 0.05f}, {largest, largest, largest}});
+  return {{at.x - half.x, at.y - half.y, at.z - half.z}, {at.x + half.x, at.y + half.y, at.z + half.z}};
+}
+
+std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Box> occluders,
+                                 bool front_only = false) {
+  std::vector<double> nearness(std::size_t{view.width} * view.height, ExactRays::kMiss);
+  for (std::uint32_t y = 0; y < view.height; ++y) {
+    for (std::uint32_t x = 0; x < view.width; ++x) {
+      double& best = nearness[std::size_t{y} * view.width + x];
+      for (const Box& box : occluders) best = std::max(best, rays.hit(x + 0.5, y + 0.5, box, front_only));
+    }
+  }
+  return nearness;
+}
+
+TEST(Occlusion, DrawsBoxesNowhereNearerThanTheyAreAndAlmostEverywhereTheyAre) {
+  Random random(3);
+  std::size_t covered = 0, missed = 0;
+  for (int round = 0; round < 150; ++round) {
+    const View view = small_view(random);
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, round % 3 == 0 ? 30.0f : 6.0f));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    std::vector<float> drawn(std::size_t{view.width} * view.height);
+    buffer.read_nearness(drawn);
+    const std::vector<double> exact = exact_depths(ExactRays(view), view, occluders);
+    const std::vector<double> front = exact_depths(ExactRays(view), view, occluders, true);
+    const double slack = is_orthographic(view) ? 0.5 : 0;  // metres there, where nearness is a depth
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      ASSERT_LE(drawn[i], exact[i]) << "round " << round << " pixel " << i % view.width << ' '
+                                    << i / view.width;
+      covered += front[i] > ExactRays::kMiss;
+      missed += front[i] > ExactRays::kMiss && drawn[i] < front[i] - slack - 0.02 * std::fabs(front[i]);
+    }
+  }
+  EXPECT_GT(covered, 50000u);
+  EXPECT_LT(static_cast<double>(missed), 0.03 * static_cast<double>(covered));
+}
+
+TEST(Occlusion, NeverHidesWhatAPixelCentreSees) {
+  Random random(4);
+  std::size_t hidden = 0, could_be = 0;
+  for (int round = 0; round < 150; ++round) {
+    const View view = small_view(random);
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 8));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    const ExactRays rays(view);
+    const Frustum frustum = make_frustum(view, kAround);
+    const std::vector<double> exact = exact_depths(rays, view, occluders);
+    const std::vector<double> front = exact_depths(rays, view, occluders, true);
+    Boxes queries;
+    for (int i = 0; i < 21; ++i) queries.push_back(box_of(random, 2));
+    std::vector<std::uint8_t> visible(queries.size());
+    buffer.may_see(span_of(queries), visible);
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+      ASSERT_EQ(visible[q] != 0, buffer.may_see(queries[q]));
+      bool seen = false, seen_without_insides = false;
+      for (std::uint32_t i = 0; i < exact.size() && !seen; ++i) {
+        const double at = rays.hit(i % view.width + 0.5, i / view.width + 0.5, queries[q]);
+        seen = at > exact[i];
+        seen_without_insides = seen_without_insides || at > front[i];
+      }
+      if (seen) ASSERT_TRUE(visible[q]) << "round " << round << " box " << q;
+      if (!overlaps(frustum, queries[q])) continue;  // for frustum culling to find
+      hidden += !visible[q];
+      could_be += !seen_without_insides;
+    }
+  }
+  EXPECT_GT(hidden, 100u);
+  EXPECT_GT(static_cast<double>(hidden), 0.8 * static_cast<double>(could_be));
+}
+
+TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
+  Random random(5);
+  const scene::Shape ball = scene::sphere(2);
+  const OccluderMesh mesh(ball.positions, ball.indices);
+  EXPECT_EQ(mesh.triangles(), 320u);
+  for (int round = 0; round < 30; ++round) {
+    Camera camera;
+    camera.eye = random.inside({{-6, -6, 3}, {6, 6, 12}});
+    camera.forward = {-camera.eye.x, -camera.eye.y, -camera.eye.z};
+    const View view = *make_view(camera, 200, 160);
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_mesh(mesh, {});
+    std::vector<float> drawn(200 * 160);
+    buffer.read_nearness(drawn);
+    // The ball of radius 1 holds the mesh and is held by the mesh grown by a fiftieth.
+    std::size_t inside = 0;
+    const float limit =
+        1 /
+        (std::sqrt(camera.eye.x * camera.eye.x + camera.eye.y * camera.eye.y + camera.eye.z * camera.eye.z) -
+         1);
+    for (const float nearness : drawn) {
+      inside += nearness > 0;
+      ASSERT_LE(nearness, limit);
+    }
+    const Sphere sphere{{0, 0, 0}, 1}, smaller{{0, 0, 0}, 0.97f};
+    const Projector projector = make_projector(view, {{-1, -1, -1}, {1, 1, 1}});
+    EXPECT_LE(static_cast<float>(inside), projected_area_bound(projector, sphere) * 1.01f + 20);
+    EXPECT_GE(static_cast<float>(inside), projected_area_bound(projector, smaller) * 0.97f - 20);
+    // No pinholes: what stands behind the middle is hidden.
+    const float d = 1 / limit + 1;
+    const auto behind = [&](float k) {
+      return Vec3{-camera.eye.x / d * k, -camera.eye.y / d * k, -camera.eye.z / d * k};
+    };
+    const Vec3 at = behind(1.5f);
+    EXPECT_FALSE(
+        buffer.may_see({{at.x - 0.3f, at.y - 0.3f, at.z - 0.3f}, {at.x + 0.3f, at.y + 0.3f, at.z + 0.3f}}));
+    const Vec3 before = behind(-1.5f);
+    EXPECT_TRUE(buffer.may_see({{before.x - 0.3f, before.y - 0.3f, before.z - 0.3f},
+                                {before.x + 0.3f, before.y + 0.3f, before.z + 0.3f}}));
+  }
+}
+
+TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
+  Random random(6);
+  const View view = *make_view(Camera{.eye = {0, 2, 60}}, 333, 217);
+  std::vector<Box> occluders;
+  for (int i = 0; i < 200; ++i) occluders.push_back(box_of(random, 5));
+  occluders.push_back({{-3, -3, 55}, {-1, 5, 70}});  // crosses the near plane
+  Boxes queries;
+  for (int i = 0; i < 1000; ++i) queries.push_back(box_of(random, 1));
+  const auto run = [&] {
+    OcclusionBuffer buffer;
+    EXPECT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    std::vector<float> drawn(333 * 217);
+    buffer.read_nearness(drawn);
+    std::vector<std::uint8_t> visible(queries.size());
+    buffer.may_see(span_of(queries), visible);
+    return std::pair(drawn, visible);
+  };
+  const auto expected = run();
+  std::reverse(occluders.begin(), occluders.end());
+  EXPECT_EQ(run(), expected);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    EXPECT_FALSE(hwy::GetChosenTarget().IsInitialized());  // the next dispatch chooses anew
+    EXPECT_EQ(run(), expected) << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+}  // namespace
+}  // namespace sightline
