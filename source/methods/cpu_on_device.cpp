@@ -1,6 +1,7 @@
 // Any CPU method, drawn by the renderer.
 #include <algorithm>
 
+#include "culling/draw_list.hpp"
 #include "methods/device_method.hpp"
 
 namespace sightline::methods {
@@ -10,13 +11,17 @@ namespace {
 class CpuOnDevice final : public DeviceMethod {
 public:
   CpuOnDevice(std::unique_ptr<Method> method, vulkan::Renderer& renderer)
-      : renderer_(renderer), method_(std::move(method)) {}
+      : renderer_(renderer), method_(std::move(method)), draw_list_(renderer.scene()) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return method_->guarantee(); }
   void update(std::span<const ObjectId> objects) override { method_->update(objects); }
 
   void record(vulkan::Recorder& frame) override {
     method_->cull(frame.view, frame_);
+    if (method_->geometry()) {
+      // The renderer holds whole objects: a method that draws triangles of its own is drawn object by object.
+      draw_list_.build(renderer_.scene(), frame.view, frame_);
+    }
     const auto pass = frame.pass("draw", vulkan::PassKind::draw);
     renderer_.draw(frame, frame_.visible, frame_.draws);
   }
@@ -30,6 +35,7 @@ public:
 private:
   vulkan::Renderer& renderer_;
   std::unique_ptr<Method> method_;
+  culling::DrawList draw_list_;
   Frame frame_;
 };
 
