@@ -71,7 +71,8 @@ bool CellBaker::bake(const CellPvs& cells, std::uint32_t cell, std::vector<Objec
   const Box box = cells.cell_bounds(cell);
   // New objects' rays of each viewpoint, and how many viewpoints make a judgement.
   std::vector<std::uint32_t> fresh;
-  const auto window = static_cast<std::size_t>(std::ceil(4 / (options_.target * options_.rays)));
+  // At the target a window would hold 64 such rays; that it holds an eighth by chance all but never happens.
+  const auto window = static_cast<std::size_t>(std::ceil(64 / (options_.target * options_.rays)));
   std::uint64_t in_window = 0;
   for (std::uint32_t v = 0; v < options_.most_viewpoints; ++v) {
     Vec3 eye;

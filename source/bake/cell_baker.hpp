@@ -17,7 +17,7 @@ struct CellOptions {
   double target = 1e-4;  ///< share of what a view from the cell shows that its set may lack
   std::uint64_t seed = 1;
   std::uint32_t rays = 1024;  ///< in all directions from each viewpoint
-  std::uint32_t most_viewpoints = 1024;
+  std::uint32_t most_viewpoints = 4096;
 };
 
 /// The grid over the scene, all cells closed and empty. Throws Error where that would be more than 2^22

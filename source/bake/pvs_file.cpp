@@ -3,8 +3,10 @@
 #include <roaring/roaring.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <memory>
 
 #include <sightline/scene.hpp>
@@ -36,6 +38,14 @@ struct Header {
   std::array<float, 6> bounds;
   std::uint64_t unpacked, packed, checksum;
 };
+
+// The cell before this one along x (1), y (2) or z (3).
+std::uint32_t neighbour(const CellPvs& cells, std::uint32_t cell, std::uint8_t axis) {
+  const std::uint32_t x = cells.counts[0], y = cells.counts[1];
+  if (axis == 1) return cell % x > 0 ? cell - 1 : kNoCell;
+  if (axis == 2) return cell / x % y > 0 ? cell - x : kNoCell;
+  return cell >= x * y ? cell - x * y : kNoCell;
+}
 
 template <class T>
 void put(std::vector<std::byte>& out, const T& value) {
@@ -139,8 +149,20 @@ std::vector<std::byte> pack_cells(const CellPvs& cells) {
       put(unpacked, std::uint32_t{0});
       continue;
     }
-    const std::vector<std::byte> set = pack_set(cells.seen_from(cell));
-    put(unpacked, static_cast<std::uint32_t>(set.size()));
+    // As the difference from the neighbour that is most alike: what is seen changes little from cell to cell.
+    std::vector<std::uint32_t> least(cells.seen_from(cell).begin(), cells.seen_from(cell).end()), difference;
+    std::uint8_t like = 0;
+    for (std::uint8_t axis = 1; axis <= 3; ++axis) {
+      const std::uint32_t other = neighbour(cells, cell, axis);
+      if (other == kNoCell || !cells.open[other]) continue;
+      difference.clear();
+      std::ranges::set_symmetric_difference(cells.seen_from(cell), cells.seen_from(other),
+                                            std::back_inserter(difference));
+      if (difference.size() < least.size()) least = difference, like = axis;
+    }
+    const std::vector<std::byte> set = pack_set(least);
+    put(unpacked, static_cast<std::uint32_t>(set.size() + 1));
+    put(unpacked, like);
     unpacked.insert(unpacked.end(), set.begin(), set.end());
   }
   std::vector<std::byte> packed(ZSTD_compressBound(unpacked.size()));
@@ -212,6 +234,7 @@ CellPvs unpack_cells(Bytes file, const std::string& name) {
     fail("its sets do not unpack");
   }
   std::size_t at = 0;
+  std::vector<std::uint32_t> difference;
   cells.first.push_back(0);
   for (std::uint64_t cell = 0; cell < count; ++cell) {
     if (!fits(at, 4, sets.size())) fail("ends before its last cell");
@@ -219,8 +242,21 @@ CellPvs unpack_cells(Bytes file, const std::string& name) {
     at += 4;
     if (!fits(at, length, sets.size())) fail("cell " + std::to_string(cell) + " ends beyond the file");
     if (length > 0) {
-      unpack_set(Bytes(sets).subspan(at, length), cells.objects, name + ": cell " + std::to_string(cell),
-                 cells.visible);
+      const std::string what = name + ": cell " + std::to_string(cell);
+      const auto like = static_cast<std::uint8_t>(sets[at]);
+      difference.clear();
+      unpack_set(Bytes(sets).subspan(at + 1, length - 1), cells.objects, what, difference);
+      if (like == 0) {
+        cells.visible.insert(cells.visible.end(), difference.begin(), difference.end());
+      } else {
+        const std::uint32_t other =
+            like <= 3 ? neighbour(cells, static_cast<std::uint32_t>(cell), like) : kNoCell;
+        if (other == kNoCell || !cells.open[other])
+          fail("cell " + std::to_string(cell) + " is like one that is not there");
+        const std::vector<std::uint32_t> seen(cells.seen_from(other).begin(), cells.seen_from(other).end());
+        std::ranges::set_symmetric_difference(seen, difference, std::back_inserter(cells.visible));
+      }
+      if (cells.visible.size() > kMostVisible) fail("holds more than Sightline reads");
     }
     cells.open.push_back(length > 0);
     cells.first.push_back(cells.visible.size());
