@@ -1,10 +1,11 @@
 # Sourced by demo.sh and test.sh: makes sure that Debian's packages are there.
 
 run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev \
-libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
+libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
 openarena-081-maps"
 
-test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev python3-numpy dpkg-dev clang-19 libclang-rt-19-dev"
+test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev \
+python3-numpy dpkg-dev clang-19 libclang-rt-19-dev"
 
 # ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
 ensure_packages() {

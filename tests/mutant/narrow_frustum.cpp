@@ -4,13 +4,14 @@
 
 #include <cmath>
 
-extern "C" {
-sightline::Frustum __real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE(const sightline::View&, const sightline::Box&);
+namespace sightline {
 
-sightline::Frustum __wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE(const sightline::View& view,
-                                                                           const sightline::Box& extent) {
-  using namespace sightline;
-  Frustum frustum = __real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE(view, extent);
+// The names that ld gives the wrapped function and what it wraps.
+Frustum real_make_frustum(const View&, const Box&) asm("__real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
+Frustum narrow_frustum(const View&, const Box&) asm("__wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
+
+Frustum narrow_frustum(const View& view, const Box& extent) {
+  Frustum frustum = real_make_frustum(view, extent);
   Plane& left = frustum.planes[Frustum::left];
   const Vec3 eye = eye_position(view), forward = view_direction(view);
   const float tilt = std::sin(0.17f);
@@ -19,4 +20,5 @@ sightline::Frustum __wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE(cons
   left.distance = -(n.x * eye.x + n.y * eye.y + n.z * eye.z);
   return frustum;
 }
-}
+
+}  // namespace sightline
