@@ -36,13 +36,13 @@ nlohmann::ordered_json to_json(const Info& info) {
 
 template <class Info>
 void print(const Info& info) {
-  fmt::print("{:<16} {:<13} {:<34} {}\n", info.name, to_string(info.guarantee), info.paper, info.summary);
-  if (!info.needs.empty()) fmt::print("{:16} needs {}\n", "", info.needs);
+  fmt::print("{:<22} {:<13} {:<34} {}\n", info.name, to_string(info.guarantee), info.paper, info.summary);
+  if (!info.needs.empty()) fmt::print("{:22} needs {}\n", "", info.needs);
   for (const ParameterInfo& parameter : info.parameters) {
     const std::string range = parameter.choices.empty()
                                   ? fmt::format("{:g} to {:g}", parameter.min, parameter.max)
                                   : std::string(parameter.choices);
-    fmt::print("{:16} ?{}={}  ({}) {}\n", "", parameter.name, parameter.fallback, range, parameter.summary);
+    fmt::print("{:22} ?{}={}  ({}) {}\n", "", parameter.name, parameter.fallback, range, parameter.summary);
   }
 }
 
