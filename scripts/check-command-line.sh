@@ -74,7 +74,7 @@ refused "no parameter" "$sightline" verify "$world" --methods none?x=1
 refused "--size" "$sightline" compare "$world" --size 0x0
 refused "--size" "$sightline" compare "$world" --size 99999x1
 refused "--views" "$sightline" verify "$world" --views 0
-refused "--device" "$sightline" compare "$world" --device nonesuch
+refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch
 refused "nonesuch" "$sightline" compare "$world" --path nonesuch
 
 # Files that are none, or not what they claim to be.
