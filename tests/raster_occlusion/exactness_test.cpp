@@ -51,6 +51,25 @@ TEST_P(Exactness, NothingIsLostWhileObjectsAndCameraMove) {
   }
 }
 
+// Orthographic along an axis, with trees' triangles edge on: a rasteriser that takes their depth from positions
+// off its own grid draws them at the near plane, before the boxes that hold them.
+using EdgeOn = DeviceTest;
+TEST_F(EdgeOn, TrianglesStayWithinTheirBoxes) {
+  Scene scene = or_throw(generate_world("forest?trees=3000&size=300"));
+  Camera camera;
+  camera.eye = {-199.25568f, 16.579414f, -79.85297f};
+  camera.forward = {1, 0, 4.371139e-8f};
+  camera.up = {5.6993077e-9f, -0.9914634f, -0.13038497f};
+  camera.near_plane = 0.96965945f;
+  camera.far_plane = 236.63557f;
+  camera.orthographic_height = 114.486374f;
+  camera.depth = Depth::reversed;
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 3; ++frame) {
+    examination.look(view_of(camera, 160, 120), "in frame " + std::to_string(frame));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Worlds, Exactness,
                          testing::Values("regular?columns=30&rows=30&detail=2",
                                          "irregular?spheres=1500&size=100&detail=2",

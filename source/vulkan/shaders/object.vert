@@ -27,5 +27,5 @@ void main() {
   const vec3 a = data.rows[0].xyz, b = data.rows[1].xyz, c = data.rows[2].xyz;
   world_normal = vec3(dot(cross(b, c), normal), dot(cross(c, a), normal), dot(cross(a, b), normal));
   colour = data.colour;
-  gl_Position = view.world_to_clip * vec4(world_position, 1);
+  gl_Position = on_pixel_grid(world_position);
 }

@@ -18,5 +18,5 @@ invariant gl_Position;
 void main() {
   world_position = positions.at[gl_VertexIndex];
   first_triangle = gl_InstanceIndex;
-  gl_Position = view.world_to_clip * vec4(world_position, 1);
+  gl_Position = on_pixel_grid(world_position);
 }
