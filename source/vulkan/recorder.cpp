@@ -19,6 +19,9 @@ Recorder::Recorder(const Device& device, const vk::raii::CommandBuffer& commands
 Recorder::Pass::Pass(Recorder& frame, std::string_view name, PassKind kind) : frame_(frame) {
   full_barrier(frame_.commands);
   frame_.timer_.begin(frame_.commands, name, kind);
+  // llvmpipe takes a timestamp when the work around it is flushed, and dispatches run at once: without this
+  // barrier a pass that begins with one would not count it.
+  full_barrier(frame_.commands);
 }
 
 Recorder::Pass::~Pass() {

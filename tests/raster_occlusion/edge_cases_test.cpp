@@ -129,6 +129,33 @@ TEST_F(EdgeCases, FlatObjectsInTheirOwnBoxes) {
   }
 }
 
+TEST_F(EdgeCases, FlatObjectsFarFromTheOriginAndANearPlaneCloseToTheEye) {
+  // Rounding of clip coordinates grows with the distance from the origin; behind a close near plane it is many
+  // units of depth's last place.
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
+  const std::uint32_t quad =
+      scene.add_mesh(corners, std::vector<Vec3>(4, Vec3{0, 0, 1}), std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3});
+  scene::Random random(5);
+  for (int i = 0; i < 3000; ++i) {
+    Affine transform;
+    const float size = random.between(0.1f, 0.6f);
+    const float x = 900 + random.between(-20, 20), y = 300 + random.between(-10, 10);
+    transform.rows = {Vec4{size, 0, 0, x}, Vec4{0, size, 0, y}, Vec4{0, 0, 1, random.between(-840, -800)}};
+    scene.add_object(quad, transform);
+  }
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int step = 0; step < 8; ++step) {
+    Camera camera;
+    camera.eye = {900 + 2.3f * step, 300, -780};
+    camera.forward = {0.1f * step - 0.3f, 0.07f * step - 0.2f, -1};
+    camera.near_plane = 0.01f;
+    for (int frame = 0; frame < 2; ++frame) {
+      examination.look(view_of(camera, 160, 120), "in step " + std::to_string(step));
+    }
+  }
+}
+
 TEST_F(EdgeCases, AWindowOfOnePixelAndOneOf4096By4096) {
   Scene scene;
   const std::uint32_t cube = add_cube(scene);

@@ -28,7 +28,7 @@ void set_contribution(const vulkan::Recorder& frame, const culling::Contribution
 }
 
 vulkan::GraphicsPipeline make_box_pipeline(const vulkan::Device& device) {
-  return {device, {.vertex = kBoxVert, .fragment = kMarkFrag, .depth_write = false}};
+  return {device, {.vertex = kBoxVert, .fragment = kMarkFrag, .depth_write = false, .cull_back = true}};
 }
 
 void report_visible(const Renderer& renderer, std::span<const std::uint32_t> flags,

@@ -38,5 +38,5 @@ void main() {
     gl_Position = drawn ? certain_mark(kSquare[turn % 6]) : kNowhere;
     return;
   }
-  gl_Position = clip_position(corner(centre, half_extent, kCorners[turn]));
+  gl_Position = clip_position(corner(centre, half_extent, kCorners[turn]), depth_slack(centre, half_extent));
 }

@@ -5,23 +5,26 @@ float plane_slack(vec4 plane, vec3 centre, vec3 half_extent) {
   return 1e-6 * (dot(abs(plane.xyz), abs(centre) + half_extent) + min(abs(plane.w), 1e30));
 }
 
-// Whether the box lies wholly behind a plane of the frustum.
+bool behind(vec4 plane, vec3 centre, vec3 half_extent) {
+  const float nearest = dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), half_extent);
+  return nearest < -plane_slack(plane, centre, half_extent);
+}
+
+bool behind(vec4 plane, vec4 sphere) {
+  return dot(plane.xyz, sphere.xyz) + plane.w < -sphere.w - plane_slack(plane, sphere.xyz, vec3(sphere.w));
+}
+
+// Whether the box lies wholly behind a plane of the frustum. Written out: planes fetched in a loop are fetched
+// for every lane anew.
 bool outside(vec3 centre, vec3 half_extent) {
-  for (int i = 0; i < 6; ++i) {
-    const vec4 plane = view.planes[i];
-    const float nearest = dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), half_extent);
-    if (nearest < -plane_slack(plane, centre, half_extent)) return true;
-  }
-  return false;
+  return behind(view.planes[0], centre, half_extent) || behind(view.planes[1], centre, half_extent) ||
+         behind(view.planes[2], centre, half_extent) || behind(view.planes[3], centre, half_extent) ||
+         behind(view.planes[4], centre, half_extent) || behind(view.planes[5], centre, half_extent);
 }
 
 bool outside(vec4 sphere) {
-  for (int i = 0; i < 6; ++i) {
-    const vec4 plane = view.planes[i];
-    const float slack = plane_slack(plane, sphere.xyz, vec3(sphere.w));
-    if (dot(plane.xyz, sphere.xyz) + plane.w < -sphere.w - slack) return true;
-  }
-  return false;
+  return behind(view.planes[0], sphere) || behind(view.planes[1], sphere) || behind(view.planes[2], sphere) ||
+         behind(view.planes[3], sphere) || behind(view.planes[4], sphere) || behind(view.planes[5], sphere);
 }
 
 // Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
@@ -43,8 +46,32 @@ vec3 widened(vec3 centre, vec3 half_extent) {
   return half_extent + depth / (32 * view.pixels_per_metre) + 1e-6 * (abs(centre) + half_extent);
 }
 
-vec4 clip_position(vec3 at) {
-  return view.world_to_clip * vec4(at, 1);
+// Rounding that z and w in clip space may carry, of the box and of what lies in it together. Depth is their
+// quotient, and far from the world's origin this is many units of its last place.
+float depth_slack(vec3 centre, vec3 half_extent) {
+  const mat4 m = view.world_to_clip;
+  const vec4 reach = vec4(abs(centre) + half_extent, 1);
+  const vec4 z = vec4(m[0].z, m[1].z, m[2].z, m[3].z), w = vec4(m[0].w, m[1].w, m[2].w, m[3].w);
+  return 1e-6 * (dot(abs(z), reach) + dot(abs(w), reach));
+}
+
+// A point in clip space moved towards the eye by a depth slack, but not across the near plane.
+vec4 nearer(vec4 clip, float slack) {
+  clip.z = view.reversed != 0 ? min(clip.z + slack, max(clip.w, clip.z))
+                              : max(clip.z - slack, min(clip.z, 0));
+  return clip;
+}
+
+vec4 clip_position(vec3 at, float slack) {
+  return nearer(view.world_to_clip * vec4(at, 1), slack);
+}
+
+// Of the two faces across an axis, the one that looks at the eye: -1 or 1, 0 where neither does.
+float facing(uint axis, vec3 centre, vec3 half_extent) {
+  const bool orthographic = view.eye.w > 0;
+  const float towards = orthographic ? -view.forward[axis] : view.eye[axis] - centre[axis];
+  const float reach = orthographic ? 0 : half_extent[axis];
+  return abs(towards) <= reach ? 0 : sign(towards);
 }
 
 vec3 corner(vec3 centre, vec3 half_extent, uint bits) {
@@ -60,8 +87,9 @@ struct Footprint {
 Footprint footprint(vec3 centre, vec3 half_extent) {
   vec2 low = vec2(1e30), high = vec2(-1e30);
   float nearest = view.reversed != 0 ? 0 : 1, widest = 0;
+  const float slack = depth_slack(centre, half_extent);
   for (uint i = 0; i < 8; ++i) {
-    const vec4 clip = clip_position(corner(centre, half_extent, i));
+    const vec4 clip = clip_position(corner(centre, half_extent, i), slack);
     if (!(clip.w > 2 * view.coordinate_error)) return Footprint(vec2(0), vec2(view.width, view.height), 0, true);
     const vec3 at = clip.xyz / clip.w;
     low = min(low, at.xy);
@@ -70,8 +98,8 @@ Footprint footprint(vec3 centre, vec3 half_extent) {
     widest = max(widest, 2 * view.coordinate_error / clip.w * (1 + max(abs(at.x), abs(at.y))));
   }
   const vec2 half_size = 0.5 * vec2(view.width, view.height);
-  const vec2 slack = widest * half_size + 1.0 / 64;
-  const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - slack, b = (vec2(high.x, -low.y) + 1) * half_size + slack;
+  const vec2 rim = widest * half_size + 1.0 / 64;
+  const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - rim, b = (vec2(high.x, -low.y) + 1) * half_size + rim;
   const float away = 16.0 / 16777216;
   nearest = view.reversed != 0 ? nearest + away * nearest : nearest - away;
   return Footprint(a, b, nearest, false);

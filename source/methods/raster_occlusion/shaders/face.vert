@@ -22,16 +22,14 @@ void main() {
   const BoxData box = boxes.at[id];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
-  const bool orthographic = view.eye.w > 0;
-  const float towards = orthographic ? -view.forward[axis] : view.eye[axis] - centre[axis];
-  const float reach = orthographic ? 0 : half_extent[axis];
-  if (abs(towards) <= reach) {
+  const float towards = facing(axis, centre, half_extent);
+  if (towards == 0) {
     gl_Position = kNowhere;
     return;
   }
   vec3 side;
-  side[axis] = towards > 0 ? 1 : -1;
+  side[axis] = towards;
   side[(axis + 1) % 3] = (square & 1) != 0 ? 1 : -1;
   side[(axis + 2) % 3] = (square & 2) != 0 ? 1 : -1;
-  gl_Position = clip_position(centre + half_extent * side);
+  gl_Position = clip_position(centre + half_extent * side, depth_slack(centre, half_extent));
 }

@@ -5,9 +5,10 @@
 
 #include "boxes.h"
 
-// Figure 2 of Lee & Shin 2023, geometry stage: the box restored out of its vertex, as one strip.
+// Figure 2 of Lee & Shin 2023, geometry stage: the box restored out of its vertex. Faces that
+// look away are behind those that do not, and are left out.
 layout(points) in;
-layout(triangle_strip, max_vertices = 14) out;
+layout(triangle_strip, max_vertices = 12) out;
 
 layout(location = 0) in vec3 box_centre[];
 layout(location = 1) in vec3 box_half_extent[];
@@ -21,6 +22,14 @@ void emit(vec4 position) {
   EmitVertex();
 }
 
+void emit_face(vec4 middle, vec4 a, vec4 b, float slack) {
+  emit(nearer(middle - a - b, slack));
+  emit(nearer(middle + a - b, slack));
+  emit(nearer(middle - a + b, slack));
+  emit(nearer(middle + a + b, slack));
+  EndPrimitive();
+}
+
 void main() {
   if (fate[0] == 0) return;
   if (fate[0] == 2) {
@@ -28,22 +37,14 @@ void main() {
     EndPrimitive();
     return;
   }
-  // All twelve triangles of a box in 14 vertices; written out, as an array indexed in a loop is slow.
-  vec4 c[8];
-  for (uint i = 0; i < 8; ++i) c[i] = clip_position(corner(box_centre[0], box_half_extent[0], i));
-  emit(c[6]);
-  emit(c[7]);
-  emit(c[2]);
-  emit(c[3]);
-  emit(c[1]);
-  emit(c[7]);
-  emit(c[5]);
-  emit(c[6]);
-  emit(c[4]);
-  emit(c[2]);
-  emit(c[0]);
-  emit(c[1]);
-  emit(c[4]);
-  emit(c[5]);
-  EndPrimitive();
+  const vec3 centre = box_centre[0], half_extent = box_half_extent[0];
+  const float slack = depth_slack(centre, half_extent);
+  const vec4 middle = view.world_to_clip * vec4(centre, 1);
+  const vec4 x = view.world_to_clip[0] * half_extent.x, y = view.world_to_clip[1] * half_extent.y,
+             z = view.world_to_clip[2] * half_extent.z;
+  const vec3 sides = vec3(facing(0, centre, half_extent), facing(1, centre, half_extent),
+                          facing(2, centre, half_extent));
+  if (sides.x != 0) emit_face(middle + sides.x * x, y, z, slack);
+  if (sides.y != 0) emit_face(middle + sides.y * y, z, x, slack);
+  if (sides.z != 0) emit_face(middle + sides.z * z, x, y, slack);
 }
