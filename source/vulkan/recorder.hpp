@@ -70,13 +70,13 @@ public:
     commands.pushConstants<T>(*device_.layout(), vk::ShaderStageFlagBits::eAll, 0, constants);
   }
 
-  /// Runs at least `threads` invocations in groups of `group`, then makes their writes seen.
+  /// Runs `rows` times at least `threads` invocations in groups of `group`, then makes their writes seen.
   template <class T>
   void dispatch(const ComputePipeline& pipeline, const T& constants, std::uint32_t threads,
-                std::uint32_t group = 256) const {
+                std::uint32_t group = 256, std::uint32_t rows = 1) const {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
     push(constants);
-    commands.dispatch((threads + group - 1) / group, 1, 1);
+    commands.dispatch((threads + group - 1) / group, rows, 1);
     full_barrier(commands);
   }
 

@@ -1,5 +1,8 @@
 #include "vulkan/visible_draws.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace sightline::vulkan {
 
 namespace {
@@ -7,34 +10,33 @@ namespace {
 constexpr std::uint32_t kScanBlocks[] =
 #include "shaders/scan_blocks.comp.inc"
     ;
-constexpr std::uint32_t kScanSums[] =
-#include "shaders/scan_sums.comp.inc"
-    ;
 constexpr std::uint32_t kScanWrite[] =
 #include "shaders/scan_write.comp.inc"
     ;
-constexpr std::uint32_t kDrawCommands[] =
-#include "shaders/draw_commands.comp.inc"
-    ;
 
-constexpr std::uint32_t kBlock = 256;
+// As in scan.h.
+constexpr std::uint32_t kLanes = 256, kBlockSlots = kLanes * 8;
 
 struct Push {
-  vk::DeviceAddress flags, slot_objects, prefix, sums, list, meshes, objects, commands, transparent_order;
-  VisibleDraws::Condition condition, transparent_condition;
+  vk::DeviceAddress flags, slot_objects, scan, meshes, objects, transparent_order;
+  std::array<vk::DeviceAddress, 2> lists, commands;
+  std::array<VisibleDraws::Condition, 2> conditions;
+  VisibleDraws::Condition transparent_condition;
   std::uint32_t opaque, mesh_count, transparent;
 };
+
+std::uint32_t block_count(const SceneBuffers& scene) {
+  return (scene.opaque + kBlockSlots - 1) / kBlockSlots;
+}
 
 }  // namespace
 
 VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
     : scene_(scene),
       scan_blocks_(device, kScanBlocks),
-      scan_sums_(device, kScanSums),
       scan_write_(device, kScanWrite),
-      draw_commands_(device, kDrawCommands),
-      prefix_(device, (std::uint64_t{scene.opaque} + 1) * 4, Memory::device, "prefix sums"),
-      sums_(device, (std::uint64_t{scene.opaque} / kBlock + 1) * 4, Memory::device, "prefix sums") {}
+      scan_(device, 2 * (std::uint64_t{scene.opaque} + block_count(scene) + 2) * 4, Memory::device,
+            "prefix sums") {}
 
 DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
@@ -50,27 +52,25 @@ DrawBuffers VisibleDraws::make_buffers(Device& device) const {
 }
 
 void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque,
-                         Condition transparent, vk::DeviceAddress transparent_order,
-                         const DrawBuffers& out) const {
-  const std::uint32_t transparent_count = transparent_order ? out.transparent_commands : 0;
+                         Condition transparent, vk::DeviceAddress transparent_order, const DrawBuffers& out,
+                         Condition second, const DrawBuffers* second_out) const {
+  const std::uint32_t lists = second_out != nullptr ? 2 : 1;
   const Push push{flags,
                   scene_.slot_objects.address(),
-                  prefix_.address(),
-                  sums_.address(),
-                  out.list.address(),
+                  scan_.address(),
                   scene_.mesh_data.address(),
                   scene_.object_data.address(),
-                  out.commands.address(),
                   transparent_order,
-                  opaque,
+                  {out.list.address(), second_out ? second_out->list.address() : 0},
+                  {out.commands.address(), second_out ? second_out->commands.address() : 0},
+                  {opaque, second},
                   transparent,
                   scene_.opaque,
                   scene_.meshes,
-                  transparent_count};
-  if (scene_.opaque > 0) frame.dispatch(scan_blocks_, push, scene_.opaque, kBlock);
-  frame.dispatch(scan_sums_, push, 1, kBlock);
-  if (scene_.opaque > 0) frame.dispatch(scan_write_, push, scene_.opaque, kBlock);
-  frame.dispatch(draw_commands_, push, std::max(1u, scene_.meshes + transparent_count), kBlock);
+                  transparent_order ? out.transparent_commands : 0};
+  const std::uint32_t threads = std::max(1u, block_count(scene_)) * kLanes;
+  frame.dispatch(scan_blocks_, push, threads, kLanes, lists);
+  frame.dispatch(scan_write_, push, threads, kLanes, lists);
 }
 
 }  // namespace sightline::vulkan

@@ -24,11 +24,17 @@ public:
   /// Lists the objects that meet a condition, the transparent ones by one of their own. `transparent_order`
   /// holds all transparent objects as they are to be drawn; 0 leaves the transparent commands as they were.
   void build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque, Condition transparent,
-             vk::DeviceAddress transparent_order, const DrawBuffers& out) const;
+             vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
+    build(frame, flags, opaque, transparent, transparent_order, out, {}, nullptr);
+  }
   void build(const Recorder& frame, vk::DeviceAddress flags, Condition condition,
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
     build(frame, flags, condition, condition, transparent_order, out);
   }
+  /// The same, and beside it the opaque objects that meet a second condition, into a second list.
+  void build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque, Condition transparent,
+             vk::DeviceAddress transparent_order, const DrawBuffers& out, Condition second,
+             const DrawBuffers* second_out) const;
   /// Lists every object.
   static constexpr Condition kAll{0, 0};
 
@@ -37,8 +43,8 @@ public:
 
 private:
   const SceneBuffers& scene_;
-  ComputePipeline scan_blocks_, scan_sums_, scan_write_, draw_commands_;
-  Buffer prefix_, sums_;
+  ComputePipeline scan_blocks_, scan_write_;
+  Buffer scan_;
 };
 
 }  // namespace sightline::vulkan

@@ -74,8 +74,7 @@ void TwoPhase::record(vulkan::Recorder& frame) {
   {
     const auto pass = frame.pass("what is new", PassKind::cull);
     settle_ties(frame);
-    renderer_.draws().build(frame, state_.address(), kLate, kAnySeen, sort, late_);
-    renderer_.draws().build(frame, state_.address(), kAnyTied, kNever, 0, early_);
+    renderer_.draws().build(frame, state_.address(), kLate, kAnySeen, sort, late_, kAnyTied, &early_);
   }
   const auto pass = frame.pass("draw new objects", PassKind::draw);
   renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);

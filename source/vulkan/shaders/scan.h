@@ -1,13 +1,38 @@
-// Push constants of the four steps from flags to draw commands.
+// Push constants of the two steps from flags to draw commands, and what they share. Up to two lists are built
+// at once, one a row of workgroups; the first holds transparent objects too.
+const uint kLanes = 256, kEach = 8;          // slots a lane takes one after the other
+const uint kBlockSlots = kLanes * kEach;     // slots a workgroup takes
+
+layout(buffer_reference, scalar) coherent buffer SharedWords {
+  uint at[];
+};
+
 layout(push_constant, scalar) uniform Push {
-  WordBuffer flags, slot_objects, prefix, sums, list;
+  WordBuffer flags, slot_objects;
+  SharedWords scan;  // a list: one a slot and one more, what stands before it; one a block, its sum; groups done
   MeshBuffer meshes;
   ObjectBuffer objects;
-  CommandBuffer commands;
   WordBuffer transparent_order;
-  uvec2 opaque_condition, transparent_condition;  // mask, value
+  WordBuffer list_of[2];
+  CommandBuffer commands_of[2];
+  uvec2 condition_of[2], transparent_condition;  // mask, value
   uint opaque, mesh_count, transparent;
 };
+
+uint block_count() {
+  return (opaque + kBlockSlots - 1) / kBlockSlots;
+}
+
+// Where a list's prefix sums, its blocks' sums and its count of groups begin.
+uint prefix_at(uint job) {
+  return job * (opaque + block_count() + 2);
+}
+uint sums_at(uint job) {
+  return prefix_at(job) + opaque + 1;
+}
+uint done_at(uint job) {
+  return sums_at(job) + block_count();
+}
 
 uint meets(uint object, uvec2 condition) {
   return (flags.at[object] & condition.x) == condition.y ? 1 : 0;
