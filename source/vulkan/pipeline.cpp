@@ -12,11 +12,22 @@ vk::raii::ShaderModule module(const Device& device, Spirv code) {
   return {device.handle(), vk::ShaderModuleCreateInfo{{}, code.size_bytes(), code.data()}};
 }
 
+std::vector<vk::SpecializationMapEntry> entries(Words constants) {
+  std::vector<vk::SpecializationMapEntry> out;
+  for (std::uint32_t i = 0; i < constants.size(); ++i) out.push_back({i, 4 * i, 4});
+  return out;
+}
+
 }  // namespace
 
-ComputePipeline::ComputePipeline(const Device& device, Spirv shader) {
+ComputePipeline::ComputePipeline(const Device& device, Spirv shader, Words constants) {
   const vk::raii::ShaderModule code = module(device, shader);
-  const vk::PipelineShaderStageCreateInfo stage{{}, vk::ShaderStageFlagBits::eCompute, *code, "main"};
+  const auto map = entries(constants);
+  const vk::SpecializationInfo specialisation(
+      map, vk::ArrayProxyNoTemporaries<const std::uint32_t>(static_cast<std::uint32_t>(constants.size()),
+                                                            constants.data()));
+  const vk::PipelineShaderStageCreateInfo stage{
+      {}, vk::ShaderStageFlagBits::eCompute, *code, "main", &specialisation};
   pipeline_.emplace(device.handle(), nullptr, vk::ComputePipelineCreateInfo{{}, stage, *device.layout()});
 }
 
@@ -24,12 +35,16 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
   using Stage = vk::ShaderStageFlagBits;
   std::vector<vk::raii::ShaderModule> modules;
   std::vector<vk::PipelineShaderStageCreateInfo> stages;
+  const auto map = entries(state.constants);
+  const vk::SpecializationInfo specialisation(
+      map, vk::ArrayProxyNoTemporaries<const std::uint32_t>(
+               static_cast<std::uint32_t>(state.constants.size()), state.constants.data()));
   for (const auto& [code, stage] :
        {std::pair{state.vertex, Stage::eVertex}, std::pair{state.geometry, Stage::eGeometry},
         std::pair{state.fragment, Stage::eFragment}}) {
     if (code.empty()) continue;
     modules.push_back(module(device, code));
-    stages.push_back({{}, stage, *modules.back(), "main"});
+    stages.push_back({{}, stage, *modules.back(), "main", &specialisation});
   }
   const bool mesh = state.input == Input::mesh;
   const vk::VertexInputBindingDescription binding{0, mesh ? 24u : 32u};

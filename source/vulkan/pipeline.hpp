@@ -8,10 +8,12 @@
 namespace sightline::vulkan {
 
 using Spirv = std::span<const std::uint32_t>;
+/// Values of the specialisation constants 0, 1, … of all stages, a word each.
+using Words = std::span<const std::uint32_t>;
 
 class ComputePipeline {
 public:
-  ComputePipeline(const Device& device, Spirv shader);
+  ComputePipeline(const Device& device, Spirv shader, Words constants = {});
   [[nodiscard]] vk::Pipeline handle() const noexcept { return **pipeline_; }
 
 private:
@@ -27,6 +29,7 @@ enum class Input : std::uint8_t {
 
 struct GraphicsState {
   Spirv vertex, geometry = {}, fragment = {};
+  Words constants = {};
   Input input = Input::none;
   vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleList;
   vk::Format colour = vk::Format::eUndefined;  ///< of the one colour attachment, if there is one

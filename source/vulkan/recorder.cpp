@@ -3,14 +3,8 @@
 namespace sightline::vulkan {
 
 Recorder::Recorder(const Device& device, const vk::raii::CommandBuffer& commands, Timer& timer,
-                   const View& view, shared::ViewData& view_data, vk::DescriptorSet view_set,
-                   const Targets& targets)
-    : commands(commands),
-      view(view),
-      targets(targets),
-      device_(device),
-      timer_(timer),
-      view_data_(view_data) {
+                   const View& view, bool reversed, vk::DescriptorSet view_set, const Targets& targets)
+    : commands(commands), view(view), targets(targets), device_(device), timer_(timer), reversed_(reversed) {
   for (const auto point : {vk::PipelineBindPoint::eGraphics, vk::PipelineBindPoint::eCompute}) {
     commands.bindDescriptorSets(point, *device.layout(), 0, view_set, {});
   }

@@ -26,15 +26,14 @@ inline constexpr float kTestBias = 4;
 class Recorder {
 public:
   Recorder(const Device& device, const vk::raii::CommandBuffer& commands, Timer& timer, const View& view,
-           shared::ViewData& view_data, vk::DescriptorSet view_set, const Targets& targets);
+           bool reversed, vk::DescriptorSet view_set, const Targets& targets);
 
   const vk::raii::CommandBuffer& commands;
   const View& view;
   const Targets& targets;
 
-  /// What shaders see of the view; may be changed until the frame is submitted.
-  [[nodiscard]] shared::ViewData& view_data() const noexcept { return view_data_; }
-  [[nodiscard]] bool reversed() const noexcept { return view_data_.reversed != 0; }
+  /// Whether the near plane lies at depth 1.
+  [[nodiscard]] bool reversed() const noexcept { return reversed_; }
 
   /// A named pass with a timestamp at either end, and a barrier before and after.
   class Pass {
@@ -86,7 +85,7 @@ public:
 private:
   const Device& device_;
   Timer& timer_;
-  shared::ViewData& view_data_;
+  bool reversed_;
 };
 
 }  // namespace sightline::vulkan

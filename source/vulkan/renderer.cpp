@@ -122,7 +122,7 @@ FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)
   const vk::raii::CommandBuffer& commands = commands_[0];
   commands.begin(vk::CommandBufferBeginInfo{vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timer_.reset(commands);
-  Recorder recorder(device_, commands, timer_, view, data, *view_set_[0], *targets_);
+  Recorder recorder(device_, commands, timer_, view, data.reversed != 0, *view_set_[0], *targets_);
   const auto before = std::chrono::steady_clock::now();
   record(recorder);
   times.record_ms = milliseconds_since(before);

@@ -25,9 +25,7 @@ struct ViewData {
   float pixels_per_metre;
   float metres_per_w;
   float coordinate_error;
-  uint reversed;      // 1: the near plane lies at depth 1
-  uint contribution;  // 0 off, 1 exact, 2 area
-  float threshold;    // px², for area
+  uint reversed;  // 1: the near plane lies at depth 1
 };
 
 struct ObjectData {
@@ -57,7 +55,7 @@ struct CommandData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewData) == 64 + 96 + 32 + 32);
+static_assert(sizeof(ViewData) == 64 + 96 + 32 + 24);
 static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshData) == 16 &&
               sizeof(CommandData) == 20);
 }  // namespace sightline::vulkan::shared

@@ -35,8 +35,8 @@ class Hiz final : public TwoPhase {
 public:
   Hiz(vulkan::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, culling::contribution_from(parameters)),
-        in_view_(renderer.device(), kInView),
-        test_(renderer.device(), kTest),
+        in_view_(renderer.device(), kInView, shader_constants(contribution_)),
+        test_(renderer.device(), kTest, shader_constants(contribution_)),
         reduce_(renderer.device(), kPyramid) {}
 
   void update(std::span<const ObjectId>) override {}
@@ -45,8 +45,8 @@ private:
   void find_in_view(vulkan::Recorder& frame) override {
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.dispatch(in_view_,
-                   InViewPush{scene.box_data.address(), marks_.address(),
-                              last_marks_.address(), state_.address(), scene.objects},
+                   InViewPush{scene.box_data.address(), marks_.address(), last_marks_.address(),
+                              state_.address(), scene.objects},
                    scene.objects);
   }
 
@@ -68,8 +68,8 @@ private:
     }
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.dispatch(test_,
-                   TestPush{scene.box_data.address(), marks_.address(),
-                            state_.address(), pyramid_.address(), scene.objects},
+                   TestPush{scene.box_data.address(), marks_.address(), state_.address(), pyramid_.address(),
+                            scene.objects},
                    scene.objects);
   }
 

@@ -1,6 +1,7 @@
 #include "methods/raster_occlusion/occlusion.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace sightline::methods {
 
@@ -22,13 +23,19 @@ Guarantee guarantee_of(const culling::Contribution& contribution) noexcept {
   return contribution.test == culling::Contribution::Test::area ? Guarantee::approximate : Guarantee::exact;
 }
 
-void set_contribution(const vulkan::Recorder& frame, const culling::Contribution& contribution) noexcept {
-  frame.view_data().contribution = static_cast<std::uint32_t>(contribution.test);
-  frame.view_data().threshold = contribution.threshold;
+std::array<std::uint32_t, 2> shader_constants(const culling::Contribution& contribution) noexcept {
+  return {static_cast<std::uint32_t>(contribution.test),
+          std::bit_cast<std::uint32_t>(contribution.threshold)};
 }
 
-vulkan::GraphicsPipeline make_box_pipeline(const vulkan::Device& device) {
-  return {device, {.vertex = kBoxVert, .fragment = kMarkFrag, .depth_write = false, .cull_back = true}};
+vulkan::GraphicsPipeline make_box_pipeline(const vulkan::Device& device,
+                                           const culling::Contribution& contribution) {
+  return {device,
+          {.vertex = kBoxVert,
+           .fragment = kMarkFrag,
+           .constants = shader_constants(contribution),
+           .depth_write = false,
+           .cull_back = true}};
 }
 
 void report_visible(const Renderer& renderer, std::span<const std::uint32_t> flags,
@@ -56,7 +63,6 @@ MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
       draws_(renderer.draws().make_buffers(renderer.device())) {}
 
 void MarkAndDraw::record(vulkan::Recorder& frame) {
-  set_contribution(frame, contribution_);
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);
     renderer_.draw_opaque(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);

@@ -14,7 +14,8 @@ inline constexpr std::array kOcclusionParameters{culling::kContributionParameter
 
 /// Exact, unless objects are dropped by their area.
 Guarantee guarantee_of(const culling::Contribution& contribution) noexcept;
-void set_contribution(const vulkan::Recorder& frame, const culling::Contribution& contribution) noexcept;
+/// The constants of shaders that include boxes.h.
+std::array<std::uint32_t, 2> shader_constants(const culling::Contribution& contribution) noexcept;
 
 /// Push constants of every pass that tests boxes by rasterising them.
 struct BoxPush {
@@ -23,7 +24,8 @@ struct BoxPush {
 };
 
 /// A pipeline that marks boxes: depth tested, nothing written but marks.
-vulkan::GraphicsPipeline make_box_pipeline(const vulkan::Device& device);
+vulkan::GraphicsPipeline make_box_pipeline(const vulkan::Device& device,
+                                           const culling::Contribution& contribution);
 
 /// Lists the objects with (flags[o] & mask) == value, and counts draw calls and triangles.
 void report_visible(const vulkan::Renderer& renderer, std::span<const std::uint32_t> flags,

@@ -36,8 +36,11 @@ public:
   ResidentChunk(vulkan::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, culling::contribution_from(parameters)),
         chunks_(renderer.scene(), parameters.count("depth")),
-        in_view_(renderer.device(), kTest),
-        faces_(renderer.device(), {.vertex = kFace, .fragment = kMark, .depth_write = false}),
+        in_view_(renderer.device(), kTest, shader_constants(contribution_)),
+        faces_(renderer.device(), {.vertex = kFace,
+                                   .fragment = kMark,
+                                   .constants = shader_constants(contribution_),
+                                   .depth_write = false}),
         list_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "objects to test"),
         test_(renderer.device(), 16, vulkan::Memory::device, "a draw command") {
     send_changes();
@@ -95,18 +98,17 @@ private:
     frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, empty);
     vulkan::full_barrier(frame.commands);
     if (count == 0) return;
-    frame.dispatch(in_view_,
-                   Push{renderer_.buffers().box_data.address(), marks_.address(),
-                        list_.address(), last_marks_.address(), state_.address(), chunks_in_.address(),
-                        resident_.address(), test_.address()},
-                   count, 1);
+    frame.dispatch(
+        in_view_,
+        Push{renderer_.buffers().box_data.address(), marks_.address(), list_.address(), last_marks_.address(),
+             state_.address(), chunks_in_.address(), resident_.address(), test_.address()},
+        count, 1);
   }
 
   void test(vulkan::Recorder& frame) override {
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(),
-                       list_.address(), 0, 0});
+    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), list_.address(), 0, 0});
     frame.commands.drawIndirect(test_.handle(), 0, 1, 16);
     frame.end_rendering();
     vulkan::full_barrier(frame.commands);

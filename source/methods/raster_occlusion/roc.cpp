@@ -12,7 +12,7 @@ class Roc final : public MarkAndDraw {
 public:
   Roc(vulkan::Renderer& renderer, const Parameters& parameters)
       : MarkAndDraw(renderer, parameters),
-        boxes_(make_box_pipeline(renderer.device())),
+        boxes_(make_box_pipeline(renderer.device(), contribution_)),
         marks_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "marks") {}
 
   void update(std::span<const ObjectId>) override {}

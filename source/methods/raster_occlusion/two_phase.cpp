@@ -44,8 +44,8 @@ TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution
       state_(zeros(renderer.device(), renderer.scene().size())),
       marks_(zeros(renderer.device(), renderer.scene().size())),
       last_marks_(zeros(renderer.device(), renderer.scene().size())),
-      new_tiles_(renderer.device(), kNewTiles),
-      tied_(renderer.device(), kTiedComp),
+      new_tiles_(renderer.device(), kNewTiles, shader_constants(contribution)),
+      tied_(renderer.device(), kTiedComp, shader_constants(contribution)),
       tied_pipeline_(renderer.device(), {.vertex = kObjectVert,
                                          .fragment = kTiedFrag,
                                          .input = vulkan::Input::mesh,
@@ -55,7 +55,6 @@ TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution
       late_(renderer.draws().make_buffers(renderer.device())) {}
 
 void TwoPhase::record(vulkan::Recorder& frame) {
-  set_contribution(frame, contribution_);
   std::swap(marks_, last_marks_);
   const auto sort = renderer_.transparent_order();
   {
@@ -91,8 +90,8 @@ void TwoPhase::settle_ties(vulkan::Recorder& frame) {
   }
   frame.fill(tiles_, 0, columns * rows * 4);
   const Push push{scene.box_data.address(), scene.object_data.address(),
-                  marks_.address(),     state_.address(),         tiles_.address(),
-                  scene.objects};
+                  marks_.address(),         state_.address(),
+                  tiles_.address(),         scene.objects};
   frame.dispatch(new_tiles_, push, scene.objects);
   frame.dispatch(tied_, push, scene.objects);
 }

@@ -20,7 +20,7 @@ public:
   VfcVcOnDevice(vulkan::Renderer& renderer, const Parameters& parameters)
       : renderer_(renderer),
         contribution_(culling::contribution_from(parameters)),
-        test_(renderer.device(), kVfcVc),
+        test_(renderer.device(), kVfcVc, shader_constants(contribution_)),
         marks_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "marks"),
         counters_(renderer.device(), 8, vulkan::Memory::device, "counters"),
         draws_(renderer.draws().make_buffers(renderer.device())) {}
@@ -29,14 +29,12 @@ public:
   void update(std::span<const ObjectId>) override {}
 
   void record(vulkan::Recorder& frame) override {
-    set_contribution(frame, contribution_);
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     {
       const auto pass = frame.pass("frustum and contribution", vulkan::PassKind::cull);
       frame.fill(counters_, 0, 8);
       frame.dispatch(test_,
-                     Push{scene.box_data.address(), marks_.address(),
-                          counters_.address(), scene.objects},
+                     Push{scene.box_data.address(), marks_.address(), counters_.address(), scene.objects},
                      scene.objects);
       renderer_.draws().build(frame, marks_.address(), {}, renderer_.transparent_order(), draws_);
     }

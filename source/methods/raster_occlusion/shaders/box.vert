@@ -27,11 +27,9 @@ void main() {
   const BoxData box = boxes.at[id];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
-  if (view.contribution != 0) {
-    if ((view.contribution == 1 || id >= first_leaf) && !contributes(box.centre_radius, half_extent)) {
-      gl_Position = kNowhere;
-      return;
-    }
+  if ((kContribution == 1 || id >= first_leaf) && !contributes(box.centre_radius, half_extent)) {
+    gl_Position = kNowhere;
+    return;
   }
   if (reaches_near_plane(centre, half_extent)) {
     const bool drawn = turn < 6 && !outside(centre, half_extent);

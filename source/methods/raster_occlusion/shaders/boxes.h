@@ -1,5 +1,10 @@
 // What culling shaders ask of a bounding box. Boxes are {centre, half extent}.
 
+// The contribution test: 0 none, 1 exact, 2 by area. A constant of the pipeline, since llvmpipe computes both
+// sides of every branch that is left.
+layout(constant_id = 0) const uint kContribution = 0;
+layout(constant_id = 1) const float kThreshold = 1;  // px², for area
+
 // Rounding that a plane's value for a box may carry, four times over.
 float plane_slack(vec4 plane, vec3 centre, vec3 half_extent) {
   return 1e-6 * (dot(abs(plane.xyz), abs(centre) + half_extent) + min(abs(plane.w), 1e30));
@@ -123,10 +128,10 @@ float projected_area(vec4 sphere) {
   return 3.14159265 * radius * radius;
 }
 
-// Contribution culling, as the view asks for it.
+// Contribution culling, as the method was asked for it.
 bool contributes(vec4 sphere, vec3 half_extent) {
-  if (view.contribution == 1) return covers_sample(footprint(sphere.xyz, half_extent));
-  if (view.contribution == 2) return projected_area(sphere) >= view.threshold;
+  if (kContribution == 1) return covers_sample(footprint(sphere.xyz, half_extent));
+  if (kContribution == 2) return projected_area(sphere) >= kThreshold;
   return true;
 }
 

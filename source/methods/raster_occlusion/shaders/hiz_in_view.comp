@@ -19,8 +19,7 @@ void main() {
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz, half_extent = box.half_extent.xyz;
   uint word = 0;
-  if (!outside(centre, half_extent) &&
-      (view.contribution == 0 || contributes(box.centre_radius, half_extent))) {
+  if (!outside(centre, half_extent) && contributes(box.centre_radius, half_extent)) {
     word = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
   }
   state.at[object] = word;

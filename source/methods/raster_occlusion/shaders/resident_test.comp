@@ -34,7 +34,7 @@ void main() {
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
   if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
-  if (view.contribution != 0 && !contributes(box.centre_radius, half_extent)) return;
+  if (!contributes(box.centre_radius, half_extent)) return;
   state.at[object] = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
   if (reaches_near_plane(centre, half_extent)) {
     marks.at[object] = 1;

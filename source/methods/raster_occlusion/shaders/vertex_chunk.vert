@@ -26,8 +26,7 @@ void main() {
   fate = 1;
   if (outside(centre, box_half_extent)) {
     fate = 0;
-  } else if (view.contribution != 0 &&
-             !contributes(vec4(centre, boxes.at[object].centre_radius.w), box_half_extent)) {
+  } else if (!contributes(vec4(centre, boxes.at[object].centre_radius.w), box_half_extent)) {
     fate = 0;
   } else if (reaches_near_plane(centre, box_half_extent)) {
     fate = 2;

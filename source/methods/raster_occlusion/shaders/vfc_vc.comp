@@ -22,7 +22,7 @@ void main() {
   if (outside(box.centre_radius)) {
     kept = 0;
     atomicAdd(counters.at[0], 1);
-  } else if (view.contribution != 0 && !contributes(box.centre_radius, box.half_extent.xyz)) {
+  } else if (!contributes(box.centre_radius, box.half_extent.xyz)) {
     kept = 0;
     atomicAdd(counters.at[1], 1);
   }
