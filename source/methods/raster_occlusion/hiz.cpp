@@ -17,13 +17,13 @@ constexpr std::uint32_t kPyramid[] =
     ;
 
 struct InViewPush {
-  vk::DeviceAddress boxes, marks, last_marks, state;
-  std::uint32_t objects;
+  vk::DeviceAddress boxes, marks, state;
+  std::uint32_t objects, stamp;
 };
 
 struct TestPush {
   vk::DeviceAddress boxes, marks, state, pyramid;
-  std::uint32_t objects;
+  std::uint32_t objects, stamp;
 };
 
 struct PyramidPush {
@@ -44,10 +44,10 @@ public:
 private:
   void find_in_view(vulkan::Recorder& frame) override {
     const vulkan::SceneBuffers& scene = renderer_.buffers();
-    frame.dispatch(in_view_,
-                   InViewPush{scene.box_data.address(), marks_.address(), last_marks_.address(),
-                              state_.address(), scene.objects},
-                   scene.objects);
+    frame.dispatch(
+        in_view_,
+        InViewPush{scene.box_data.address(), marks_.address(), state_.address(), scene.objects, stamp_},
+        scene.objects);
   }
 
   void test(vulkan::Recorder& frame) override {
@@ -69,7 +69,7 @@ private:
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.dispatch(test_,
                    TestPush{scene.box_data.address(), marks_.address(), state_.address(), pyramid_.address(),
-                            scene.objects},
+                            scene.objects, stamp_},
                    scene.objects);
   }
 

@@ -105,8 +105,8 @@ private:
     for (std::uint32_t level = 0; level < tree_.levels(); ++level) {
       frame.begin_rendering({});
       frame.bind(boxes_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-      frame.push(
-          BoxPush{node_boxes_.address(), marks_.address(), lists_[level % 2].address(), 1, tree_.interior()});
+      frame.push(BoxPush{node_boxes_.address(), marks_.address(), lists_[level % 2].address(), 1,
+                         tree_.interior(), 1});
       frame.commands.drawIndirect(tests_.handle(), 16 * level, 1, 16);
       frame.end_rendering();
       vulkan::full_barrier(frame.commands);

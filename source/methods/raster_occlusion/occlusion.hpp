@@ -20,7 +20,7 @@ std::array<std::uint32_t, 2> shader_constants(const culling::Contribution& contr
 /// Push constants of every pass that tests boxes by rasterising them.
 struct BoxPush {
   vk::DeviceAddress boxes, marks, list;
-  std::uint32_t listed, first_leaf;
+  std::uint32_t listed, first_leaf, mark;  ///< mark: the word that says seen
 };
 
 /// A pipeline that marks boxes: depth tested, nothing written but marks.

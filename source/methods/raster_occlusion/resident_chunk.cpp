@@ -16,16 +16,32 @@ constexpr std::uint32_t kTest[] =
 constexpr std::uint32_t kFace[] =
 #include "shaders/face.vert.inc"
     ;
+constexpr std::uint32_t kDepthTiles[] =
+#include "shaders/depth_tiles.comp.inc"
+    ;
+constexpr std::uint32_t kFilter[] =
+#include "shaders/resident_filter.comp.inc"
+    ;
 constexpr std::uint32_t kMark[] =
 #include "shaders/mark.frag.inc"
     ;
 
-constexpr std::uint32_t kFaceVertices = 18;
+constexpr std::uint32_t kDepthTile = 8;
 constexpr std::uint32_t kWords = partition::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
-  vk::DeviceAddress boxes, marks, list, last_marks, state, chunks_in, chunk_objects, test;
+  vk::DeviceAddress boxes, marks, candidates, state, chunks_in, chunk_objects, test;
+  std::uint32_t stamp;
+};
+
+struct TilesPush {
+  vk::DeviceAddress depth, tiles;
+  std::uint32_t width, height, reversed;
+};
+
+struct FilterPush {
+  vk::DeviceAddress boxes, candidates, list, tiles, test;
 };
 
 constexpr std::array kParameters{culling::kContributionParameter, culling::kThresholdParameter,
@@ -41,8 +57,12 @@ public:
                                    .fragment = kMark,
                                    .constants = shader_constants(contribution_),
                                    .depth_write = false}),
+        depth_tiles_(renderer.device(), kDepthTiles),
+        filter_(renderer.device(), kFilter, shader_constants(contribution_)),
+        candidates_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device,
+                    "objects in view"),
         list_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "objects to test"),
-        test_(renderer.device(), 16, vulkan::Memory::device, "a draw command") {
+        test_(renderer.device(), 20, vulkan::Memory::device, "a draw command") {
     send_changes();
   }
 
@@ -92,37 +112,59 @@ private:
     for (const std::uint32_t chunk : chunks_.inside()) *entry++ = chunk | kWhollyIn;
     for (const std::uint32_t chunk : chunks_.crossing()) *entry++ = chunk;
     const auto count = static_cast<std::uint32_t>(chunks_.inside().size() + chunks_.crossing().size());
-    frame.commands.fillBuffer(state_.handle(), 0, state_.size(), 0);
-    frame.commands.fillBuffer(marks_.handle(), 0, marks_.size(), 0);
-    const std::array<std::uint32_t, 4> empty{0, 1, 0, 0};
+    chunks_in_count_ = count;
+    const std::array<std::uint32_t, 5> empty{0, 1, 0, 0, 0};
     frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, empty);
     vulkan::full_barrier(frame.commands);
     if (count == 0) return;
-    frame.dispatch(
-        in_view_,
-        Push{renderer_.buffers().box_data.address(), marks_.address(), list_.address(), last_marks_.address(),
-             state_.address(), chunks_in_.address(), resident_.address(), test_.address()},
-        count, 1);
+    frame.dispatch(in_view_,
+                   Push{renderer_.buffers().box_data.address(), marks_.address(), candidates_.address(),
+                        state_.address(), chunks_in_.address(), resident_.address(), test_.address(), stamp_},
+                   count, 1);
   }
 
   void test(vulkan::Recorder& frame) override {
+    if (chunks_in_count_ == 0) return;
+    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
+    const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
+    const std::uint32_t tiles =
+        ((width + kDepthTile - 1) / kDepthTile) * ((height + kDepthTile - 1) / kDepthTile);
+    if (depth_.size() < std::uint64_t{4} * width * height) {
+      depth_ = vulkan::Buffer(renderer_.device(), std::uint64_t{4} * width * height, vulkan::Memory::device,
+                              "depth");
+    }
+    if (tiles_of_depth_.size() < std::uint64_t{4} * tiles) {
+      tiles_of_depth_ =
+          vulkan::Buffer(renderer_.device(), std::uint64_t{4} * tiles, vulkan::Memory::device, "depth tiles");
+    }
+    const vk::DeviceAddress boxes = renderer_.buffers().box_data.address(),
+                            farthest = tiles_of_depth_.address();
+    frame.targets.depth.copy_to(frame.commands, depth_);
+    frame.dispatch(depth_tiles_, TilesPush{depth_.address(), farthest, width, height, frame.reversed()},
+                   tiles, 64);
+    frame.dispatch(filter_,
+                   FilterPush{boxes, candidates_.address(), list_.address(), farthest, test_.address()},
+                   chunks_in_count_, 1);
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), list_.address(), 0, 0});
+    frame.push(BoxPush{boxes, marks_.address(), list_.address(), 0, 0, stamp_});
     frame.commands.drawIndirect(test_.handle(), 0, 1, 16);
     frame.end_rendering();
     vulkan::full_barrier(frame.commands);
   }
 
   void count(CullStats& stats) override {
-    stats.cull_vertices = read_words(renderer_.device(), test_, 1)[0] / kFaceVertices;
+    stats.cull_vertices = read_words(renderer_.device(), test_, 5)[4];
     stats.nodes_visited = chunks_.nodes_visited();
   }
 
   GroundChunks chunks_;
   vulkan::ComputePipeline in_view_;
   vulkan::GraphicsPipeline faces_;
-  vulkan::Buffer resident_, chunks_in_, list_, test_, staging_;
+  vulkan::ComputePipeline depth_tiles_, filter_;
+  vulkan::Buffer candidates_, list_, test_;
+  vulkan::Buffer resident_, chunks_in_, staging_, depth_, tiles_of_depth_;
+  std::uint32_t chunks_in_count_ = 0;
   std::uint32_t room_ = 0;  ///< chunks that the buffers hold
   std::vector<std::uint32_t> changed_;
   std::vector<vk::BufferCopy> regions_;

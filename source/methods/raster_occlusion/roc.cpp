@@ -24,7 +24,7 @@ private:
     const vulkan::SceneBuffers& scene = renderer_.buffers();
     frame.begin_rendering({});
     frame.bind(boxes_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{scene.box_data.address(), marks_.address(), 0, 0, 0});
+    frame.push(BoxPush{scene.box_data.address(), marks_.address(), 0, 0, 0, 1});
     frame.commands.draw(kBoxVertices * scene.objects, 1, 0, 0);
     frame.end_rendering();
   }

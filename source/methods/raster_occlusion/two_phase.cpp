@@ -24,12 +24,17 @@ using vulkan::VisibleDraws;
 // As in state.h.
 constexpr std::uint32_t kInView = 1, kDrawnEarly = 2, kSeen = 4, kTied = 8;
 constexpr std::uint32_t kTile = 64;
-constexpr VisibleDraws::Condition kEarly{kDrawnEarly, kDrawnEarly}, kLate{kDrawnEarly | kSeen, kSeen},
-    kAnySeen{kSeen, kSeen}, kAnyTied{kTied, kTied}, kNever{0, 1};
+constexpr std::uint32_t kFrames = 1u << 28;  ///< as many as a state can tell apart
+
+/// Of this frame's states, those with `bits` of `mask`.
+VisibleDraws::Condition among(std::uint32_t stamp, std::uint32_t mask, std::uint32_t bits) {
+  return {~15u | mask, stamp << 4 | bits};
+}
+constexpr VisibleDraws::Condition kNever{0, 1};
 
 struct Push {
   vk::DeviceAddress boxes, objects, marks, state, tiles;
-  std::uint32_t count;
+  std::uint32_t count, stamp;
 };
 
 vulkan::Buffer zeros(vulkan::Device& device, std::size_t words) {
@@ -43,7 +48,6 @@ TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution
       contribution_(contribution),
       state_(zeros(renderer.device(), renderer.scene().size())),
       marks_(zeros(renderer.device(), renderer.scene().size())),
-      last_marks_(zeros(renderer.device(), renderer.scene().size())),
       new_tiles_(renderer.device(), kNewTiles, shader_constants(contribution)),
       tied_(renderer.device(), kTiedComp, shader_constants(contribution)),
       tied_pipeline_(renderer.device(), {.vertex = kObjectVert,
@@ -55,12 +59,13 @@ TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution
       late_(renderer.draws().make_buffers(renderer.device())) {}
 
 void TwoPhase::record(vulkan::Recorder& frame) {
-  std::swap(marks_, last_marks_);
+  begin_frame(frame);
   const auto sort = renderer_.transparent_order();
   {
     const auto pass = frame.pass("what is in view", PassKind::cull);
     find_in_view(frame);
-    renderer_.draws().build(frame, state_.address(), kEarly, kNever, 0, early_);
+    renderer_.draws().build(frame, state_.address(), among(stamp_, kDrawnEarly, kDrawnEarly), kNever, 0,
+                            early_);
   }
   {
     const auto pass = frame.pass("draw last frame's visible objects", PassKind::draw);
@@ -73,7 +78,8 @@ void TwoPhase::record(vulkan::Recorder& frame) {
   {
     const auto pass = frame.pass("what is new", PassKind::cull);
     settle_ties(frame);
-    renderer_.draws().build(frame, state_.address(), kLate, kAnySeen, sort, late_, kAnyTied, &early_);
+    renderer_.draws().build(frame, state_.address(), among(stamp_, kDrawnEarly | kSeen, kSeen),
+                            among(stamp_, kSeen, kSeen), sort, late_, among(stamp_, kTied, kTied), &early_);
   }
   const auto pass = frame.pass("draw new objects", PassKind::draw);
   renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
@@ -81,17 +87,28 @@ void TwoPhase::record(vulkan::Recorder& frame) {
   renderer_.draw_transparent(frame, late_);
 }
 
+void TwoPhase::begin_frame(const vulkan::Recorder& frame) {
+  const std::uint64_t tiles = 1 + std::uint64_t{(frame.targets.depth.width() + kTile - 1) / kTile} *
+                                      ((frame.targets.depth.height() + kTile - 1) / kTile);
+  const bool grown = tiles_.size() < 4 * tiles;
+  if (grown) tiles_ = vulkan::Buffer(renderer_.device(), 4 * tiles, vulkan::Memory::device, "tiles");
+  const bool over = ++stamp_ == kFrames;
+  if (grown || over) frame.fill(tiles_, 0, tiles_.size());
+  if (!over) return;
+  frame.fill(state_, 0, state_.size());
+  frame.fill(marks_, 0, marks_.size());
+  stamp_ = 2;
+}
+
 void TwoPhase::settle_ties(vulkan::Recorder& frame) {
   const vulkan::SceneBuffers& scene = renderer_.buffers();
-  const std::uint64_t columns = (frame.targets.depth.width() + kTile - 1) / kTile;
-  const std::uint64_t rows = (frame.targets.depth.height() + kTile - 1) / kTile;
-  if (tiles_.size() < columns * rows * 4) {
-    tiles_ = vulkan::Buffer(renderer_.device(), columns * rows * 4, vulkan::Memory::device, "tiles");
-  }
-  frame.fill(tiles_, 0, columns * rows * 4);
-  const Push push{scene.box_data.address(), scene.object_data.address(),
-                  marks_.address(),         state_.address(),
-                  tiles_.address(),         scene.objects};
+  const Push push{scene.box_data.address(),
+                  scene.object_data.address(),
+                  marks_.address(),
+                  state_.address(),
+                  tiles_.address(),
+                  scene.objects,
+                  stamp_};
   frame.dispatch(new_tiles_, push, scene.objects);
   frame.dispatch(tied_, push, scene.objects);
 }
@@ -102,8 +119,9 @@ void TwoPhase::read_back(Frame& frame) {
   std::uint64_t in_view = 0;
   for (std::size_t i = 0; i < state.size(); ++i) {
     const bool blended = renderer_.scene().surface[i] == Surface::transparent;
-    drawn[i] = (state[i] & (blended ? kSeen : kSeen | kDrawnEarly)) != 0;
-    in_view += state[i] & kInView;
+    const std::uint32_t bits = state[i] >> 4 == stamp_ ? state[i] : 0;
+    drawn[i] = (bits & (blended ? kSeen : kSeen | kDrawnEarly)) != 0;
+    in_view += bits & kInView;
   }
   report_visible(renderer_, drawn, {}, {}, frame);
   frame.stats.tested = in_view;

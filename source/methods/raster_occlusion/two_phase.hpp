@@ -17,7 +17,7 @@ public:
   void read_back(Frame& frame) final;
 
 protected:
-  /// Sets the state of every object that is in view (state.h), clears marks.
+  /// Sets the state of every object that is in view (state.h).
   virtual void find_in_view(vulkan::Recorder& frame) = 0;
   /// Marks objects in view that the depth so far does not hide.
   virtual void test(vulkan::Recorder& frame) = 0;
@@ -25,9 +25,11 @@ protected:
 
   vulkan::Renderer& renderer_;
   culling::Contribution contribution_;
-  vulkan::Buffer state_, marks_, last_marks_;
+  vulkan::Buffer state_, marks_;
+  std::uint32_t stamp_ = 1;  ///< the frame's number, in states and marks
 
 private:
+  void begin_frame(const vulkan::Recorder& frame);
   void settle_ties(vulkan::Recorder& frame);
 
   vulkan::ComputePipeline new_tiles_, tied_;

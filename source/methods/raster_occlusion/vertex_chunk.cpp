@@ -58,7 +58,7 @@ private:
     frame.fill(marks_, 0, marks_.size());
     frame.begin_rendering({});
     frame.bind(boxes_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), 0, 0, 0});
+    frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), 0, 0, 0, 1});
     frame.commands.bindVertexBuffers(0, input_.handle(), vk::DeviceSize{0});
     if (vertices_ > 0) frame.commands.draw(vertices_, 1, 0, 0);
     frame.end_rendering();

@@ -9,8 +9,8 @@ layout(local_size_x = 256) in;
 
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
-  WordBuffer marks, last_marks, state;
-  uint objects;
+  WordBuffer marks, state;
+  uint objects, frame;
 };
 
 void main() {
@@ -18,10 +18,9 @@ void main() {
   if (object >= objects) return;
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz, half_extent = box.half_extent.xyz;
-  uint word = 0;
+  uint bits = 0;
   if (!outside(centre, half_extent) && contributes(box.centre_radius, half_extent)) {
-    word = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
+    bits = marks.at[object] == frame - 1 ? kInView | kDrawnEarly : kInView;
   }
-  state.at[object] = word;
-  marks.at[object] = 0;
+  state.at[object] = state_word(frame, bits);
 }

@@ -15,18 +15,18 @@ layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer marks, state;
   FloatBuffer pyramid;
-  uint objects;
+  uint objects, frame;
 };
 
 void main() {
   const uint object = gl_GlobalInvocationID.x;
-  if (object >= objects || (state.at[object] & kInView) == 0) return;
+  if (object >= objects || state_bits(frame, state.at[object]) == 0) return;
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
   const Footprint print = footprint(centre, half_extent);
   if (print.whole || reaches_near_plane(centre, half_extent)) {
-    marks.at[object] = 1;
+    marks.at[object] = frame;
     return;
   }
   const uvec2 image = uvec2(view.width, view.height);
@@ -45,7 +45,7 @@ void main() {
     for (uint x = first.x >> level; x <= last.x >> level; ++x) {
       const float farthest = pyramid.at[offset + y * size.x + x];
       if (view.reversed != 0 ? print.nearest >= farthest : print.nearest <= farthest) {
-        marks.at[object] = 1;
+        marks.at[object] = frame;
         return;
       }
     }

@@ -7,10 +7,12 @@ layout(early_fragment_tests) in;
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer marks;
+  WordBuffer list;
+  uint listed, first_leaf, mark;
 };
 
 layout(location = 0) in flat uint id;
 
 void main() {
-  marks.at[id] = 1;
+  marks.at[id] = mark;
 }

@@ -12,19 +12,20 @@ layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   ObjectBuffer data;
   WordBuffer marks, state, tiles;
-  uint objects;
+  uint objects, frame;
 };
 
 void main() {
   const uint object = gl_GlobalInvocationID.x;
-  if (object >= objects || marks.at[object] == 0) return;
-  const uint word = state.at[object] | kSeen;
-  state.at[object] = word;
-  if (word != (kInView | kSeen) || data.at[object].transparent != 0) return;
+  if (object == 0) tiles.at[0] = frame;
+  if (object >= objects || marks.at[object] != frame) return;
+  const uint bits = state_bits(frame, state.at[object]) | kSeen;
+  state.at[object] = state_word(frame, bits);
+  if (bits != (kInView | kSeen) || data.at[object].transparent != 0) return;
   uvec2 first, last;
   tile_range(footprint(boxes.at[object].centre_radius.xyz, boxes.at[object].half_extent.xyz), first, last);
   const uint columns = tile_count().x;
   for (uint y = first.y; y <= last.y; ++y) {
-    for (uint x = first.x; x <= last.x; ++x) tiles.at[y * columns + x] = 1;
+    for (uint x = first.x; x <= last.x; ++x) tiles.at[1 + y * columns + x] = frame;
   }
 }

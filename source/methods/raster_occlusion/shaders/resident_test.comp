@@ -7,23 +7,20 @@
 #include "state.h"
 layout(local_size_x = 96) in;
 
-// One group a chunk that is in, one invocation an object: frustum and contribution; what is left goes to the
-// raster test, but for boxes at the near plane, which are seen untested.
-layout(buffer_reference, scalar) buffer TestBuffer {
-  uint vertex_count, instance_count, first_vertex, first_instance;  // VkDrawIndirectCommand
-};
+// One group a chunk that is in, one invocation an object: frustum and contribution; what is left is tested
+// for occlusion, but for boxes at the near plane, which are seen untested.
+#include "resident.h"
 
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer marks;
-  WordBuffer list;
-  WordBuffer last_marks, state;
+  WordBuffer candidates;
+  WordBuffer state;
   WordBuffer chunks_in;  // number of the chunk, bit 31: wholly in the frustum
   WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
   TestBuffer test;
+  uint frame;
 };
-
-const uint kFaceVertices = 18;
 
 void main() {
   const uint entry = chunks_in.at[gl_WorkGroupID.x];
@@ -35,10 +32,11 @@ void main() {
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
   if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
   if (!contributes(box.centre_radius, half_extent)) return;
-  state.at[object] = last_marks.at[object] != 0 ? kInView | kDrawnEarly : kInView;
+  const bool drawn = marks.at[object] == frame - 1;
+  state.at[object] = state_word(frame, drawn ? kInView | kDrawnEarly : kInView);
   if (reaches_near_plane(centre, half_extent)) {
-    marks.at[object] = 1;
+    marks.at[object] = frame;
   } else {
-    list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;
+    candidates.at[atomicAdd(test.candidates, 1)] = object;
   }
 }

@@ -12,21 +12,21 @@ layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   ObjectBuffer data;
   WordBuffer marks, state, tiles;
-  uint objects;
+  uint objects, frame;
 };
 
 void main() {
   const uint object = gl_GlobalInvocationID.x;
   if (object >= objects) return;
-  const uint word = state.at[object];
-  if ((word & (kDrawnEarly | kSeen)) == 0 || data.at[object].transparent != 0) return;
+  const uint bits = state_bits(frame, state.at[object]);
+  if ((bits & (kDrawnEarly | kSeen)) == 0 || data.at[object].transparent != 0) return;
   uvec2 first, last;
   tile_range(footprint(boxes.at[object].centre_radius.xyz, boxes.at[object].half_extent.xyz), first, last);
   const uint columns = tile_count().x;
   for (uint y = first.y; y <= last.y; ++y) {
     for (uint x = first.x; x <= last.x; ++x) {
-      if (tiles.at[y * columns + x] != 0) {
-        state.at[object] = word | kTied;
+      if (tiles.at[1 + y * columns + x] == frame) {
+        state.at[object] = state_word(frame, bits | kTied);
         return;
       }
     }

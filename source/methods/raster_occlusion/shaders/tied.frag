@@ -22,6 +22,6 @@ const uint kTile = 64;
 void main() {
   const uvec2 at = uvec2(gl_FragCoord.xy) / kTile;
   const uint columns = uint(ceil(view.width / kTile));
-  if (tiles.at[at.y * columns + at.x] == 0) discard;
+  if (tiles.at[1 + at.y * columns + at.x] != tiles.at[0]) discard;
   shade = shade_of(world_position, world_normal, colour);
 }
