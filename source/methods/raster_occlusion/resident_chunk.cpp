@@ -41,7 +41,8 @@ struct TilesPush {
 };
 
 struct FilterPush {
-  vk::DeviceAddress boxes, candidates, list, tiles, test;
+  vk::DeviceAddress boxes, marks, candidates, list, depth, tiles, test;
+  std::uint32_t stamp;
 };
 
 constexpr std::array kParameters{culling::kContributionParameter, culling::kThresholdParameter,
@@ -143,7 +144,8 @@ private:
     frame.dispatch(depth_tiles_, TilesPush{depth_.address(), farthest, width, height, frame.reversed()},
                    tiles, 64);
     frame.dispatch(filter_,
-                   FilterPush{boxes, candidates_.address(), list_.address(), farthest, test_.address()},
+                   FilterPush{boxes, marks_.address(), candidates_.address(), list_.address(),
+                              depth_.address(), farthest, test_.address(), stamp_},
                    chunks_in_count_, 1);
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);

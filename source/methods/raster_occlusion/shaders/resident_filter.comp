@@ -7,24 +7,55 @@
 #include "resident.h"
 layout(local_size_x = 96) in;
 
-// Drops the boxes that lie behind the farthest depth of every tile they touch (Greene et al. 1993); the rest goes
-// to the raster test, and so do boxes over many tiles.
+// Spares boxes the raster test: marks those of which a point can be seen, and drops those that lie
+// behind the farthest depth of every tile they touch (Greene et al. 1993), unless they touch many.
 layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };
 
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
-  WordBuffer candidates, list;
-  FloatBuffer tiles;
+  WordBuffer marks, candidates, list;
+  FloatBuffer depth, tiles;
   TestBuffer test;
+  uint frame;
 };
 
 const uint kMostTiles = 64;
+
+bool hides(float depth, float nearest) {
+  return view.reversed != 0 ? nearest < depth : nearest > depth;
+}
+
+// Whether a point of the box can be seen. If it can, so can the box's face before it, and the raster test would
+// say the same.
+bool shows(vec3 at, float slack) {
+  const vec4 clip = clip_position(at, slack);
+  if (any(greaterThanEqual(abs(clip.xy), vec2(clip.w)))) return false;
+  const vec2 size = vec2(view.width, view.height);
+  const uvec2 pixel = min(uvec2((vec2(clip.x, -clip.y) / clip.w + 1) * 0.5 * size), uvec2(size) - 1);
+  return !hides(depth.at[pixel.y * uint(size.x) + pixel.x], clip.z / clip.w);
+}
+
+// Where the line from the box's middle to the eye leaves it, and just within the corners, which stick out of
+// what fills the box.
+bool shows_somewhere(vec3 centre, vec3 half_extent) {
+  const float slack = depth_slack(centre, half_extent);
+  const vec3 away = view.eye.w > 0 ? view.forward.xyz : centre - view.eye.xyz;
+  const vec3 share = half_extent / max(abs(away), 1e-30);
+  bool shown = shows(centre - away * min(min(share.x, share.y), share.z), slack);
+  for (uint i = 0; i < 8 && !shown; ++i) shown = shows(corner(centre, 0.95 * half_extent, i), slack);
+  return shown;
+}
 
 void main() {
   if (gl_GlobalInvocationID.x >= test.candidates) return;
   const uint object = candidates.at[gl_GlobalInvocationID.x];
   const BoxData box = boxes.at[object];
-  const Footprint print = footprint(box.centre_radius.xyz, widened(box.centre_radius.xyz, box.half_extent.xyz));
+  const vec3 centre = box.centre_radius.xyz, half_extent = widened(centre, box.half_extent.xyz);
+  if (shows_somewhere(centre, half_extent)) {
+    marks.at[object] = frame;
+    return;
+  }
+  const Footprint print = footprint(centre, half_extent);
   const uvec2 image = uvec2(view.width, view.height), edge = (image - 1) / kDepthTile;
   bool seen = print.whole;
   if (!seen) {
@@ -34,8 +65,7 @@ void main() {
     const uint across = last.x - first.x + 1, count = across * (last.y - first.y + 1);
     seen = count > kMostTiles;
     for (uint i = 0; i < count && !seen; ++i) {
-      const float farthest = tiles.at[(first.y + i / across) * (edge.x + 1) + first.x + i % across];
-      seen = view.reversed != 0 ? print.nearest >= farthest : print.nearest <= farthest;
+      seen = !hides(tiles.at[(first.y + i / across) * (edge.x + 1) + first.x + i % across], print.nearest);
     }
   }
   if (seen) list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;
