@@ -17,7 +17,7 @@
 namespace sightline::bake {
 namespace {
 
-const CellOptions kCoarse{.cell = 15, .target = 1e-3, .rays = 256};
+const CellOptions kCoarse{.cell = 15, .target = 1e-3};
 
 Scene forest() {
   return *generate_world("forest?trees=150&size=60");
@@ -38,7 +38,7 @@ TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
   BakeResult part;
   do {
     reach += 1 + random.below(4);
-    part = bake(scene, kCoarse, again, {}, [&](std::size_t done, std::size_t) { return done < reach; });
+    part = bake(scene, kCoarse, again, {}, 0, [&](std::size_t done, std::size_t) { return done < reach; });
     ASSERT_LT(++stops, 1000u);
     if (part.finished) break;
     // A kill may cut a record off, or leave bytes that never were one.
@@ -60,7 +60,7 @@ TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
   CellOptions other = kCoarse;
   other.seed = 2;
   const std::filesystem::path file = folder / "a.pvs", fresh = folder / "b.pvs";
-  bake(scene, other, file, {}, [](std::size_t done, std::size_t) { return done < 5; });
+  bake(scene, other, file, {}, 0, [](std::size_t done, std::size_t) { return done < 5; });
   const BakeResult result = bake(scene, kCoarse, file, {});
   EXPECT_EQ(result.resumed, 0u);
   bake(scene, kCoarse, fresh, {});
@@ -70,7 +70,7 @@ TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
 TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   Scene scene = forest();
   const test::TemporaryFolder folder;
-  const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3, .rays = 512}, folder / "a.pvs", {});
+  const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3}, folder / "a.pvs", {});
   scene.cells = std::make_shared<CellPvs>(read_pvs(folder / "a.pvs"));
   const auto method = *create_method("baked", scene);
   const lab::EmbreeJudge judge(scene);
