@@ -24,6 +24,9 @@ int run_ray_pvs(bool quick, const std::string& device_name, const std::string& r
   fmt::print(
       "Ye et al. 2023, table 6: 100 x 100 rays, one thread on the CPU, {} as the GPU; medians of {}\n\n{}\n",
       device->info().name, options.repeats, lab::render(lab::ray_table(models)));
+  double share = 0;
+  for (const lab::RayPvsModel& m : models) share = std::max(share, m.timing[2].total() / m.timing[0].total());
+  fmt::print("iwcpa takes at most {:.2f} of toca's time.\n\n", share);
   fmt::print("Apart, ms:\n\n{}\n", lab::render(lab::ray_parts_table(models)));
   fmt::print("Figure 12 in figures, against the item buffer at 1280x720:\n\n{}\n",
              lab::render(lab::ray_loss_table(models)));
