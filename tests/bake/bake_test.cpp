@@ -88,6 +88,44 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   EXPECT_LE(lost, pixels / 1000);
 }
 
+// A closed chamber that takes a five-thousandth of the cell: only from within is seen what it holds.
+TEST(Bake, FindsWhatIsSeenFromANookAlone) {
+  Scene scene;
+  scene.name = "nook";
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(
+        {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});
+  }
+  const std::vector<Vec3> normals(8, Vec3{0, 1, 0});
+  std::vector<std::uint32_t> faces;
+  for (const std::uint32_t axis : {1u, 2u, 4u}) {
+    const std::uint32_t u = axis == 1 ? 2 : 1, v = axis == 4 ? 2 : 4;
+    for (const std::uint32_t side : {0u, axis}) {
+      for (const std::uint32_t corner : {side, side + u, side + u + v, side, side + u + v, side + v}) {
+        faces.push_back(corner);
+      }
+    }
+  }
+  const std::uint32_t cube = scene.add_mesh(corners, normals, faces);
+  const auto at = [](float x, float y, float z, float size) {
+    Affine there;
+    there.rows[0] = {size, 0, 0, x}, there.rows[1] = {0, size, 0, y}, there.rows[2] = {0, 0, size, z};
+    return there;
+  };
+  scene.add_object(cube, at(0, 0, 0, 0.1f));
+  scene.add_object(cube, at(9.9f, 9.9f, 9.9f, 0.1f));
+  scene.add_object(cube, at(6, 3, 7, 1));                 // the chamber
+  scene.add_object(cube, at(6.15f, 3.15f, 7.15f, 0.3f));  // what it holds
+  const CellOptions options{.cell = 20};
+  const CellPvs cells = make_cells(scene, options);
+  ASSERT_EQ(cells.size(), 1u);
+  const pvs::TriangleRays rays(scene);
+  std::vector<ObjectId> visible;
+  ASSERT_TRUE(CellBaker(scene, rays, options).bake(cells, 0, visible));
+  EXPECT_EQ(visible, (std::vector<ObjectId>{0, 1, 2, 3}));
+}
+
 TEST(Bake, RefusesTooManyCells) {
   const Scene scene = forest();
   EXPECT_THROW(make_cells(scene, {.cell = 1e-3f}), Error);
