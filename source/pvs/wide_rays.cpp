@@ -7,6 +7,13 @@
 #include <new>
 #include <utility>
 
+#ifndef SIGHTLINE_PVS_WIDE_TURNS
+#define SIGHTLINE_PVS_WIDE_TURNS
+namespace sightline::pvs {
+constexpr std::size_t kTurns = 16;  // rays that wait for memory together, where each goes its own way
+}
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pvs/wide_rays.cpp"
 #include <hwy/foreach_target.h>
@@ -133,8 +140,6 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
 }
 
 // Several rays by turns: while a node of one is on its way from memory, the others go on.
-constexpr std::size_t kTurns = 8;
-
 struct Turn {
   WideSlabs slabs;
   Way way;
@@ -268,8 +273,7 @@ bool go_together(const partition::WideBvh& bvh, std::size_t rays) {
 
 // Enough for rays by turns; and a ray that leaves its packet walks on above what waits for the packet.
 void grow(WideStack& stack, const partition::WideBvh& bvh) {
-  constexpr std::size_t kStacks = 8;
-  const std::size_t room = kStacks * std::size_t{bvh.stack_size()};
+  const std::size_t room = kTurns * std::size_t{bvh.stack_size()};
   if (stack.entries.size() < room) stack.entries.resize(room), stack.rays.resize(room);
 }
 
