@@ -102,6 +102,13 @@ void BM_WideRays(benchmark::State& state) {
     pvs::cast_wide(s.wide, s.grid, stack, hits);
   });
 }
+void BM_WideRaysAllCores(benchmark::State& state) {
+  pvs::Crew crew(0);
+  std::vector<pvs::WideStack> stacks(crew.size());
+  run(state,
+      [&](const Setting& s, pvs::RayHits& hits) { pvs::cast_wide(s.wide, s.grid, crew, stacks, hits); });
+  state.counters["threads"] = crew.size();
+}
 void BM_Boca(benchmark::State& state) {
   run(state, [](const Setting& s, pvs::RayHits& hits) { pvs::cast_down_bvh(s.bvh, s.grid.prepared, hits); });
 }
@@ -117,6 +124,7 @@ void sizes(benchmark::internal::Benchmark* b) {
 BENCHMARK(BM_EmbreeUserGeometry)->Apply(sizes);
 BENCHMARK(BM_EmbreeRobust)->Apply(sizes);
 BENCHMARK(BM_WideRays)->Apply(sizes);
+BENCHMARK(BM_WideRaysAllCores)->Apply(sizes)->UseRealTime();
 BENCHMARK(BM_Boca)->Apply(sizes);
 BENCHMARK(BM_SkipCounts)->Apply(sizes);
 

@@ -1,9 +1,12 @@
-// Any bytes as baked visibility: sets whose objects are in range and ascending, or an Error. The checksum
-// would keep the fuzzer out, so the bytes are also read as a lone set, and as a file whose checksum is right.
+// Any bytes as baked visibility: sets whose objects are in range and ascending, or an Error. Checksum and
+// compression would keep the fuzzer out, so the bytes are also read as a lone set, as the sets of a few cells
+// before compression, and as a file whose checksum is right.
 #include <cstdlib>
 #include <cstring>
 
+#include "bake/cell_coding.hpp"
 #include "bake/pvs_file.hpp"
+#include "bake/set_coding.hpp"
 
 namespace {
 
@@ -25,6 +28,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     std::vector<std::uint32_t> ids;
     bake::unpack_set(bytes, 100000, "fuzz", ids);
+  } catch (const Error&) {
+  }
+  CellPvs few;
+  few.counts = {3, 2, 2}, few.objects = 60;
+  try {
+    bake::decode_cells(bytes, "fuzz", few);
+    expect_sound(few);
   } catch (const Error&) {
   }
   constexpr std::size_t kHeader = 84, kChecksumAt = 76;

@@ -1,9 +1,12 @@
-// make_seeds FOLDER: writes FOLDER/fuzz_bsp, FOLDER/fuzz_pk3 and FOLDER/fuzz_gltf with a few whole files
-// each.
+// make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf and fuzz_pvs with a few whole files each.
 #include <cstdio>
+#include <numeric>
 
 #include <sightline/io.hpp>
 
+#include "bake/cell_coding.hpp"
+#include "bake/pvs_file.hpp"
+#include "bake/set_coding.hpp"
 #include "sample_files.hpp"
 
 int main(int argc, char** argv) try {
@@ -11,7 +14,7 @@ int main(int argc, char** argv) try {
   using namespace sightline::samples;
   if (argc != 2) return std::fputs("usage: fuzz_seeds FOLDER\n", stderr), 2;
   const std::filesystem::path folder = argv[1];
-  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf"})
+  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_pvs"})
     std::filesystem::create_directories(folder / target);
 
   Level level = two_rooms();
@@ -31,6 +34,29 @@ int main(int argc, char** argv) try {
       R"([{"children": [1], "rotation": [0, 0, 0, 1]}, {"mesh": 0, "scale": [1, 2, 3]}])");
   sparse["meshes"][0]["primitives"][0]["mode"] = 5;
   write(folder / "fuzz_gltf/sparse_strip.gltf", to_bytes(sparse));
+
+  // Twelve cells of sixty objects, as fuzz_pvs reads them: the file, each layout, and lone sets.
+  CellPvs cells;
+  cells.bounds = {{0, 0, 0}, {3, 2, 2}};
+  cells.counts = {3, 2, 2}, cells.objects = 60, cells.scene = 1;
+  cells.first.push_back(0);
+  for (std::uint32_t cell = 0; cell < 12; ++cell) {
+    cells.open.push_back(cell % 5 != 4);
+    for (std::uint32_t o = cell; cells.open.back() && o < 60; o += 1 + o * cell % 7)
+      cells.visible.push_back(o);
+    cells.first.push_back(cells.visible.size());
+  }
+  write(folder / "fuzz_pvs/twelve_cells.pvs", bake::pack_cells(cells));
+  const std::vector<std::uint32_t> order = bake::object_order(cells);
+  for (const bake::Layout layout : bake::kLayouts) {
+    write(folder / ("fuzz_pvs/layout_" + std::to_string(static_cast<int>(layout))),
+          bake::code_cells(cells, layout, order));
+  }
+  std::vector<std::uint32_t> members(90000);
+  std::iota(members.begin(), members.end(), 5u);
+  write(folder / "fuzz_pvs/runs", bake::pack_set(members));
+  write(folder / "fuzz_pvs/bits", bake::pack_set(std::span(members).first(5000), bake::Runs::plain));
+  write(folder / "fuzz_pvs/few", bake::pack_set(std::span(members).first(3), bake::Runs::plain));
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "fuzz_seeds: %s\n", error.what());

@@ -21,32 +21,30 @@ namespace {
 struct Options {
   std::string scene, file, cells;
   bake::CellOptions bake;
+  int threads = 0;
   std::size_t check = 0;
+  std::uint64_t check_seed = 1;
 };
 
 void print_level(const Scene& scene, const CellPvs& cells, const Options& options) {
-  const std::vector<lab::CellComparison> rows = lab::compare_with_level(scene, cells, options.bake.seed);
-  double baked = 0, level = 0, only_baked = 0, only_level = 0;
-  std::string csv = "cell,baked,level,only_baked,only_level\n";
-  for (const lab::CellComparison& row : rows) {
-    baked += row.baked, level += row.level, only_baked += row.only_baked, only_level += row.only_level;
-    csv += fmt::format("{},{},{},{},{}\n", row.cell, row.baked, row.level, row.only_baked, row.only_level);
+  const std::vector<lab::CellComparison> rows = lab::compare_with_level(scene, cells);
+  fmt::print("\nCell by cell against the level's own PVS, {} cells\n\n{}", rows.size(),
+             lab::render(lab::comparison_table(rows)));
+  if (options.cells.empty()) {
+    fmt::print("--cells FILE.csv writes every cell's row, with the objects that only one of the two has.\n");
+  } else {
+    lab::write_file(options.cells, lab::comparison_csv(cells, rows));
   }
-  const double n = static_cast<double>(std::max<std::size_t>(1, rows.size()));
-  fmt::print(
-      "Against the level's own PVS, mean of {} cells: {:.1f} objects baked, {:.1f} in the level's; {:.2f} "
-      "only baked, "
-      "{:.1f} only in the level's\n",
-      rows.size(), baked / n, level / n, only_baked / n, only_level / n);
-  if (!options.cells.empty()) lab::write_file(options.cells, csv);
 }
 
 int run_bake(const Options& options) {
   const bake::Ranks ranks = bake::Ranks::join();
   const Scene scene = load_scene(options.scene);
+  // Ranks share the machine out: a thread each, unless told otherwise.
+  const int threads = options.threads > 0 || !ranks.joined() ? options.threads : 1;
   const auto shown = ranks.rank() == 0 ? progress("bake") : std::function<void(std::size_t, std::size_t)>();
   const bake::BakeResult result =
-      bake::bake(scene, options.bake, options.file, ranks, [&](std::size_t done, std::size_t all) {
+      bake::bake(scene, options.bake, options.file, ranks, threads, [&](std::size_t done, std::size_t all) {
         if (shown) shown(done, all);
         return true;
       });
@@ -63,9 +61,9 @@ int run_bake(const Options& options) {
   if (options.check > 0) {
     const lab::EmbreeJudge judge(scene);
     const lab::BakeLoss loss =
-        lab::check_bake(scene, cells, judge, options.check, 320, 240, options.bake.seed, progress("check"));
+        lab::check_bake(scene, cells, judge, options.check, 320, 240, options.check_seed, progress("check"));
     fmt::print(
-        "{} random views inside cells: {} of {} pixels lost ({:.5f} %), {} objects; {:.1f} kept, {:.1f} "
+        "\n{} random views inside cells: {} of {} pixels lost ({:.5f} %), {} objects; {:.1f} kept, {:.1f} "
         "seen\n",
         loss.views, loss.lost_pixels, loss.pixels,
         100 * static_cast<double>(loss.lost_pixels) / static_cast<double>(loss.pixels), loss.lost_objects,
@@ -126,13 +124,17 @@ void add_bake(CLI::App& app, int& exit) {
       ->capture_default_str();
   command.add_option("--seed", options->bake.seed, "of the viewpoints")->capture_default_str();
   command.add_option("--rays", options->bake.rays, "from each viewpoint")
-      ->check(CLI::Range(16, 1 << 20))
+      ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   command.add_option("--viewpoints", options->bake.most_viewpoints, "at most, a cell")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
+  command
+      .add_option("--threads", options->threads, "of each process; default: all cores, and under mpirun one")
+      ->check(CLI::Range(1, 1024));
   command.add_option("--check", options->check, "afterwards hold N random views against the item buffer")
       ->type_name("N");
+  command.add_option("--check-seed", options->check_seed, "of those views")->capture_default_str();
   command
       .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")
       ->type_name("FILE.csv");

@@ -88,7 +88,8 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   auto device = std::make_shared<std::string>("any"), report = std::make_shared<std::string>();
   paper.add_flag("--quick", *quick, "fewer repeats");
   paper.add_option("--device", *device, "the Vulkan device")->capture_default_str();
-  paper.add_option("--report", *report, "also write figure 12's pictures to DIR")->type_name("DIR");
+  paper.add_option("--report", *report, "also write an HTML page with figure 12's pictures to DIR")
+      ->type_name("DIR");
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 

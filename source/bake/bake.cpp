@@ -1,13 +1,22 @@
 #include "bake/bake.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 #include <string>
 
 #include <sightline/error.hpp>
 
 #include "bake/journal.hpp"
 #include "bake/pvs_file.hpp"
+#include "bake/set_coding.hpp"
 #include "io/byte_reader.hpp"
 
 #ifdef SIGHTLINE_MPI
@@ -65,7 +74,8 @@ void take_in(const std::vector<std::byte>& bytes, PackedCells& done) {
 }  // namespace
 
 BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
-                const Ranks& ranks, const std::function<bool(std::size_t done, std::size_t all)>& progress) {
+                const Ranks& ranks, int threads,
+                const std::function<bool(std::size_t done, std::size_t all)>& progress) {
   BakeResult result;
   CellPvs cells = make_cells(scene, options);
   const std::uint64_t key = key_of(cells, options);
@@ -85,21 +95,45 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
       share.push_back(cell);
     }
   }
-  const pvs::TriangleRays rays(scene);
-  CellBaker baker(scene, rays, options);
-  std::vector<ObjectId> visible;
-  bool stopped = false;
-  for (std::size_t i = 0; i < share.size() && !stopped; ++i) {
-    if (done.contains(share[i])) {
-      ++result.resumed;
-    } else {
-      std::vector<std::byte>& set = done[share[i]];
-      if (baker.bake(cells, share[i], visible)) set = pack_set(visible);
-      journal.add(share[i], set);
-    }
-    stopped = progress && !progress(i + 1, share.size());
+  std::vector<std::uint32_t> waiting;
+  for (const std::uint32_t cell : share) {
+    if (!done.contains(cell)) waiting.push_back(cell);
   }
-  result.rays = baker.rays_cast();
+  result.resumed = static_cast<std::uint32_t>(share.size() - waiting.size());
+  const pvs::TriangleRays rays(scene);
+  tbb::enumerable_thread_specific<CellBaker> bakers([&] { return CellBaker(scene, rays, options); });
+  tbb::enumerable_thread_specific<std::vector<ObjectId>> sets;
+  std::mutex one_at_a_time;
+  std::size_t finished = result.resumed;
+  bool stopped = progress && finished > 0 && !progress(finished, share.size());
+  const auto bake_cell = [&](std::size_t i) {
+    {
+      const std::scoped_lock lock(one_at_a_time);
+      if (stopped) return;
+    }
+    std::vector<ObjectId>& visible = sets.local();
+    std::vector<std::byte> set;
+    if (bakers.local().bake(cells, waiting[i], visible)) set = pack_set(visible);
+    const std::scoped_lock lock(one_at_a_time);
+    journal.add(waiting[i], set);
+    done[waiting[i]] = std::move(set);
+    ++finished;
+    if (progress && !progress(finished, share.size())) stopped = true;
+  };
+  // More threads than cores are allowed if asked for.
+  std::optional<tbb::global_control> allowed;
+  if (threads > 0) {
+    allowed.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
+  tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, waiting.size(), 1),
+        [&](const auto& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) bake_cell(i);
+        },
+        tbb::simple_partitioner());
+  });
+  for (const CellBaker& baker : bakers) result.rays += baker.rays_cast();
   const std::vector<std::byte> all = ranks.gather(flatten(done));
   if (ranks.rank() != 0) {
     result.finished = !stopped;

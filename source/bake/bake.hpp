@@ -20,6 +20,8 @@ public:
 
   [[nodiscard]] int rank() const noexcept { return rank_; }
   [[nodiscard]] int count() const noexcept { return count_; }
+  /// Whether mpirun started the process, be it as the only rank.
+  [[nodiscard]] bool joined() const noexcept { return joined_; }
   void wait() const;
   /// Every rank's bytes one after the other, on rank 0; nothing elsewhere.
   [[nodiscard]] std::vector<std::byte> gather(const std::vector<std::byte>& mine) const;
@@ -36,11 +38,12 @@ struct BakeResult {
   CellPvs cells;              ///< on rank 0 of a finished bake
 };
 
-/// Bakes and writes `file`, the same bytes however often it was killed and over however many ranks. Beside it
-/// lie journals, `file`.part.RANK, until it is finished. `progress` is told how many of this rank's cells are
-/// done, and may return false to stop there. Throws Error.
+/// Bakes and writes `file`, the same bytes however often it was killed, over however many ranks and threads
+/// (`threads` of this rank; 0: as many as the process has cores). Beside it lie journals, `file`.part.RANK,
+/// until it is finished. `progress` is told how many of this rank's cells are done, one call at a time, and
+/// may return false to begin no more. Throws Error.
 BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
-                const Ranks& ranks,
+                const Ranks& ranks, int threads = 0,
                 const std::function<bool(std::size_t done, std::size_t all)>& progress = {});
 
 }  // namespace sightline::bake

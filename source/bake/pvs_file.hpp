@@ -1,12 +1,11 @@
-// The file of baked potentially visible sets: a header, and all cells' sets as Roaring bitmaps in one zstd
+// The file of baked potentially visible sets: a header, and all cells' sets (cell_coding.hpp) in one zstd
 // frame. Little-endian:
 //
-//   8  "SightPVS"     4  version (1)      4  objects          8  fingerprint of the scene
+//   8  "SightPVS"     4  version (2)      4  objects          8  fingerprint of the scene
 //   12 cells x, y, z  24 bounds           8  bytes unpacked   8  bytes packed    8  checksum (FNV-1a) of all
 //   else
 //
-// then the packed bytes; unpacked: for each cell 4 bytes of length, 0 for a closed cell, and a Roaring bitmap
-// in its portable form.
+// then the packed bytes.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +19,10 @@
 
 namespace sightline::bake {
 
-/// A set of ids, ascending, as a Roaring bitmap in its portable form, run-length coded where that is shorter.
-std::vector<std::byte> pack_set(std::span<const std::uint32_t> ids);
-/// Reads one, and checks everything: ids ascending and below `objects`, nothing left over. Throws Error;
-/// `what` names the set.
-void unpack_set(std::span<const std::byte> bytes, std::uint32_t objects, const std::string& what,
-                std::vector<std::uint32_t>& ids);
-
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed = 0xcbf29ce484222325u) noexcept;
 
-/// The same bytes for the same sets.
+/// The same bytes for the same sets, in whichever layout is shortest. Throws Error where they are larger
+/// than unpack_cells would read.
 std::vector<std::byte> pack_cells(const CellPvs& cells);
 /// Throws Error, one sentence, for what is damaged, truncated, of another version, or no such file at all.
 /// `name` is the file's. Allocates no more than cells and objects of a sound header allow.

@@ -1,6 +1,10 @@
 #include "lab/bake_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include <sightline/error.hpp>
 
@@ -36,7 +40,7 @@ BakeLoss check_bake(const Scene& scene, const CellPvs& cells, const EmbreeJudge&
     const Vec3 way = random.direction();
     camera.forward = {way.x, 0.5f * way.y, way.z};
     camera.vertical_fov = random.between(0.8f, 1.6f);
-    camera.near_plane = 0.01f;
+    camera.near_plane = 1e-4f;
     camera.far_plane = 1e5f;
     if (!place_in(scene, cells.cell_bounds(cell), random, camera.eye)) continue;
     const Result<View> view = make_view(camera, width, height);
@@ -56,34 +60,105 @@ BakeLoss check_bake(const Scene& scene, const CellPvs& cells, const EmbreeJudge&
   return loss;
 }
 
-std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs& cells, std::uint64_t seed) {
-  constexpr int kPlaces = 64;
-  scene::Random random(seed);
+namespace {
+
+// The clusters that have some of their space in the box, or all that border on it.
+std::vector<std::int32_t> clusters_in(const LevelPvs& level, const Box& box) {
+  std::vector<std::int32_t> clusters, waiting{level.nodes.empty() ? -1 : 0};
+  const Vec3 c{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2},
+      h{box.max.x - c.x, box.max.y - c.y, box.max.z - c.z};
+  while (!waiting.empty()) {
+    const std::int32_t child = waiting.back();
+    waiting.pop_back();
+    if (child < 0) {
+      const std::int32_t cluster = level.leaves[static_cast<std::size_t>(-(child + 1))].cluster;
+      if (cluster >= 0) clusters.push_back(cluster);
+      continue;
+    }
+    const LevelPvs::Node& node = level.nodes[static_cast<std::size_t>(child)];
+    const Vec3& n = node.plane.normal;
+    const float at = n.x * c.x + n.y * c.y + n.z * c.z + node.plane.distance;
+    const float reach = std::fabs(n.x) * h.x + std::fabs(n.y) * h.y + std::fabs(n.z) * h.z;
+    if (at + reach >= 0) waiting.push_back(node.front);
+    if (at - reach <= 0) waiting.push_back(node.back);
+  }
+  std::ranges::sort(clusters);
+  clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());
+  return clusters;
+}
+
+}  // namespace
+
+std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs& cells) {
+  const LevelPvs& level = *scene.level;
   std::vector<CellComparison> rows;
-  std::vector<std::uint8_t> mask(scene.size()), all(scene.size()), baked(scene.size());
+  std::vector<std::uint8_t> all(scene.size()), baked(scene.size());
   for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
     if (!cells.open[cell]) continue;
-    std::fill(all.begin(), all.end(), std::uint8_t{0});
-    std::fill(baked.begin(), baked.end(), std::uint8_t{0});
-    std::vector<std::uint32_t> leaves;
-    for (int i = 0; i < kPlaces; ++i) {
-      Vec3 place;
-      if (!place_in(scene, cells.cell_bounds(cell), random, place)) continue;
-      const std::uint32_t leaf = scene.level->leaf_at(place);
-      if (std::find(leaves.begin(), leaves.end(), leaf) != leaves.end()) continue;
-      leaves.push_back(leaf);
-      scene.level->potentially_visible(place, mask);
-      for (std::size_t o = 0; o < all.size(); ++o) all[o] |= mask[o];
+    const std::vector<std::int32_t> clusters = clusters_in(level, cells.cell_bounds(cell));
+    for (std::size_t o = 0; o < all.size(); ++o) all[o] = level.in_some_leaf[o] == 0;
+    for (const LevelPvs::Leaf& leaf : level.leaves) {
+      const bool seen = leaf.cluster >= 0 && std::ranges::any_of(clusters, [&](std::int32_t from) {
+                          return level.may_see(from, leaf.cluster);
+                        });
+      for (std::uint32_t i = 0; seen && i < leaf.object_count; ++i) {
+        all[level.leaf_objects[leaf.first_object + i]] = 1;
+      }
     }
+    std::ranges::fill(baked, std::uint8_t{0});
     for (const ObjectId object : cells.seen_from(cell)) baked[object] = 1;
-    CellComparison row{cell};
-    for (std::size_t o = 0; o < all.size(); ++o) {
+    CellComparison row;
+    row.cell = cell;
+    for (ObjectId o = 0; o < all.size(); ++o) {
       row.baked += baked[o], row.level += all[o];
-      row.only_baked += baked[o] && !all[o], row.only_level += all[o] && !baked[o];
+      if (baked[o] && !all[o]) row.only_baked.push_back(o);
+      if (all[o] && !baked[o]) row.only_level.push_back(o);
     }
-    rows.push_back(row);
+    rows.push_back(std::move(row));
   }
   return rows;
+}
+
+Table comparison_table(const std::vector<CellComparison>& rows) {
+  Table table;
+  table.header = {"objects a cell", "mean", "least", "quarter", "half", "three quarters", "most"};
+  const auto add = [&](const char* what, const std::function<std::size_t(const CellComparison&)>& of) {
+    std::vector<std::size_t> all;
+    double sum = 0;
+    for (const CellComparison& row : rows) all.push_back(of(row)), sum += static_cast<double>(all.back());
+    std::ranges::sort(all);
+    std::vector<std::string> cells{what, format_count(sum / static_cast<double>(all.size()))};
+    for (std::size_t quarter = 0; quarter <= 4; ++quarter) {
+      cells.push_back(std::to_string(all[(all.size() - 1) * quarter / 4]));
+    }
+    table.rows.push_back(std::move(cells));
+  };
+  if (rows.empty()) return table;
+  add("baked", [](const CellComparison& row) { return row.baked; });
+  add("in the level's PVS", [](const CellComparison& row) { return row.level; });
+  add("baked, not in the level's", [](const CellComparison& row) { return row.only_baked.size(); });
+  add("in the level's, not baked", [](const CellComparison& row) { return row.only_level.size(); });
+  return table;
+}
+
+std::string comparison_csv(const CellPvs& cells, const std::vector<CellComparison>& rows) {
+  std::string csv =
+      "cell,min_x,min_y,min_z,max_x,max_y,max_z,baked,level,only_baked,only_level,only_baked_objects,"
+      "only_level_objects\n";
+  const auto list = [&](const std::vector<ObjectId>& objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) csv += (i > 0 ? " " : "") + std::to_string(objects[i]);
+  };
+  for (const CellComparison& row : rows) {
+    const Box b = cells.cell_bounds(row.cell);
+    csv += std::to_string(row.cell);
+    for (const float x : {b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z}) csv += fmt::format(",{}", x);
+    csv += fmt::format(",{},{},{},{},", row.baked, row.level, row.only_baked.size(), row.only_level.size());
+    list(row.only_baked);
+    csv += ',';
+    list(row.only_level);
+    csv += '\n';
+  }
+  return csv;
 }
 
 }  // namespace sightline::lab

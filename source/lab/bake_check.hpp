@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <sightline/scene.hpp>
 
 #include "lab/embree_judge.hpp"
+#include "lab/table.hpp"
 #include "lab/verify.hpp"
 
 namespace sightline::lab {
@@ -18,20 +20,25 @@ struct BakeLoss {
   std::uint64_t kept = 0, visible = 0;  ///< objects in the cells' sets, and truly seen; summed over the views
 };
 
-/// Random places in open cells (in a level: in open space too), any heading. Throws Error where no cell is
-/// open.
+/// Random places in open cells (in a level: in open space too), any heading. The near plane lies 0.1 mm
+/// before the eye: one that reaches through a wall shows what stands behind it, which is in no set by place.
+/// Throws Error where no cell is open.
 BakeLoss check_bake(const Scene& scene, const CellPvs& cells, const EmbreeJudge& judge, std::size_t views,
                     std::uint32_t width, std::uint32_t height, std::uint64_t seed,
                     const Progress& progress = {});
 
-/// One open cell: objects baked, objects in the union of the level's sets over places in it, and the
-/// differences.
+/// One open cell: what was baked, and what the level's own sets say for the clusters in the cell.
 struct CellComparison {
   std::uint32_t cell = 0;
-  std::uint32_t baked = 0, level = 0, only_baked = 0, only_level = 0;
+  std::size_t baked = 0, level = 0;  ///< objects
+  std::vector<ObjectId> only_baked, only_level;
 };
 
-/// The scene has a level.
-std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs& cells, std::uint64_t seed);
+/// One row an open cell. The scene has a level.
+std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs& cells);
+/// How the rows spread, for a terminal.
+Table comparison_table(const std::vector<CellComparison>& rows);
+/// Every row, with the objects that only one of the two has.
+std::string comparison_csv(const CellPvs& cells, const std::vector<CellComparison>& rows);
 
 }  // namespace sightline::lab

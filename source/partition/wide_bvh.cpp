@@ -61,7 +61,7 @@ Box WideNode::bounds() const noexcept {
 
 struct WideBvh::Builder {
   std::vector<Reference> references;
-  std::vector<WideNode>& nodes;
+  std::vector<WideNode, LargePages<WideNode>>& nodes;
   std::uint32_t depth = 0;
 
   [[nodiscard]] Range range(std::uint32_t first, std::uint32_t last) const {

@@ -9,6 +9,8 @@
 
 #include <sightline/scene.hpp>
 
+#include "partition/large_pages.hpp"
+
 namespace sightline::partition {
 
 inline constexpr std::uint32_t kWide = 8;
@@ -43,7 +45,7 @@ public:
 
 private:
   struct Builder;
-  std::vector<WideNode> nodes_;
+  std::vector<WideNode, LargePages<WideNode>> nodes_;
   std::size_t objects_ = 0;
   std::uint32_t depth_ = 0;
 };

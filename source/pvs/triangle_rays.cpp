@@ -83,19 +83,56 @@ struct Caster {
   }
 };
 
+// Which of two coincident faces a renderer shows is up to its rounding: up to this far behind the nearest, in
+// shares of the distance and of the origin's largest coordinate, an object counts as seen too.
+constexpr float kCoincident = 8e-6f;
+constexpr std::size_t kMostCoincident = 8;
+
 struct NearestOpaque {
   const Caster& caster;
   const Ray& ray;
   const ObjectId* ids;
   Work& work;
-  float distance;
+  float slack;     // of the distances, from the origin's size
+  float distance;  // up to where an object matters
+  float nearest = std::numeric_limits<float>::infinity();
   ObjectId object = kNoObject;
+  std::size_t count = 0;
+  struct Met {
+    float distance;
+    ObjectId object;
+  };
+  Met met[kMostCoincident];
+
+  NearestOpaque(const Caster& with, const Ray& cast, const ObjectId* of, Work& done)
+      : caster(with),
+        ray(cast),
+        ids(of),
+        work(done),
+        slack(kCoincident *
+              std::max({std::fabs(cast.origin.x), std::fabs(cast.origin.y), std::fabs(cast.origin.z)})),
+        distance(cast.max_distance) {}
 
   void offer(float, std::uint32_t slot) {
     const ObjectId id = ids[slot];
     const float t = caster.meet(ray, id, distance, work);
     if (t < 0) return;
-    if (t < distance || id < object) distance = t, object = id;
+    if (t < nearest || (t == nearest && id < object)) {
+      nearest = t, object = id;
+      distance = std::min(distance, t + kCoincident * t + slack);
+    }
+    if (count == kMostCoincident) forget_farther();
+    if (count < kMostCoincident) met[count++] = {t, id};
+  }
+  void forget_farther() {
+    count = static_cast<std::size_t>(
+        std::remove_if(met, met + count, [&](const Met& m) { return m.distance > distance; }) - met);
+  }
+  // The nearest and what coincides with it.
+  void mark(std::uint8_t* seen) {
+    forget_farther();
+    for (std::size_t i = 0; i < count; ++i) seen[met[i].object] = 1;
+    if (object != kNoObject) seen[object] = 1;
   }
 };
 
@@ -121,12 +158,13 @@ void cast_triangles(const TriangleArrays* arrays, const TriangleRays::Kind* opaq
   Work work, triangles;
   for (std::size_t r = 0; r < count; ++r) {
     const PreparedRay ray(rays[r]);
-    NearestOpaque found{caster, rays[r], opaque->ids.data(), triangles, rays[r].max_distance};
+    NearestOpaque found(caster, rays[r], opaque->ids.data(), triangles);
     if (!opaque->ids.empty()) {
       walk(opaque->bvh.nodes().data(), WideNode::kInner, ray, found, arrays->object_stack, work);
     }
     nearest[r] = found.object;
-    if (found.object != kNoObject) seen[found.object] = 1, ++stats->hits;
+    found.mark(seen);
+    stats->hits += found.object != kNoObject;
     if (transparent->ids.empty()) continue;
     SeenThrough through{caster, rays[r], transparent->ids.data(), seen, triangles, found.distance};
     walk(transparent->bvh.nodes().data(), WideNode::kInner, ray, through, arrays->object_stack, work);

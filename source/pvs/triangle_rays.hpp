@@ -28,8 +28,10 @@ public:
     std::vector<std::uint64_t> objects, triangles;
   };
 
-  /// For each ray the nearest opaque object, or kNoObject, in `nearest`; sets seen[o] to 1 for it and for
-  /// each transparent object before it. Of equally near objects, the lower id. Adds to `stats`.
+  /// For each ray the nearest opaque object, or kNoObject, in `nearest`; of equally near objects, the lower
+  /// id. Sets seen[o] to 1 for it, for up to seven more that lie on the same spot up to rounding (of two
+  /// coincident faces nobody knows which one a renderer shows), and for each transparent object before it.
+  /// Adds to `stats`.
   void cast(std::span<const Ray> rays, std::span<ObjectId> nearest, std::span<std::uint8_t> seen,
             Stack& stack, RayStats& stats) const;
 

@@ -1,9 +1,18 @@
 #include "pvs/wide_rays.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <bit>
 #include <limits>
 #include <new>
 #include <utility>
+
+#ifndef SIGHTLINE_PVS_WIDE_TURNS
+#define SIGHTLINE_PVS_WIDE_TURNS
+namespace sightline::pvs {
+constexpr std::size_t kTurns = 16;  // rays that wait for memory together, where each goes its own way
+}
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pvs/wide_rays.cpp"
@@ -131,8 +140,6 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
 }
 
 // Several rays by turns: while a node of one is on its way from memory, the others go on.
-constexpr std::size_t kTurns = 8;
-
 struct Turn {
   WideSlabs slabs;
   Way way;
@@ -256,6 +263,22 @@ namespace sightline::pvs {
 
 HWY_EXPORT(cast);
 
+namespace {
+
+// With many more objects than rays even neighbours part soon, and a packet only drags them along.
+bool go_together(const partition::WideBvh& bvh, std::size_t rays) {
+  constexpr std::size_t kObjectsARay = 16;
+  return bvh.size() < kObjectsARay * rays;
+}
+
+// Enough for rays by turns; and a ray that leaves its packet walks on above what waits for the packet.
+void grow(WideStack& stack, const partition::WideBvh& bvh) {
+  const std::size_t room = kTurns * std::size_t{bvh.stack_size()};
+  if (stack.entries.size() < room) stack.entries.resize(room), stack.rays.resize(room);
+}
+
+}  // namespace
+
 void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
                std::span<const std::uint32_t> order, std::span<ObjectId> object, std::span<float> distance,
                WideStack& stack, RayStats& stats) {
@@ -265,22 +288,40 @@ void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
     for (std::size_t r = 0; r < rays.size(); ++r) object[r] = kNoObject, distance[r] = -1;
     return;
   }
-  // Enough for rays by turns; and a ray that leaves its packet walks on above what waits for the packet.
-  constexpr std::size_t kStacks = 8;
-  const std::size_t room = kStacks * std::size_t{bvh.stack_size()};
-  if (stack.entries.size() < room) stack.entries.resize(room), stack.rays.resize(room);
-  // With many more objects than rays even neighbours part soon, and a packet only drags them along.
-  constexpr std::size_t kObjectsARay = 16;
-  const bool together = bvh.size() < kObjectsARay * count;
+  grow(stack, bvh);
   HWY_DYNAMIC_DISPATCH(cast)
-  (bvh.nodes().data(), rays.data(), order.empty() ? nullptr : order.data(), count, together, object.data(),
-   distance.data(), &stack, &stats);
+  (bvh.nodes().data(), rays.data(), order.empty() ? nullptr : order.data(), count, go_together(bvh, count),
+   object.data(), distance.data(), &stack, &stats);
 }
 
 void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits) {
   hits.reset(grid.size());
   hits.stats.rays = 0;
   cast_wide(bvh, grid.prepared, grid.order, hits.object, hits.distance, stack, hits.stats);
+}
+
+void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, Crew& crew, std::span<WideStack> stacks,
+               RayHits& hits) {
+  hits.reset(grid.size());
+  if (bvh.nodes().empty()) return;
+  // Some rows of tiles at a time, to whoever is free; the same pieces for any crew, so that the work is too.
+  constexpr std::size_t kPiece = 1024;
+  const std::size_t count = grid.size();
+  const bool together = go_together(bvh, count);
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::uint64_t> met{0}, nodes{0}, boxes{0};
+  crew.run([&](unsigned worker) {
+    WideStack& stack = stacks[worker];
+    grow(stack, bvh);
+    RayStats stats;
+    for (std::size_t at; (at = next.fetch_add(kPiece, std::memory_order_relaxed)) < count;) {
+      HWY_DYNAMIC_DISPATCH(cast)
+      (bvh.nodes().data(), grid.prepared.data(), grid.order.data() + at, std::min(kPiece, count - at),
+       together, hits.object.data(), hits.distance.data(), &stack, &stats);
+    }
+    met += stats.hits, nodes += stats.nodes, boxes += stats.boxes;
+  });
+  hits.stats.hits = met, hits.stats.nodes = nodes, hits.stats.boxes = boxes;
 }
 
 }  // namespace sightline::pvs

@@ -6,6 +6,7 @@
 #include <sightline/ray.hpp>
 
 #include "partition/wide_bvh.hpp"
+#include "pvs/crew.hpp"
 #include "pvs/ray_grid.hpp"
 #include "pvs/ray_hits.hpp"
 
@@ -27,5 +28,10 @@ void cast_wide(const partition::WideBvh& bvh, std::span<const PreparedRay> rays,
 
 /// A whole grid, tile by tile, into a result that is reset first.
 void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits);
+
+/// The same shared out over a crew, a stack for each of its threads: the same result, statistics included,
+/// for any number of them.
+void cast_wide(const partition::WideBvh& bvh, const RayGrid& grid, Crew& crew, std::span<WideStack> stacks,
+               RayHits& hits);
 
 }  // namespace sightline::pvs

@@ -17,7 +17,7 @@
 namespace sightline::bake {
 namespace {
 
-const CellOptions kCoarse{.cell = 15, .target = 1e-3, .rays = 256};
+const CellOptions kCoarse{.cell = 15, .target = 1e-3};
 
 Scene forest() {
   return *generate_world("forest?trees=150&size=60");
@@ -38,7 +38,7 @@ TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
   BakeResult part;
   do {
     reach += 1 + random.below(4);
-    part = bake(scene, kCoarse, again, {}, [&](std::size_t done, std::size_t) { return done < reach; });
+    part = bake(scene, kCoarse, again, {}, 0, [&](std::size_t done, std::size_t) { return done < reach; });
     ASSERT_LT(++stops, 1000u);
     if (part.finished) break;
     // A kill may cut a record off, or leave bytes that never were one.
@@ -60,7 +60,7 @@ TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
   CellOptions other = kCoarse;
   other.seed = 2;
   const std::filesystem::path file = folder / "a.pvs", fresh = folder / "b.pvs";
-  bake(scene, other, file, {}, [](std::size_t done, std::size_t) { return done < 5; });
+  bake(scene, other, file, {}, 0, [](std::size_t done, std::size_t) { return done < 5; });
   const BakeResult result = bake(scene, kCoarse, file, {});
   EXPECT_EQ(result.resumed, 0u);
   bake(scene, kCoarse, fresh, {});
@@ -70,7 +70,7 @@ TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
 TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   Scene scene = forest();
   const test::TemporaryFolder folder;
-  const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3, .rays = 512}, folder / "a.pvs", {});
+  const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3}, folder / "a.pvs", {});
   scene.cells = std::make_shared<CellPvs>(read_pvs(folder / "a.pvs"));
   const auto method = *create_method("baked", scene);
   const lab::EmbreeJudge judge(scene);
@@ -86,6 +86,51 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
     pixels += 160 * 120;
   }
   EXPECT_LE(lost, pixels / 1000);
+}
+
+// A closed chamber that takes a five-thousandth of the cell: only from within is seen what it holds.
+TEST(Bake, FindsWhatIsSeenFromANookAlone) {
+  Scene scene;
+  scene.name = "nook";
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(
+        {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});
+  }
+  const std::vector<Vec3> normals(8, Vec3{0, 1, 0});
+  std::vector<std::uint32_t> faces;
+  for (const std::uint32_t axis : {1u, 2u, 4u}) {
+    const std::uint32_t u = axis == 1 ? 2 : 1, v = axis == 4 ? 2 : 4;
+    for (const std::uint32_t side : {0u, axis}) {
+      for (const std::uint32_t corner : {side, side + u, side + u + v, side, side + u + v, side + v}) {
+        faces.push_back(corner);
+      }
+    }
+  }
+  const std::uint32_t cube = scene.add_mesh(corners, normals, faces);
+  const auto at = [](float x, float y, float z, float size) {
+    Affine there;
+    there.rows[0] = {size, 0, 0, x}, there.rows[1] = {0, size, 0, y}, there.rows[2] = {0, 0, size, z};
+    return there;
+  };
+  scene.add_object(cube, at(0, 0, 0, 0.1f));
+  scene.add_object(cube, at(9.9f, 9.9f, 9.9f, 0.1f));
+  scene.add_object(cube, at(6, 3, 7, 0.6f));              // the chamber
+  scene.add_object(cube, at(6.15f, 3.15f, 7.15f, 0.3f));  // what it holds
+  CellOptions many{.cell = 20}, few{.cell = 20, .rays = 400, .most_viewpoints = 600};
+  const CellPvs cells = make_cells(scene, many);
+  ASSERT_EQ(cells.size(), 1u);
+  const pvs::TriangleRays rays(scene);
+  std::vector<ObjectId> visible;
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    many.seed = few.seed = seed;
+    ASSERT_TRUE(CellBaker(scene, rays, many).bake(cells, 0, visible));
+    EXPECT_EQ(visible, (std::vector<ObjectId>{0, 1, 2, 3})) << seed;
+    ASSERT_TRUE(CellBaker(scene, rays, few).bake(cells, 0, visible));
+    found += visible.size() == 4;
+  }
+  EXPECT_LT(found, 4);  // as many rays from fewer viewpoints
 }
 
 TEST(Bake, RefusesTooManyCells) {

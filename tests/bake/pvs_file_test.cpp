@@ -2,11 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 
 #include <sightline/worlds.hpp>
 
+#include "bake/cell_coding.hpp"
+#include "bake/set_coding.hpp"
 #include "scene/random.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -90,7 +95,7 @@ TEST(PvsFile, SaysWhatIsWrong) {
   EXPECT_THAT(refusal(damaged), HasSubstr("damaged"));
   std::vector<std::byte> older = bytes;
   older[8] = std::byte{0};
-  EXPECT_THAT(refusal(older), HasSubstr("version 0, expected 1"));
+  EXPECT_THAT(refusal(older), HasSubstr("version 0, expected 2"));
   EXPECT_THAT(refusal({std::byte{'P'}, std::byte{'K'}}), HasSubstr("no file of baked visibility"));
 }
 
@@ -116,6 +121,108 @@ TEST(PvsFile, IsRefusedWithHostileSetsToo) {
     }
   }
   EXPECT_GT(refused, 1000u);
+}
+
+void expect_same_sets(const CellPvs& found, const CellPvs& expected) {
+  EXPECT_EQ(found.visible, expected.visible);
+  EXPECT_EQ(found.first, expected.first);
+  EXPECT_EQ(found.open, expected.open);
+}
+
+CellPvs without_sets(const CellPvs& cells) {
+  CellPvs bare;
+  bare.bounds = cells.bounds, bare.counts = cells.counts, bare.objects = cells.objects;
+  return bare;
+}
+
+TEST(CellCoding, GivesBackTheSetsInEveryLayout) {
+  for (const std::uint32_t objects : {1u, 7u, 300u, 3000u}) {
+    const CellPvs cells = random_cells(20 + objects, objects);
+    const std::vector<std::uint32_t> order = object_order(cells);
+    ASSERT_EQ(order.size(), objects);
+    for (const Layout layout : kLayouts) {
+      for (const bool ordered : {true, false}) {
+        if (!ordered && layout == Layout::by_object) continue;
+        CellPvs back = without_sets(cells);
+        decode_cells(code_cells(cells, layout, ordered ? std::span(order) : std::span(order).first(0)), "a",
+                     back);
+        expect_same_sets(back, cells);
+      }
+    }
+  }
+  CellPvs closed = random_cells(1, 40);
+  std::ranges::fill(closed.open, std::uint8_t{0}), std::ranges::fill(closed.first, 0u);
+  closed.visible.clear();
+  expect_same_sets(unpack_cells(pack_cells(closed), "a.pvs"), closed);
+}
+
+// More rows than one bitmap holds.
+TEST(CellCoding, GivesBackManyCells) {
+  scene::Random random(40);
+  CellPvs cells;
+  cells.bounds = {{0, 0, 0}, {1, 1, 1}};
+  cells.counts = {300, 1, 300}, cells.objects = 400;
+  cells.first.push_back(0);
+  for (std::uint32_t cell = 0; cell < 90000; ++cell) {
+    cells.open.push_back(random.below(10) != 0);
+    for (std::uint32_t o = random.below(200); cells.open.back() && o < 400; o += 1 + random.below(200)) {
+      cells.visible.push_back(o);
+    }
+    cells.first.push_back(cells.visible.size());
+  }
+  expect_same_sets(unpack_cells(pack_cells(cells), "a.pvs"), cells);
+}
+
+TEST(CellCoding, HoldsOnlySoundSetsWhateverTheBytes) {
+  scene::Random random(41);
+  const CellPvs cells = random_cells(42, 300);
+  const std::vector<std::uint32_t> order = object_order(cells);
+  std::size_t refused = 0, read = 0;
+  for (const Layout layout : kLayouts) {
+    const std::vector<std::byte> whole = code_cells(cells, layout, order);
+    for (int i = 0; i < 5000; ++i) {
+      std::vector<std::byte> bad = whole;
+      for (std::uint32_t n = 1 + random.below(3); n > 0; --n) {
+        bad[random.below(static_cast<std::uint32_t>(bad.size()))] = static_cast<std::byte>(random.below(256));
+      }
+      if (random.below(4) == 0) bad.resize(random.below(static_cast<std::uint32_t>(bad.size())));
+      CellPvs back = without_sets(cells);
+      try {
+        decode_cells(bad, "a", back);
+      } catch (const Error&) {
+        ++refused;
+        continue;
+      }
+      ++read;
+      for (std::uint32_t cell = 0; cell < back.size(); ++cell) {
+        const auto seen = back.seen_from(cell);
+        ASSERT_TRUE(std::ranges::adjacent_find(seen, std::greater_equal<>()) == seen.end());
+        ASSERT_TRUE(seen.empty() || seen.back() < 300);
+      }
+    }
+  }
+  EXPECT_GT(refused, 1000u);
+  EXPECT_GT(read, 20u);
+}
+
+// What is seen changes little from cell to cell, and objects that stand together are seen together.
+TEST(PvsFile, IsSmallWhereCellsAreAlike) {
+  scene::Random random(43);
+  CellPvs cells;
+  cells.bounds = {{0, 0, 0}, {1, 1, 1}};
+  cells.counts = {16, 2, 16}, cells.objects = 1000;
+  cells.first.push_back(0);
+  std::vector<Vec3> at;
+  for (std::uint32_t o = 0; o < cells.objects; ++o) at.push_back(random.inside({{0, 0, 0}, {16, 0, 16}}));
+  for (std::uint32_t cell = 0; cell < 512; ++cell) {
+    cells.open.push_back(1);
+    const auto x = static_cast<float>(cell % 16), z = static_cast<float>(cell / 32);
+    for (std::uint32_t o = 0; o < cells.objects; ++o) {
+      if (std::hypot(at[o].x - x, at[o].z - z) < 4) cells.visible.push_back(o);
+    }
+    cells.first.push_back(cells.visible.size());
+  }
+  EXPECT_LT(pack_cells(cells).size(), 512u * 1000 / 8 / 4);
 }
 
 TEST(PvsFile, OfAnotherSceneIsRefused) {

@@ -136,6 +136,36 @@ TEST(NearestBox, OfAGridIsTheSameTileByTile) {
   expect_equal(found, expected, "wide-rays", "grid");
 }
 
+TEST(NearestBox, OfAGridIsTheSameForAnyNumberOfThreads) {
+  const Scene scene = *generate_world("strata?triangles=20000&model=3");
+  const Trees trees(scene.bounds);
+  RayGrid grid;
+  const View view = *make_view(
+      {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 10000}, 640, 480);
+  for (const std::uint32_t side : {3u, 31u, 32u, 133u}) {  // fewer rays than a piece, one piece, and many
+    grid.make(view, side, side);
+    RayHits expected, first, found;
+    cast_at_all_boxes(scene.bounds, grid.prepared, expected);
+    for (const unsigned threads : {1u, 2u, 5u}) {
+      Crew crew(threads);
+      ASSERT_EQ(crew.size(), threads);
+      std::vector<WideStack> stacks(crew.size());
+      for (int again = 0; again < 20; ++again) {
+        cast_wide(trees.wide, grid, crew, stacks, found);
+        expect_equal(found, expected, "wide-rays", std::to_string(threads) + " threads");
+        if (threads == 1) first = found;
+        EXPECT_EQ(found.stats.nodes, first.stats.nodes);
+        EXPECT_EQ(found.stats.boxes, first.stats.boxes);
+      }
+    }
+  }
+  Crew crew(2);
+  std::vector<WideStack> stacks(2);
+  RayHits nothing;
+  cast_wide(Trees(Boxes{}).wide, grid, crew, stacks, nothing);
+  EXPECT_EQ(nothing.object, std::vector<ObjectId>(grid.size(), kNoObject));
+}
+
 TEST(NearestBox, OfNothingIsAMiss) {
   const Trees trees(Boxes{});
   const std::vector<PreparedRay> rays{PreparedRay(Ray{{0, 0, 0}, {0, 0, 1}})};

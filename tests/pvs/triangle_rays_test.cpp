@@ -83,6 +83,32 @@ TEST(TriangleRays, AgreeWithEveryTriangleInDoublePrecision) {
   }
 }
 
+// Which of two faces in one place a renderer shows is up to its rounding: both are seen.
+TEST(TriangleRays, SeeAllThatLiesOnTheSameSpot) {
+  Scene scene;
+  scene.name = "coincident";
+  const std::vector<Vec3> small{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}},
+      large{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, normals(3, Vec3{0, 0, 1});
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  const std::uint32_t small_mesh = scene.add_mesh(small, normals, indices),
+                      large_mesh = scene.add_mesh(large, normals, indices);
+  Affine hair, step;
+  hair.rows[2].w = -1e-5f, step.rows[2].w = -0.02f;
+  scene.add_object(large_mesh, {});
+  scene.add_object(small_mesh, {});
+  scene.add_object(small_mesh, hair);
+  scene.add_object(small_mesh, step);  // behind them
+  const TriangleRays rays(scene);
+  const std::vector<Ray> ray{{{0.1f, 0, 30}, {0, 0, -1}}};
+  std::vector<ObjectId> nearest(1);
+  std::vector<std::uint8_t> seen(scene.size());
+  TriangleRays::Stack stack;
+  RayStats stats;
+  rays.cast(ray, nearest, seen, stack, stats);
+  EXPECT_EQ(nearest[0], 0u);
+  EXPECT_EQ(seen, (std::vector<std::uint8_t>{1, 1, 1, 0}));
+}
+
 TEST(TriangleRays, FollowMovedObjects) {
   Scene scene = *generate_world("regular?columns=2&rows=1&detail=2");
   TriangleRays rays(scene);

@@ -264,4 +264,15 @@ Table ray_loss_table(const std::vector<RayPvsModel>& models) {
   return table;
 }
 
+Table region_table(const std::vector<RegionTime>& regions) {
+  Table table;
+  table.header = {"region", "kept", "everything ms", "PVS ms", "ratio"};
+  for (const RegionTime& r : regions) {
+    table.rows.push_back({fmt::format("row {}, column {}", r.row + 1, r.column + 1),
+                          format_count(static_cast<double>(r.kept)), format_ms(r.everything_ms),
+                          format_ms(r.pvs_ms), ratio(r.everything_ms, r.pvs_ms)});
+  }
+  return table;
+}
+
 }  // namespace sightline::lab

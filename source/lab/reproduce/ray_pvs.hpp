@@ -3,11 +3,13 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <sightline/scene.hpp>
 
+#include "lab/reproduce/ray_scenes.hpp"
 #include "lab/table.hpp"
 #include "vulkan/device.hpp"
 
@@ -60,11 +62,18 @@ struct RegionTime {
 };
 std::vector<RegionTime> measure_regions(int model, vulkan::Device& device, const RayPvsOptions& options);
 
+Table region_table(const std::vector<RegionTime>& regions);
+
 /// Table 6: milliseconds, and the ratio to boca beside the published one.
 Table ray_table(const std::vector<RayPvsModel>& models);
 /// Build, CPU, upload, compute and read-back apart.
 Table ray_parts_table(const std::vector<RayPvsModel>& models);
 /// What each PVS lost.
 Table ray_loss_table(const std::vector<RayPvsModel>& models);
+
+/// Writes index.html to the folder of figure 12's pictures: every table, and the pictures model by model.
+void write_ray_report(const std::string& device, const RayPvsOptions& options,
+                      const std::vector<RayPvsModel>& models, const std::vector<RegionTime>& regions,
+                      std::span<const RayScene> scenes);
 
 }  // namespace sightline::lab

@@ -16,7 +16,7 @@ constexpr std::uint32_t kNearest[] =
 
 struct PairsPush {
   vk::DeviceAddress rays, boxes, nearest;
-  std::uint32_t ray_count, first_box, box_end;
+  std::uint32_t ray_count, first_box, box_end, strip;
 };
 struct NearestPush {
   vk::DeviceAddress nearest, hits, marks;
@@ -24,9 +24,11 @@ struct NearestPush {
 };
 
 constexpr std::uint32_t kGroup = 16;
+constexpr std::uint32_t kRaysALane = 8;        // iwcpa_pairs.comp
+constexpr std::uint32_t kStrip = 64 * kGroup;  // boxes to a workgroup
 constexpr std::size_t kHitBytes = 8;
-// Rows of workgroups a round, so that many boxes need no more memory than this.
-constexpr std::size_t kRoundBytes = std::size_t{64} << 20;
+// Rows of lanes a round, so that many boxes need no more memory than this.
+constexpr std::size_t kRoundBytes = std::size_t{16} << 20;
 
 class Iwcpa final : public DeviceRays {
 public:
@@ -42,27 +44,28 @@ public:
   }
 
 private:
-  [[nodiscard]] std::uint32_t rows_a_round() const {
-    const std::size_t fit =
-        std::max<std::size_t>(1, kRoundBytes / (kHitBytes * std::max<std::size_t>(rays_, 1)));
-    const std::size_t all = (scene_.size() + kGroup - 1) / kGroup;
+  [[nodiscard]] std::uint32_t strips_a_round() const {
+    const std::size_t a_strip = kGroup * kHitBytes * std::max<std::size_t>(rays_, 1);
+    const std::size_t fit = std::max<std::size_t>(1, kRoundBytes / a_strip);
+    const std::size_t all = (scene_.size() + kStrip - 1) / kStrip;
     return static_cast<std::uint32_t>(std::min({fit, all, std::size_t{65535}}));
   }
   void prepare_more(const pvs::RayGrid&) override {
-    grow(partial_, rows_a_round() * rays_ * kHitBytes, vulkan::Memory::device, "nearest by workgroup");
+    grow(partial_, strips_a_round() * kGroup * rays_ * kHitBytes, vulkan::Memory::device, "nearest by lane");
   }
 
   void record_passes(const vk::raii::CommandBuffer& commands) override {
     const auto rays = static_cast<std::uint32_t>(rays_), boxes = static_cast<std::uint32_t>(scene_.size());
-    const std::uint32_t step = rows_a_round() * kGroup;
+    const std::uint32_t step = strips_a_round() * kStrip, across = kGroup * kRaysALane;
     for (std::uint32_t first = 0; first < boxes; first += step) {
-      const std::uint32_t rows = (std::min(step, boxes - first) + kGroup - 1) / kGroup;
-      dispatch(commands, pairs_,
-               PairsPush{ray_buffer_.address(), boxes_.address(), partial_.address(), rays, first, boxes},
-               (rays + kGroup - 1) / kGroup, rows);
+      const std::uint32_t strips = (std::min(step, boxes - first) + kStrip - 1) / kStrip;
+      dispatch(
+          commands, pairs_,
+          PairsPush{ray_buffer_.address(), boxes_.address(), partial_.address(), rays, first, boxes, kStrip},
+          (rays + across - 1) / across, strips);
       dispatch(commands, nearest_,
-               NearestPush{partial_.address(), hits_.address(), marks_.address(), rays, rows, first == 0,
-                           boxes - first <= step},
+               NearestPush{partial_.address(), hits_.address(), marks_.address(), rays, strips * kGroup,
+                           first == 0, boxes - first <= step},
                (rays + 255) / 256);
     }
   }

@@ -6,29 +6,32 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{kRaysParameter};
+constexpr ParameterInfo kThreads{"threads", "that cast; 0: one a core", "0", 0, 256, true};
+constexpr std::array kParameters{kRaysParameter, kThreads};
 
 class WideRays final : public RayMethod {
 public:
-  WideRays(const Scene& scene, const Parameters& parameters) : RayMethod(scene, parameters) {
+  WideRays(const Scene& scene, const Parameters& parameters)
+      : RayMethod(scene, parameters), crew_(parameters.count(kThreads.name)), stacks_(crew_.size()) {
     bvh_.build(scene.bounds);
   }
   void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
 
 private:
   void cast(const pvs::RayGrid& grid, pvs::RayHits& hits) noexcept override {
-    pvs::cast_wide(bvh_, grid, stack_, hits);
+    pvs::cast_wide(bvh_, grid, crew_, stacks_, hits);
   }
 
   partition::WideBvh bvh_;
-  pvs::WideStack stack_;
+  pvs::Crew crew_;
+  std::vector<pvs::WideStack> stacks_;
 };
 
 }  // namespace
 
 const MethodInfo kWideRays{"wide-rays",
                            "",
-                           "the PVS of toca and boca by a wide SIMD tree and packets of rays",
+                           "the PVS of toca and boca by a wide SIMD tree and packets of rays, on all cores",
                            Guarantee::approximate,
                            "",
                            kParameters,

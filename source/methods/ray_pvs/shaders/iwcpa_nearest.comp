@@ -4,7 +4,7 @@
 #include "rays.h"
 layout(local_size_x = 256) in;
 
-// The nearest of a ray over all rows of workgroups, and over the boxes of earlier rounds.
+// the nearest of a ray over all rows of lanes, and over the boxes of earlier rounds.
 layout(push_constant, scalar) uniform Push {
   HitBuffer nearest;
   HitBuffer hits;

@@ -52,6 +52,27 @@ float intersect_box(RayData ray, vec3 low, vec3 high) {
   return entry;
 }
 
+// The same without a branch: what one slab decides, no later one undoes.
+void clip_flat(float origin, float inverse, float low, float high, inout float entry, inout float exit,
+               inout bool inside) {
+  const bool parallel = inverse == 0;
+  precise float from_low = low - origin, from_high = high - origin;
+  precise float a = from_low * inverse, b = from_high * inverse;
+  const float first = a < b ? a : b, last = a < b ? b : a;
+  entry = !parallel && first > entry ? first : entry;
+  exit = !parallel && last < exit ? last : exit;
+  inside = inside && (!parallel || (origin >= low && origin <= high));
+}
+
+float intersect_box_flat(RayData ray, vec3 low, vec3 high) {
+  float entry = 0, exit = ray.max_distance;
+  bool inside = true;
+  clip_flat(ray.origin.x, ray.inverse.x, low.x, high.x, entry, exit, inside);
+  clip_flat(ray.origin.y, ray.inverse.y, low.y, high.y, entry, exit, inside);
+  clip_flat(ray.origin.z, ray.inverse.z, low.z, high.z, entry, exit, inside);
+  return inside && entry <= exit ? entry : -1;
+}
+
 // Of equally near objects the lower id.
 void offer(inout Hit nearest, float t, uint object) {
   if (t < 0) return;
