@@ -17,9 +17,17 @@ namespace sightline::app {
 
 namespace {
 
-std::vector<std::string> methods_of(const DeviceCall& call, const Scene& scene) {
-  std::vector<std::string> names =
-      call.methods.empty() ? methods::methods_on_device(scene) : split(call.methods);
+// Those with a form of their own on the device that promise something; drawing what others keep proves less.
+std::vector<std::string> methods_to_verify() {
+  std::vector<std::string> names;
+  for (const methods::DeviceMethodInfo& info : methods::device_methods()) {
+    if (info.guarantee != Guarantee::approximate) names.emplace_back(info.name);
+  }
+  return names;
+}
+
+std::vector<std::string> methods_or(const DeviceCall& call, std::vector<std::string> defaults) {
+  std::vector<std::string> names = call.methods.empty() ? std::move(defaults) : split(call.methods);
   if (names.empty()) throw Error("--methods: expected at least one method");
   return names;
 }
@@ -45,7 +53,7 @@ int compare_on_device(const DeviceCall& call) {
   Scene scene = load_scene(call.scene);
   const std::string path_name = call.path.empty() ? std::string(lab::default_path(scene)) : call.path;
   const lab::CameraPath path = lab::make_path(scene, path_name, call.views);
-  lab::Workbench bench(*device, scene, methods_of(call, scene));
+  lab::Workbench bench(*device, scene, methods_or(call, methods::methods_on_device(scene)));
   lab::DeviceMeasureOptions options;
   options.measure.width = call.width, options.measure.height = call.height;
   options.measure.repeats = 5;
@@ -63,7 +71,7 @@ int compare_on_device(const DeviceCall& call) {
 int verify_on_device(const DeviceCall& call) {
   const auto device = open_device(call.device);
   Scene scene = load_scene(call.scene);
-  lab::Workbench bench(*device, scene, methods_of(call, scene));
+  lab::Workbench bench(*device, scene, methods_or(call, methods_to_verify()));
   const std::vector<Camera> cameras = lab::random_cameras(scene, call.views, call.seed);
   const lab::DeviceVerification result =
       lab::verify_on_device(bench, cameras, call.width, call.height, call.moving, progress("verify"));

@@ -79,7 +79,8 @@ void add_verify(CLI::App& app, int& exit) {
       ->type_name("FILE");
   command
       .add_option("--methods", options->methods,
-                  "methods, separated by commas (default: all that fit the scene and promise something)")
+                  "methods, separated by commas (default: all that fit the scene and promise something; "
+                  "on a Vulkan device, of those the ones that run on it)")
       ->type_name("A,B");
   command.add_option("--views", options->views, "random views")
       ->check(CLI::Range(1, 1000000))
