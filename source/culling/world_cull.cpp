@@ -46,29 +46,43 @@ struct ChunkBits {
   std::array<std::uint32_t, Frustum::sides> planes{};  // crossing this one
 };
 
-HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorView& view, PlaneSet planes) {
+// The bounds of a block's chunks or a node's blocks, from the lane at which a bit 0 stands.
+using Sides = std::array<const float*, 6>;
+
+HWY_INLINE Sides sides_of(const ChunkMap::Block& block) {
+  const auto& b = block.bounds;
+  return {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data()};
+}
+
+// At most 32 boxes, readable up to the next multiple of 16.
+HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, const SectorView& view,
+                                    PlaneSet planes) {
   const F f;
   const std::size_t lanes = hn::Lanes(f);
-  const std::uint32_t all = block.count == 32 ? ~0u : (1u << block.count) - 1;
+  const std::uint32_t all = count == 32 ? ~0u : (1u << count) - 1;
   std::uint32_t outside = 0;
   ChunkBits out;
   for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
     const int p = std::countr_zero(rest);
     const Plane& plane = view.frustum.planes[p];
     const auto &near = view.near_side[p], &far = view.far_side[p];
-    for (std::size_t i = 0; i < block.count; i += lanes) {
-      const VF high =
-          distance(plane, hn::Load(f, &block.bounds[near[0]][i]), hn::Load(f, &block.bounds[near[1]][i]),
-                   hn::Load(f, &block.bounds[near[2]][i]));
-      const VF low = distance(plane, hn::Load(f, &block.bounds[far[0]][i]),
-                              hn::Load(f, &block.bounds[far[1]][i]), hn::Load(f, &block.bounds[far[2]][i]));
+    for (std::size_t i = 0; i < count; i += lanes) {
+      const VF high = distance(plane, hn::Load(f, sides[near[0]] + i), hn::Load(f, sides[near[1]] + i),
+                               hn::Load(f, sides[near[2]] + i));
+      const VF low = distance(plane, hn::Load(f, sides[far[0]] + i), hn::Load(f, sides[far[1]] + i),
+                              hn::Load(f, sides[far[2]] + i));
       outside |= bits_of(hn::Lt(high, hn::Zero(f))) << i;
       out.planes[p] |= bits_of(hn::Lt(low, hn::Zero(f))) << i;
     }
+    if ((all & ~outside) == 0) return {};
   }
   out.kept = all & ~outside;
   for (std::uint32_t& crossing : out.planes) out.crossing |= crossing &= out.kept;
   return out;
+}
+
+HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorView& view, PlaneSet planes) {
+  return classify_boxes(sides_of(block), block.count, view, planes);
 }
 
 // The planes among `from` that a chunk crosses.
@@ -77,6 +91,35 @@ HWY_INLINE PlaneSet planes_of(const ChunkBits& bits, std::uint32_t chunk) {
   for (std::uint32_t p = 0; p < Frustum::sides; ++p)
     planes |= static_cast<PlaneSet>((bits.planes[p] >> chunk & 1) << p);
   return planes;
+}
+
+void find_node_blocks(const ChunkMap::Node& node, std::span<const SectorView> views,
+                      std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
+                      std::vector<BlockEntry>& entries) {
+  constexpr std::uint32_t kSome = 32;
+  std::array<ChunkBits, kMaxViews> bits;
+  const auto& rows = node.block_boxes.sides;
+  const auto count = static_cast<std::uint32_t>(node.blocks.size());
+  for (std::uint32_t first = 0; first < count; first += kSome) {
+    const Sides sides{&rows[0][first], &rows[1][first], &rows[2][first],
+                      &rows[3][first], &rows[4][first], &rows[5][first]};
+    std::uint32_t any = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      bits[v] = {};
+      if (planes[v] == kOutside) continue;
+      bits[v] = classify_boxes(sides, std::min(kSome, count - first), views[v], planes[v]);
+      any |= bits[v].kept;
+    }
+    for (; any != 0; any &= any - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
+      BlockEntry entry{sector, node.blocks[first + i], {}};
+      entry.planes.fill(kOutside);
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        if (bits[v].kept >> i & 1) entry.planes[v] = planes_of(bits[v], i);
+      }
+      entries.push_back(entry);
+    }
+  }
 }
 
 // Writes up to 15 values more than count, which kCullPadding and the chunks' own padding leave room for.
@@ -144,10 +187,20 @@ HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const Sector
   return kept;
 }
 
+// Of the block that comes after the next, for by then it will have arrived.
+HWY_INLINE void prefetch_block(const PassInput& input, std::span<const BlockEntry> entries, std::size_t e) {
+  if (e + 2 >= entries.size()) return;
+  const BlockEntry& entry = entries[e + 2];
+  const auto* from = reinterpret_cast<const std::uint8_t*>(&input.maps[entry.sector]->blocks()[entry.block]);
+  for (std::size_t at = 0; at < sizeof(ChunkMap::Block); at += 64) hwy::Prefetch(from + at);
+}
+
 PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* at = out;
-  for (const BlockEntry& entry : entries) {
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const BlockEntry& entry = entries[e];
+    prefetch_block(input, entries, e);
     const ChunkMap& map = *input.maps[entry.sector];
     const ChunkMap::Block& block = map.blocks()[entry.block];
     const SectorView& view = input.views[entry.sector];
@@ -159,7 +212,7 @@ PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries,
     std::size_t kept = 0;
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      chunks[kept] = map.chunk(block.chunks[i]);
+      chunks[kept] = map.chunk(block, i);
       planes[kept] = planes_of(bits, i);
       prefetch(chunks[kept], view, planes[kept]);
       ++kept;
@@ -176,6 +229,104 @@ PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries,
     }
   }
   counts.written = static_cast<std::size_t>(at - out);
+  return counts;
+}
+
+// One value for all of a chunk's objects. Writes up to 63 more than count.
+HWY_INLINE void fill_masks(std::uint8_t mask, std::size_t count, std::uint8_t* HWY_RESTRICT to) {
+  const hn::ScalableTag<std::uint8_t> u8;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(u8)) hn::StoreU(hn::Set(u8, mask), u8, to + i);
+}
+
+// What the frustums of some views say of one chunk.
+struct ChunkViews {
+  std::uint8_t whole = 0;  // views that see all of it
+  std::size_t crossed = 0;
+  std::array<std::uint8_t, kMaxViews> view{};  // of those that may see a part
+  std::array<std::size_t, kMaxViews> corners{};
+  std::array<std::array<Corner, Frustum::sides>, kMaxViews> corner;
+};
+
+// The objects of a chunk that views cross: ids and masks, behind one another.
+HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const ChunkViews& seen,
+                                  ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
+  const F f;
+  const U u;
+  const hn::Rebind<std::uint8_t, U> bytes;
+  const std::size_t lanes = hn::Lanes(f);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chunk.count; i += lanes) {
+    auto mask = hn::Set(u, seen.whole);
+    for (std::size_t k = 0; k < seen.crossed; ++k) {
+      const auto in_view = hn::RebindMask(u, inside(seen.corner[k].data(), seen.corners[k], i));
+      mask = hn::Or(mask, hn::IfThenElseZero(in_view, hn::Set(u, 1u << seen.view[k])));
+    }
+    auto keep = hn::Ne(mask, hn::Zero(u));
+    if (i + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + i), keep), u, out + kept);
+    if (masks)
+      hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), hn::Compress(mask, keep))), bytes,
+                 masks + kept);
+    kept += hn::CountTrue(u, keep);
+  }
+  return kept;
+}
+
+// Several views, frustum only.
+PassCounts frustum_views(const PassInput& input, std::span<const BlockEntry> entries,
+                         ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
+  PassCounts counts;
+  std::size_t kept = 0;
+  std::array<ChunkBits, kMaxViews> bits;
+  std::array<ChunkMap::ChunkView, kBlock> chunks;
+  ChunkViews seen;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const BlockEntry& entry = entries[e];
+    prefetch_block(input, entries, e);
+    const ChunkMap& map = *input.maps[entry.sector];
+    const ChunkMap::Block& block = map.blocks()[entry.block];
+    const SectorView* views = &input.views[entry.sector * input.view_count];
+    std::uint32_t any = 0, crossed = 0;
+    for (std::size_t v = 0; v < input.view_count; ++v) {
+      bits[v] = {};
+      if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
+      any |= bits[v].kept, crossed |= bits[v].crossing;
+    }
+    counts.chunks += block.count;
+    for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+      chunks[i] = map.chunk(block, i);
+      prefetch(chunks[i], views[0], 0);
+      if ((crossed >> i & 1) == 0) continue;
+      for (std::size_t v = 0; v < input.view_count; ++v) {
+        if (bits[v].crossing >> i & 1) prefetch(chunks[i], views[v], planes_of(bits[v], i));
+      }
+    }
+    for (; any != 0; any &= any - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
+      const ChunkMap::ChunkView& chunk = chunks[i];
+      seen.whole = 0, seen.crossed = 0;
+      for (std::size_t v = 0; v < input.view_count; ++v) {
+        const std::uint32_t in = bits[v].kept >> i & 1, crosses = bits[v].crossing >> i & 1;
+        seen.whole |= static_cast<std::uint8_t>((in & ~crosses) << v);
+        seen.view[seen.crossed] = static_cast<std::uint8_t>(v);
+        seen.crossed += crosses;
+      }
+      if (seen.crossed == 0 || (seen.whole != 0 && masks == nullptr)) {
+        copy_ids(chunk.objects, chunk.count, out + kept);
+        if (masks) fill_masks(seen.whole, chunk.count, masks + kept);
+        kept += chunk.count;
+        continue;
+      }
+      counts.tested += seen.crossed * chunk.count;
+      for (std::size_t k = 0; k < seen.crossed; ++k) {
+        const std::size_t v = seen.view[k];
+        seen.corners[k] = corners_of(chunk, views[v], planes_of(bits[v], i), seen.corner[k].data());
+      }
+      kept += cull_chunk(chunk, seen, out + kept, masks ? masks + kept : nullptr);
+    }
+  }
+  counts.written = kept;
   return counts;
 }
 
@@ -285,7 +436,7 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
     counts.chunks += block.count;
     for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      chunks[i] = map.chunk(block.chunks[i]);
+      chunks[i] = map.chunk(block, static_cast<std::uint32_t>(i));
       PlaneSet planes = 0;
       std::size_t crossed_by = 0;
       for (std::size_t v = 0; v < input.view_count; ++v) {
@@ -339,9 +490,11 @@ PassCounts many_views(const PassInput& input, std::span<const BlockEntry> entrie
 
 PassCounts run_pass(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
                     std::uint8_t* masks) {
-  bool plain = input.view_count == 1 && !masks;
+  bool plain = true;
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
-  return plain ? one_view(input, entries, out) : many_views(input, entries, out, masks);
+  if (!plain) return many_views(input, entries, out, masks);
+  if (input.view_count == 1 && !masks) return one_view(input, entries, out);
+  return frustum_views(input, entries, out, masks);
 }
 
 }  // namespace sightline::culling::HWY_NAMESPACE
@@ -349,7 +502,15 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::culling {
+using partition::ChunkMap;
 HWY_EXPORT(run_pass);
+HWY_EXPORT(find_node_blocks);
+
+void find_blocks(const ChunkMap::Node& node, std::span<const SectorView> views,
+                 std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
+                 std::vector<BlockEntry>& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(find_node_blocks)(node, views, planes, sector, entries);
+}
 
 PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept {
