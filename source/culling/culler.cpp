@@ -216,8 +216,12 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   state.maps.clear(), state.views.clear(), state.entries.clear();
   if (state.failed.size() < sectors.size()) state.failed.resize(sectors.size());
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    const auto& map = *sectors[s].map;
-    state.maps.push_back(&map);
+    state.maps.push_back(sectors[s].map.get());
+    if (!sectors[s].map) {
+      state.views.resize(state.views.size() + views.size());
+      continue;
+    }
+    const partition::ChunkMap& map = *sectors[s].map;
     for (std::size_t v = 0; v < views.size(); ++v) {
       const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
       state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
