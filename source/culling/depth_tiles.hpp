@@ -37,6 +37,12 @@ inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 /// A mesh as a view sees it, one value a vertex; facing one a triangle. Reused from mesh to mesh.
 struct MeshScratch {
   partition::AlignedVector<float> x, y, near, clearance, eye_x, eye_y, eye_z, facing;
+  /// The groups in view, by the nearness of what they hold and the pixels that bound it.
+  struct SeenGroup {
+    float depth, nearest, left, right, top, bottom;
+    std::uint32_t group;
+  };
+  std::vector<SeenGroup> seen;
 };
 
 struct DepthTiles {
@@ -109,6 +115,14 @@ struct OccluderTopology {
   /// it alone; no neighbour: -1.
   partition::AlignedVector<float> x, y, z;
   std::array<partition::AlignedVector<std::int32_t>, 3> corner, neighbour;
+
+  /// Runs of triangles with the ball that holds them: what is out of view or hidden as a whole is not set up.
+  static constexpr std::uint32_t kGroup = 64;
+  struct Group {
+    Sphere ball;
+    std::uint32_t first = 0, end = 0;  ///< triangles; first is a multiple of 16
+  };
+  std::vector<Group> groups;
   void lay_out();
 };
 

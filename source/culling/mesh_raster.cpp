@@ -75,12 +75,11 @@ void project_vertices(DepthTiles& out, const OccluderTopology& mesh, const Affin
 // Which way a triangle turns on the image: 1 or -1; 0: too small; kCut: the near plane cuts it.
 constexpr float kCut = 2;
 
-void find_facing(MeshScratch& s, const OccluderTopology& mesh) {
+HWY_INLINE void find_facing(MeshScratch& s, const OccluderTopology& mesh, std::size_t first,
+                            std::size_t end) {
   const F f;
   const I i32;
-  const std::size_t n = mesh.corner[0].size();
-  if (s.facing.size() < n) s.facing.resize(n);
-  for (std::size_t t = 0; t < n; t += hn::Lanes(f)) {
+  for (std::size_t t = first; t < end; t += hn::Lanes(f)) {
     const VI a = hn::Load(i32, &mesh.corner[0][t]), b = hn::Load(i32, &mesh.corner[1][t]),
              c = hn::Load(i32, &mesh.corner[2][t]);
     const auto at = [&](const partition::AlignedVector<float>& from, VI index)
@@ -208,13 +207,72 @@ HWY_INLINE bool set_up(const DepthTiles& tiles, const OccluderTopology& mesh, st
   return (out.drawn | out.cut) != 0;
 }
 
-void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+float length_of(const Vec4& row) {
+  return std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
+}
+
+// No direction becomes longer than this under the transform, by Gershgorin's discs.
+float most_scale(const Affine& t) {
+  const auto dot = [&](int a, int b) {
+    float sum = 0;
+    for (const Vec4& row : t.rows) {
+      const float columns[3] = {row.x, row.y, row.z};
+      sum += columns[a] * columns[b];
+    }
+    return sum;
+  };
+  float most = 0;
+  for (int a = 0; a < 3; ++a)
+    most = std::max(most, dot(a, a) + std::fabs(dot(a, (a + 1) % 3)) + std::fabs(dot(a, (a + 2) % 3)));
+  return std::sqrt(most) * (1 + 1e-5f);
+}
+
+// The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
+void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+  const EyeProjection& e = tiles.projection;
+  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  const auto minus = [](float scale, const Vec4& a, const Vec4& b) {
+    return Vec4{scale * a.x - b.x, scale * a.y - b.y, scale * a.z - b.z, scale * a.w - b.w};
+  };
+  const Vec4 sides[5] = {e.x, minus(width, e.w, e.x), e.y, minus(height, e.w, e.y), tiles.rays.near_plane};
+  float lengths[5];
+  for (int k = 0; k < 5; ++k) lengths[k] = length_of(sides[k]);
+  const float scale = most_scale(transform), w_length = length_of(e.w);
+  tiles.mesh.seen.clear();
+  for (std::uint32_t g = 0; g < mesh.groups.size(); ++g) {
+    const Sphere& ball = mesh.groups[g].ball;
+    const Vec3 c = transform_point(transform, ball.centre);
+    const float x = (c.x - e.eye_high.x) - e.eye_low.x, y = (c.y - e.eye_high.y) - e.eye_low.y,
+                z = (c.z - e.eye_high.z) - e.eye_low.z, r = ball.radius * scale;
+    const auto at = [&](const Vec4& row) { return ((row.x * x + row.y * y) + row.z * z) + row.w; };
+    bool out = false;
+    for (int k = 0; k < 5; ++k) out = out || at(sides[k]) < -r * lengths[k];
+    if (out) continue;
+    // Bounds of its image, where it lies before the eye: by its nearest depth, which is enough to skip by.
+    const float w = at(e.w), least = w - r * w_length;
+    MeshScratch::SeenGroup seen{w, kInfinity, 0, width, 0, height, g};
+    if (e.orthographic) seen.depth = -at(e.nearness);
+    if (!e.orthographic && least > 0.1f * w) {
+      const auto reach = [&](const Vec4& row) {
+        return (length_of(row) + std::fabs(at(row) / w) * w_length) * r / least;
+      };
+      const float px = at(e.x) / w, py = at(e.y) / w, rx = reach(e.x), ry = reach(e.y);
+      seen.nearest = 1 / least;
+      seen.left = px - rx, seen.right = px + rx, seen.top = py - ry, seen.bottom = py + ry;
+    }
+    tiles.mesh.seen.push_back(seen);
+  }
+  std::sort(tiles.mesh.seen.begin(), tiles.mesh.seen.end(), [](const auto& a, const auto& b) {
+    return a.depth != b.depth ? a.depth < b.depth : a.group < b.group;
+  });
+}
+
+HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
+                           const OccluderTopology::Group& group) {
   const F f;
-  project_vertices(tiles, mesh, transform);
-  find_facing(tiles.mesh, mesh);
   const MeshScratch& s = tiles.mesh;
   Triangles ready;
-  for (std::size_t first = 0; first < mesh.triangles.size(); first += hn::Lanes(f)) {
+  for (std::size_t first = group.first; first < group.end; first += hn::Lanes(f)) {
     if (!set_up(tiles, mesh, first, ready)) continue;
     for (std::uint32_t rest = ready.drawn; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -243,6 +301,23 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affin
         points[k] = {s.eye_x[corner[k]], s.eye_y[corner[k]], s.eye_z[corner[k]]};
       draw_clipped_triangle(tiles, points);
     }
+  }
+}
+
+void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+  find_groups(tiles, mesh, transform);
+  MeshScratch& s = tiles.mesh;
+  if (s.seen.empty()) return;
+  project_vertices(tiles, mesh, transform);
+  // Those of groups out of view count as turned away: their neighbours' edges are then an outline.
+  s.facing.assign(mesh.corner[0].size(), 0);
+  for (const auto& seen : s.seen)
+    find_facing(s, mesh, mesh.groups[seen.group].first, mesh.groups[seen.group].end);
+  for (const auto& seen : s.seen) {
+    if (seen.nearest < kInfinity &&
+        hidden_rect(tiles, seen.left, seen.top, seen.right, seen.bottom, seen.nearest * (1 + 1e-5f)))
+      continue;
+    draw_group(tiles, mesh, mesh.groups[seen.group]);
   }
 }
 

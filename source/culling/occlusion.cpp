@@ -228,6 +228,48 @@ void OccluderTopology::lay_out() {
       neighbour[k][t] = static_cast<std::int32_t>(neighbours[t][k]);
     }
   }
+  for (std::uint32_t first = 0; first < triangles.size(); first += kGroup) {
+    Group group;
+    group.first = first, group.end = std::min(first + kGroup, static_cast<std::uint32_t>(triangles.size()));
+    glm::dvec3 low(1e300), high(-1e300);
+    const auto each = [&](const auto& visit) {
+      for (std::uint32_t t = group.first; t < group.end; ++t) {
+        for (const std::uint32_t v : triangles[t]) visit(to_double(positions[v]));
+      }
+    };
+    each([&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
+    group.ball.centre = to_vec3(0.5 * low + 0.5 * high);
+    double radius = 0;
+    each([&](const glm::dvec3& p) {
+      radius = std::max(radius, glm::length(p - to_double(group.ball.centre)));
+    });
+    group.ball.radius = static_cast<float>(radius * (1 + 1e-6));
+    groups.push_back(group);
+  }
+}
+
+// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
+void sort_along_curve(OccluderTopology& mesh) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (const Vec3& p : mesh.positions) low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p));
+  const glm::dvec3 size = glm::max(high - low, glm::dvec3(1e-30));
+  const auto key = [&](const std::array<std::uint32_t, 3>& t) {
+    const glm::dvec3 middle = (to_double(mesh.positions[t[0]]) + to_double(mesh.positions[t[1]]) +
+                               to_double(mesh.positions[t[2]])) /
+                              3.0;
+    const glm::dvec3 at = (middle - low) / size * 1023.0;
+    std::uint32_t out = 0;
+    for (int bit = 9; bit >= 0; --bit) {
+      for (int a = 0; a < 3; ++a)
+        out = out << 1 | (static_cast<std::uint32_t>(std::clamp(at[a], 0.0, 1023.0)) >> bit & 1);
+    }
+    return out;
+  };
+  std::vector<std::pair<std::uint32_t, std::array<std::uint32_t, 3>>> keyed;
+  for (const auto& t : mesh.triangles) keyed.emplace_back(key(t), t);
+  std::stable_sort(keyed.begin(), keyed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < keyed.size(); ++i) mesh.triangles[i] = keyed[i].second;
 }
 
 }  // namespace culling
@@ -364,6 +406,7 @@ OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std:
     if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0])
       t.triangles.push_back(corner);
   }
+  culling::sort_along_curve(t);
   // The edge's triangles, the second of which makes them neighbours; a third parts them again.
   struct Sides {
     std::uint32_t triangle[2], edge[2], count = 0;
