@@ -60,5 +60,8 @@ void find_blocks(const partition::ChunkMap::Node& node, std::span<const SectorVi
 /// objects of the entries' blocks and kCullPadding more.
 PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept;
+/// The same with all tests; cull_blocks() calls it where some view has more than a frustum.
+PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+                                std::uint8_t* masks) noexcept;
 
 }  // namespace sightline::culling
