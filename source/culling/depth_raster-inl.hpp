@@ -272,9 +272,11 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, std::uint32_t x0, std::uin
 // The same for a rectangle of the image, in pixels.
 HWY_INLINE bool hidden_rect(const DepthTiles& tiles, float x0, float y0, float x1, float y1, float nearness) {
   const float right = static_cast<float>(tiles.width) - 1, last = static_cast<float>(tiles.height) - 1;
-  const auto column = [&](float x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0f, right)); };
-  const auto row = [&](float y) { return static_cast<std::uint32_t>(std::clamp(y, 0.0f, last)); };
-  return hidden_tiles(tiles, column(x0), row(y0), column(x1), row(y1), nearness);
+  const auto within = [](float v, float most) {
+    return static_cast<std::uint32_t>(v > 0 ? std::min(v, most) : 0.0f);  // 0 for what is not a number, too
+  };
+  return hidden_tiles(tiles, within(x0, right), within(y0, last), within(x1, right), within(y1, last),
+                      nearness);
 }
 
 // A row of a projection times a vector of points about the eye.

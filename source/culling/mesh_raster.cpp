@@ -250,8 +250,10 @@ void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
     if (out) continue;
     // Bounds of its image, where it lies before the eye: by its nearest depth, which is enough to skip by.
     const float w = at(e.w), least = w - r * w_length;
+    if (!std::isfinite(w)) continue;
     MeshScratch::SeenGroup seen{w, kInfinity, 0, width, 0, height, g};
     if (e.orthographic) seen.depth = -at(e.nearness);
+    if (!std::isfinite(seen.depth)) continue;
     if (!e.orthographic && least > 0.1f * w) {
       const auto reach = [&](const Vec4& row) {
         return (length_of(row) + std::fabs(at(row) / w) * w_length) * r / least;

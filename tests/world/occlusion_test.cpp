@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <sightline/projection.hpp>
 
@@ -149,6 +150,33 @@ TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
     const Vec3 before = behind(-1.5f);
     EXPECT_TRUE(buffer.may_see({{before.x - 0.3f, before.y - 0.3f, before.z - 0.3f},
                                 {before.x + 0.3f, before.y + 0.3f, before.z + 0.3f}}));
+  }
+}
+
+TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
+  const scene::Shape ball = scene::sphere(2);
+  const OccluderMesh mesh(ball.positions, ball.indices);
+  for (const bool orthographic : {false, true}) {
+    Camera camera{.eye = {0, 0, 9}};
+    camera.orthographic_height = orthographic ? 6.0f : 0;
+    const View view = *make_view(camera, 64, 48);
+    for (const float bad : {std::nanf(""), INFINITY, -INFINITY, 3e38f}) {
+      for (int row = 0; row < 3; ++row) {
+        for (float Vec4::*part : {&Vec4::x, &Vec4::y, &Vec4::w}) {
+          OcclusionBuffer buffer;
+          ASSERT_FALSE(buffer.begin({view, {}}));
+          Affine transform;
+          transform.rows[static_cast<std::size_t>(row)].*part = bad;
+          buffer.draw_mesh(mesh, transform);
+          const Sphere no_number{{bad, 0, 0}, 1}, no_size{{0, 0, 0}, std::nanf("")};
+          buffer.draw_balls(std::array{no_number, no_size});
+          std::vector<float> drawn(64 * 48);
+          buffer.read_nearness(drawn);
+          for (const float nearness : drawn)
+            ASSERT_FALSE(nearness > 0.2f);  // nothing before the ball's place
+        }
+      }
+    }
   }
 }
 
