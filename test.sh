@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The second command: installs what is missing, builds with every warning an error, and passes every test: the suite in
-# a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), a short run of each
-# fuzz target, the structure of the house, and the installed package as its users see it.
+# a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what uses threads under
+# ThreadSanitizer, a short run of each fuzz target, the structure of the house, and the installed package as its users see it.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -19,6 +19,8 @@ ctest --preset release -j"$(nproc)"
 
 echo "== command line"
 scripts/check-command-line.sh build/release/sightline
+build/release/sightline methods --json build/methods.json >/dev/null
+scripts/check-method-pages.py build/methods.json
 
 echo "== installed package"
 scripts/check-package.sh build/release
@@ -28,6 +30,11 @@ cmake --preset asan >/dev/null
 cmake --build --preset asan
 # These two are large rather than tricky: minutes under the sanitizers, and their small siblings run the same code.
 ctest --preset asan -j"$(nproc)" -E 'AMillionObjects|VerifyWorld.*forest'
+
+echo "== threads"
+cmake --preset tsan >/dev/null
+cmake --build --preset tsan --target world_tests
+build/tsan/tests/world_tests --gtest_brief=1
 
 echo "== fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan

@@ -19,6 +19,7 @@ struct Options {
   std::string scene, methods, path, size = "1280x720", device = "cpu", pvs, json, report;
   std::size_t frames = 24;
   double moving = 0;
+  bool limit = false;
 };
 
 int run(const Options& options) {
@@ -27,9 +28,11 @@ int run(const Options& options) {
   if (options.device != "cpu") {
     if (!options.report.empty()) throw Error("--report: expected --device cpu");
     return compare_on_device({options.scene, options.methods, options.path, options.device, options.json,
-                              measure.width, measure.height, options.frames, 0, options.moving});
+                              measure.width, measure.height, options.frames, 0, options.moving,
+                              options.limit});
   }
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
+  if (options.limit) throw Error("--limit: expected a Vulkan device, by --device");
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
@@ -76,6 +79,8 @@ void add_compare(CLI::App& app, int& exit) {
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
       ->check(CLI::Range(0.0, 1.0));
+  command.add_flag("--limit", options->limit,
+                   "also draw just what the item buffer sees, which no culling of whole objects can beat");
   command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
       ->type_name("FILE");
   command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")

@@ -19,6 +19,7 @@ struct DeviceCall {
   std::size_t views = 0;
   std::uint64_t seed = 0;
   double moving = 0;
+  bool limit = false;
 };
 
 /// Opens the device of `--device`. Validation is on where SIGHTLINE_VALIDATION is set.

@@ -58,12 +58,17 @@ int compare_on_device(const DeviceCall& call) {
   options.measure.width = call.width, options.measure.height = call.height;
   options.measure.repeats = 5;
   options.moving = call.moving;
+  options.limit = call.limit;
   const lab::Comparison comparison = lab::compare_on_device(bench, path, options, progress("compare"));
   expect_silence(*device);
   fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}x{} on {}\n\n", scene.name, scene.size(),
              triangle_count(scene), path.name, path.cameras.size(), call.width, call.height,
              comparison.device);
   fmt::print("{}\n{}\n", lab::render(lab::device_table(comparison)), lab::device_verdict(comparison));
+  if (comparison.methods.size() > 1) {
+    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}",
+               lab::render(lab::device_ratios(comparison)));
+  }
   if (!call.json.empty()) lab::write_json(call.json, comparison);
   return Exit::done;
 }

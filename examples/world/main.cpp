@@ -4,6 +4,9 @@
 #include <vector>
 
 #include <sightline/sightline.hpp>
+#ifdef WITH_TBB
+#include <sightline/tbb.hpp>
+#endif
 
 int main() {
   // Your objects' boxes. A handle names each for as long as it stands; its index is the id that cull() writes.
@@ -18,7 +21,11 @@ int main() {
 
   // Kept from frame to frame, so that nothing is allocated in them.
   sightline::OcclusionBuffer occlusion;
-  std::vector<sightline::ObjectId> visible(sightline::cull_capacity(world));
+  sightline::CullOptions options;
+#ifdef WITH_TBB
+  options.jobs = sightline::tbb_jobs();
+#endif
+  std::vector<sightline::ObjectId> visible(sightline::cull_capacity(world, options));
 
   for (int frame = 0; frame < 3; ++frame) {
     // A tenth of the boxes moves.
@@ -35,7 +42,8 @@ int main() {
     occlusion.draw_boxes(std::span<const sightline::WorldBox>(boxes).first(2000));
     const sightline::OcclusionBuffer* occluders = &occlusion;
 
-    const auto drawn = sightline::cull(world, {&camera, 1}, {.occlusion = {&occluders, 1}}, visible);
+    options.occlusion = {&occluders, 1};
+    const auto drawn = sightline::cull(world, {&camera, 1}, options, visible);
     std::printf("frame %d: draw %zu of %zu boxes; occlusion alone dropped %llu\n", frame, drawn.count, world.size(),
                 static_cast<unsigned long long>(drawn.culled_occlusion));
   }

@@ -55,6 +55,10 @@ public:
   /// are skipped. Front to back is fastest; the result does not depend on the order.
   void draw_boxes(std::span<const Box> boxes) noexcept;
   void draw_boxes(std::span<const WorldBox> boxes) noexcept;
+  /// Draws solid balls, relative to the view's origin; every point inside a ball must be solid. Cheaper than
+  /// anything else that fills as much of the image. Balls that reach behind the near plane are left out; leave
+  /// out yourself those of things that do, for there the inside is seen.
+  void draw_balls(std::span<const Sphere> balls) noexcept;
   /// Draws the mesh moved by `transform`, relative to the view's origin. Allocates until it has seen its
   /// largest mesh.
   void draw_mesh(const OccluderMesh& mesh, const Affine& transform);
@@ -66,6 +70,10 @@ public:
   /// The same for boxes relative to another origin.
   void may_see(const BoxSpan& boxes, const WorldPoint& origin,
                std::span<std::uint8_t> visible) const noexcept;
+
+  /// Whether some pixel centre may see each sphere, relative to the view's origin; 1 or 0. Of a thing whose
+  /// box and sphere are both known, both must say so.
+  void may_see(const SphereSpan& spheres, std::span<std::uint8_t> visible) const noexcept;
 
   [[nodiscard]] std::uint32_t width() const noexcept;
   [[nodiscard]] std::uint32_t height() const noexcept;

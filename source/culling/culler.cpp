@@ -32,7 +32,7 @@ struct CullerState {
   std::vector<SectorView> views;
   std::vector<BlockEntry> entries;
   std::array<Job, kMaxJobs> jobs;
-  /// Last frame's failing plane, one a view and block: the next frame tries it first.
+  /// The plane that failed last, one a view and region: the next frame tries it first.
   std::vector<std::vector<std::uint8_t>> failed;  // by sector
 
   PassInput input;
@@ -76,7 +76,7 @@ SectorView sector_view(const WorldView& view, const Sector& sector, const CullOp
 }
 
 // The planes among `planes` that the box crosses, or kOutside; `failed` is tried first, and remembers.
-PlaneSet classify(const Frustum& frustum, const Box& box, PlaneSet planes, std::uint8_t* failed) {
+PlaneSet classify(const Frustum& frustum, const Box& box, PlaneSet planes, std::uint8_t& failed) {
   const auto far_enough = [&](int p, bool far) {
     const Plane& plane = frustum.planes[static_cast<std::size_t>(p)];
     const bool x = (plane.normal.x >= 0) != far, y = (plane.normal.y >= 0) != far,
@@ -84,13 +84,12 @@ PlaneSet classify(const Frustum& frustum, const Box& box, PlaneSet planes, std::
     return signed_distance(plane, x ? box.max.x : box.min.x, y ? box.max.y : box.min.y,
                            z ? box.max.z : box.min.z) >= 0;
   };
-  if (failed && *failed < Frustum::sides && (planes >> *failed & 1) && !far_enough(*failed, false))
-    return kOutside;
+  if ((planes >> failed & 1) && !far_enough(failed, false)) return kOutside;
   PlaneSet crossing = 0;
   for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
     const int p = std::countr_zero(rest);
     if (!far_enough(p, false)) {
-      if (failed) *failed = static_cast<std::uint8_t>(p);
+      failed = static_cast<std::uint8_t>(p);
       return kOutside;
     }
     if (!far_enough(p, true)) crossing |= static_cast<PlaneSet>(1u << p);
@@ -120,7 +119,7 @@ private:
       if (planes[v] == kOutside) continue;
       if (planes[v] != 0) {
         const Frustum& frustum = state_.views[sector_ * views_ + v].frustum;
-        planes[v] = classify(frustum, box, planes[v], failed ? failed + v : nullptr);
+        planes[v] = classify(frustum, box, planes[v], failed[v]);
       }
       any = any || planes[v] != kOutside;
     }
@@ -130,13 +129,11 @@ private:
   void visit(std::uint32_t index, ViewPlanes planes) noexcept {
     const ChunkMap::Node& node = map_.nodes()[index];
     ++visited_;
-    if (node.objects == 0 || !narrow(node.bounds, planes, nullptr)) return;
-    for (const std::uint32_t block : node.blocks) {
-      ++visited_;
-      ViewPlanes narrowed = planes;
-      if (!narrow(map_.blocks()[block].box, narrowed, &state_.failed[sector_][block * kMaxViews])) continue;
-      state_.entries.push_back({sector_, block, narrowed});
-    }
+    std::uint8_t* failed = &state_.failed[sector_][index * kMaxViews];
+    if (node.objects == 0 || !narrow(node.bounds, planes, failed)) return;
+    visited_ += node.blocks.size();
+    find_blocks(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
+                state_.entries);
     if (node.first_child == ChunkMap::kNone) return;
     for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
   }
@@ -219,15 +216,17 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   state.maps.clear(), state.views.clear(), state.entries.clear();
   if (state.failed.size() < sectors.size()) state.failed.resize(sectors.size());
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    const auto& map = *sectors[s].map;
-    state.maps.push_back(&map);
+    state.maps.push_back(sectors[s].map.get());
+    if (!sectors[s].map) {
+      state.views.resize(state.views.size() + views.size());
+      continue;
+    }
+    const partition::ChunkMap& map = *sectors[s].map;
     for (std::size_t v = 0; v < views.size(); ++v) {
       const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
       state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
     }
-    if (state.failed[s].size() < map.blocks().size() * kMaxViews) {
-      state.failed[s].resize(map.blocks().size() * kMaxViews, 0);
-    }
+    state.failed[s].resize(map.nodes().size() * kMaxViews, 0);
     if (map.size() > 0) result.nodes_visited += culling::RegionWalk(state, s, views.size()).run();
   }
 

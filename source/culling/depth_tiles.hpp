@@ -34,6 +34,17 @@ struct PixelRays {
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
+/// A mesh as a view sees it, one value a vertex; facing one a triangle. Reused from mesh to mesh.
+struct MeshScratch {
+  partition::AlignedVector<float> x, y, near, clearance, eye_x, eye_y, eye_z, facing;
+  /// The groups in view, by the nearness of what they hold and the pixels that bound it.
+  struct SeenGroup {
+    float depth, nearest, left, right, top, bottom;
+    std::uint32_t group;
+  };
+  std::vector<SeenGroup> seen;
+};
+
 struct DepthTiles {
   WorldView view;
   EyeProjection projection;
@@ -50,10 +61,7 @@ struct DepthTiles {
   /// One a tile: the pixels that have an occluder, and those beyond the image, once it was touched.
   std::vector<std::uint64_t> covered;
 
-  // scratch of draw_mesh
-  std::vector<float> screen_x, screen_y, screen_near, clearance, eye_x, eye_y, eye_z;
-  std::vector<Vec3> moved;
-  std::vector<std::int8_t> facing;
+  MeshScratch mesh;
 };
 
 /// A convex polygon of the image and the planes in front of it: nearness there is the least of the planes'.
@@ -102,6 +110,20 @@ struct OccluderTopology {
   /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  /// The same in structure of arrays, padded to a multiple of 16 by repetition of vertex 0 and triangles of
+  /// it alone; no neighbour: -1.
+  partition::AlignedVector<float> x, y, z;
+  std::array<partition::AlignedVector<std::int32_t>, 3> corner, neighbour;
+
+  /// Runs of triangles with the ball that holds them: what is out of view or hidden as a whole is not set up.
+  static constexpr std::uint32_t kGroup = 64;
+  struct Group {
+    Sphere ball;
+    std::uint32_t first = 0, end = 0;  ///< triangles; first is a multiple of 16
+  };
+  std::vector<Group> groups;
+  void lay_out();
 };
 
 EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept;
@@ -109,9 +131,15 @@ void draw_convex(DepthTiles& tiles, const Convex& polygon) noexcept;
 /// A box that crosses the near plane, about the eye.
 void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
                       const std::array<float, 3>& high) noexcept;
+/// A triangle that crosses the near plane, about the eye.
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<Vec3, 3>& corners) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
-void project(const EyeProjection& projection, std::span<const Vec3> points, DepthTiles& scratch) noexcept;
+void draw_balls(DepthTiles& tiles, std::span<const Sphere> balls) noexcept;
+/// Allocates until it has seen its largest mesh.
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
+void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
+                   std::uint8_t* visible) noexcept;
 
 }  // namespace sightline::culling

@@ -205,77 +205,73 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
   }
 }
 
-namespace {
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<Vec3, 3>& corners) noexcept {
+  Polygon polygon;
+  for (const Vec3& c : corners) polygon.points[polygon.count++] = {c.x, c.y, c.z};
+  const glm::vec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
+  const glm::vec3 normal = glm::cross(q - p, r - p);
+  const float length = glm::length(normal);
+  if (length > 0) draw_polygon(tiles, polygon, normal / length, glm::dot(normal / length, p));
+}
 
-void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh) {
-  const auto usable = [&](std::uint32_t v) { return tiles.clearance[v] >= 0; };
-  // Which way each triangle turns on the image; 0: not drawn by the fast path.
-  tiles.facing.assign(mesh.triangles.size(), 0);
-  const auto& x = tiles.screen_x;
-  const auto& y = tiles.screen_y;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    if (!usable(a) || !usable(b) || !usable(c)) continue;
-    const float area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a]);
-    tiles.facing[t] = static_cast<std::int8_t>(area > 0.02f ? 1 : area < -0.02f ? -1 : 0);
+void OccluderTopology::lay_out() {
+  const auto padded = [](std::size_t n) { return (n + 15) / 16 * 16; };
+  for (auto* v : {&x, &y, &z}) v->resize(padded(positions.size()), 0);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    x[i] = positions[i].x, y[i] = positions[i].y, z[i] = positions[i].z;
   }
-  const auto w = static_cast<float>(tiles.width), h = static_cast<float>(tiles.height);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& corner = mesh.triangles[t];
-    const auto at = [&](std::uint32_t v) {
-      return glm::vec3(tiles.eye_x[v], tiles.eye_y[v], tiles.eye_z[v]);
-    };
-    const glm::vec3 p = at(corner[0]), q = at(corner[1]), r = at(corner[2]);
-    const glm::vec3 normal = glm::cross(q - p, r - p);
-    const float length = glm::length(normal);
-    if (!(length > 0)) continue;
-    const glm::vec3 unit = normal / length;
-    if (tiles.facing[t] == 0) {
-      // Not where it is small, but where it crosses the near plane.
-      if (usable(corner[0]) == usable(corner[1]) && usable(corner[1]) == usable(corner[2])) continue;
-      Polygon polygon;
-      polygon.points[0] = p, polygon.points[1] = q, polygon.points[2] = r;
-      polygon.count = 3;
-      draw_polygon(tiles, polygon, unit, glm::dot(unit, p));
-      continue;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k].resize(padded(triangles.size()), 0);
+    neighbour[k].resize(padded(triangles.size()), -1);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      corner[k][t] = static_cast<std::int32_t>(triangles[t][k]);
+      neighbour[k][t] = static_cast<std::int32_t>(neighbours[t][k]);
     }
-    Convex out;
-    out.left = out.top = kInfinity, out.right = out.bottom = -kInfinity;
-    float nearest = -kInfinity, reach = 0, farthest_out = 0;
-    for (const std::uint32_t v : corner) {
-      out.left = std::min(out.left, x[v]), out.right = std::max(out.right, x[v]);
-      out.top = std::min(out.top, y[v]), out.bottom = std::max(out.bottom, y[v]);
-      nearest = std::max(nearest, tiles.screen_near[v]);
-      reach =
-          std::max({reach, std::fabs(tiles.eye_x[v]), std::fabs(tiles.eye_y[v]), std::fabs(tiles.eye_z[v])});
-      farthest_out = std::max({farthest_out, std::fabs(x[v]), std::fabs(y[v])});
-    }
-    if (!(out.right > 0 && out.left < w && out.bottom > 0 && out.top < h)) continue;
-    if (!set_plane(out, tiles, unit, glm::dot(unit, p), reach)) continue;
-    move_back(out, 0, nearest);
-    const float inset = kInset + kInsetGrowth * farthest_out;
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t a = corner[k], b = corner[(k + 1) % 3];
-      const std::uint32_t other = mesh.neighbours[t][k];
-      const bool seam = other != OccluderTopology::kNone && tiles.facing[other] == tiles.facing[t];
-      const bool interior_left = (y[b] > y[a]) == (tiles.facing[t] > 0);
-      if (a > b) std::swap(a, b);  // so that both sides of a seam compute the same bits
-      add_edge(out, x[a], y[a], x[b], y[b], interior_left, seam ? 0 : inset);
-      const bool flat = std::fabs(y[b] - y[a]) < kFlat;
-      if (!flat || seam) continue;
-      // A flat edge that is no seam bounds the rows.
-      const float third = y[corner[(k + 2) % 3]];
-      if (third > y[a]) {
-        out.top = std::max(out.top, std::max(y[a], y[b]) + inset);
-      } else {
-        out.bottom = std::min(out.bottom, std::min(y[a], y[b]) - inset);
+  }
+  for (std::uint32_t first = 0; first < triangles.size(); first += kGroup) {
+    Group group;
+    group.first = first, group.end = std::min(first + kGroup, static_cast<std::uint32_t>(triangles.size()));
+    glm::dvec3 low(1e300), high(-1e300);
+    const auto each = [&](const auto& visit) {
+      for (std::uint32_t t = group.first; t < group.end; ++t) {
+        for (const std::uint32_t v : triangles[t]) visit(to_double(positions[v]));
       }
-    }
-    draw_convex(tiles, out);
+    };
+    each([&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
+    group.ball.centre = to_vec3(0.5 * low + 0.5 * high);
+    double radius = 0;
+    each([&](const glm::dvec3& p) {
+      radius = std::max(radius, glm::length(p - to_double(group.ball.centre)));
+    });
+    group.ball.radius = static_cast<float>(radius * (1 + 1e-6));
+    groups.push_back(group);
   }
 }
 
-}  // namespace
+// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
+void sort_along_curve(OccluderTopology& mesh) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (const Vec3& p : mesh.positions) low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p));
+  const glm::dvec3 size = glm::max(high - low, glm::dvec3(1e-30));
+  const auto key = [&](const std::array<std::uint32_t, 3>& t) {
+    const glm::dvec3 middle = (to_double(mesh.positions[t[0]]) + to_double(mesh.positions[t[1]]) +
+                               to_double(mesh.positions[t[2]])) /
+                              3.0;
+    const glm::dvec3 at = (middle - low) / size * 1023.0;
+    std::uint32_t out = 0;
+    for (int bit = 9; bit >= 0; --bit) {
+      for (int a = 0; a < 3; ++a)
+        out = out << 1 | (static_cast<std::uint32_t>(std::clamp(at[a], 0.0, 1023.0)) >> bit & 1);
+    }
+    return out;
+  };
+  std::vector<std::pair<std::uint32_t, std::array<std::uint32_t, 3>>> keyed;
+  for (const auto& t : mesh.triangles) keyed.emplace_back(key(t), t);
+  std::stable_sort(keyed.begin(), keyed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < keyed.size(); ++i) mesh.triangles[i] = keyed[i].second;
+}
+
 }  // namespace culling
 
 using culling::DepthTiles;
@@ -337,18 +333,12 @@ void OcclusionBuffer::draw_boxes(std::span<const WorldBox> boxes) noexcept {
   }
 }
 
+void OcclusionBuffer::draw_balls(std::span<const Sphere> balls) noexcept {
+  culling::draw_balls(*tiles_, balls);
+}
+
 void OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Affine& transform) {
-  DepthTiles& t = *tiles_;
-  const culling::OccluderTopology& topology = mesh.topology();
-  const std::size_t n = topology.positions.size();
-  if (t.moved.size() < n) {
-    for (auto* v : {&t.screen_x, &t.screen_y, &t.screen_near, &t.clearance, &t.eye_x, &t.eye_y, &t.eye_z})
-      v->resize(n);
-    t.moved.resize(n);
-  }
-  for (std::size_t i = 0; i < n; ++i) t.moved[i] = transform_point(transform, topology.positions[i]);
-  culling::project(t.projection, std::span(t.moved).first(n), t);
-  culling::draw_triangles(t, topology);
+  culling::draw_mesh(*tiles_, mesh.topology(), transform);
 }
 
 bool OcclusionBuffer::may_see(const Box& b) const noexcept {
@@ -365,6 +355,10 @@ void OcclusionBuffer::may_see(const BoxSpan& boxes, std::span<std::uint8_t> visi
 void OcclusionBuffer::may_see(const BoxSpan& boxes, const WorldPoint& origin,
                               std::span<std::uint8_t> visible) const noexcept {
   culling::query_boxes(*tiles_, culling::eye_projection(tiles_->view, origin), boxes, visible.data());
+}
+
+void OcclusionBuffer::may_see(const SphereSpan& spheres, std::span<std::uint8_t> visible) const noexcept {
+  culling::query_spheres(*tiles_, tiles_->projection, spheres, visible.data());
 }
 
 std::uint32_t OcclusionBuffer::width() const noexcept {
@@ -412,6 +406,7 @@ OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std:
     if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0])
       t.triangles.push_back(corner);
   }
+  culling::sort_along_curve(t);
   // The edge's triangles, the second of which makes them neighbours; a third parts them again.
   struct Sides {
     std::uint32_t triangle[2], edge[2], count = 0;
@@ -432,6 +427,7 @@ OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std:
     t.neighbours[sides.triangle[0]][sides.edge[0]] = sides.triangle[1];
     t.neighbours[sides.triangle[1]][sides.edge[1]] = sides.triangle[0];
   }
+  t.lay_out();
 }
 
 OccluderMesh::~OccluderMesh() = default;

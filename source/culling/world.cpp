@@ -47,16 +47,31 @@ Box relative_box(const WorldBox& b, const WorldPoint& o) noexcept {
 std::uint32_t WorldState::sector_at(const SectorCell& cell) {
   const auto found = sector_of_cell.find(cell);
   if (found != sector_of_cell.end()) return found->second;
-  const auto added = static_cast<std::uint32_t>(sectors.size());
-  sectors.push_back({{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
-                      static_cast<double>(cell.z) * kSectorSide},
-                     std::make_unique<ChunkMap>(kSectorMap, &locations)});
+  auto added = static_cast<std::uint32_t>(sectors.size());
+  if (free_sectors.empty()) {
+    sectors.emplace_back();
+  } else {
+    added = free_sectors.back();
+    free_sectors.pop_back();
+  }
+  sectors[added] = {{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
+                     static_cast<double>(cell.z) * kSectorSide},
+                    std::make_unique<ChunkMap>(kSectorMap, &locations)};
   sector_of_cell.emplace(cell, added);
   return added;
 }
 
-void WorldState::tighten() noexcept {
-  for (Sector& sector : sectors) sector.map->tighten();
+void WorldState::tidy() {
+  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
+    Sector& sector = sectors[s];
+    if (!sector.map) continue;
+    sector.map->tighten();
+    if (sector.map->size() > 0) continue;
+    const WorldPoint& o = sector.origin;
+    sector_of_cell.erase(sector_cell({o, o}));
+    sector.map.reset();
+    free_sectors.push_back(s);
+  }
 }
 
 }  // namespace culling
@@ -157,7 +172,7 @@ Check World::move(std::span<const Handle> handles, std::span<const WorldBox> box
       s.objects[id].sector = to;
     }
   }
-  s.tighten();
+  s.tidy();
   return {};
 }
 
@@ -180,7 +195,7 @@ Check World::remove(std::span<const Handle> handles) {
     s.free_ids.push_back(handle.index);
   }
   s.size -= handles.size();
-  s.tighten();
+  s.tidy();
   return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include <sightline/frustum.hpp>
 #include <sightline/world.hpp>
@@ -49,9 +50,18 @@ struct PassInput {
   bool masks = false;
 };
 
+/// Sorts the blocks of a node: adds those that some view may see to `entries`. `views` are the sector's,
+/// `planes` what each has still to be tested against.
+void find_blocks(const partition::ChunkMap::Node& node, std::span<const SectorView> views,
+                 std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
+                 std::vector<BlockEntry>& entries) noexcept;
+
 /// Writes the visible objects of the entries; `out` and, where masks are wanted, `masks` have room for all
 /// objects of the entries' blocks and kCullPadding more.
 PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept;
+/// The same with all tests; cull_blocks() calls it where some view has more than a frustum.
+PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+                                std::uint8_t* masks) noexcept;
 
 }  // namespace sightline::culling

@@ -36,7 +36,7 @@ struct SectorCellHash {
 
 struct Sector {
   WorldPoint origin;
-  std::unique_ptr<ChunkMap> map;  ///< relative to the origin; never null
+  std::unique_ptr<ChunkMap> map;  ///< relative to the origin; null: the sector is free
 };
 
 /// In WorldState::objects, one an id.
@@ -47,6 +47,7 @@ struct WorldObject {
 
 struct WorldState {
   std::vector<Sector> sectors;
+  std::vector<std::uint32_t> free_sectors;
   std::unordered_map<SectorCell, std::uint32_t, SectorCellHash> sector_of_cell;
   ChunkMap::Locations locations;  ///< shared by all sectors' maps
   std::vector<WorldObject> objects;
@@ -55,8 +56,8 @@ struct WorldState {
   Culler culler;  ///< of the free function cull()
 
   std::uint32_t sector_at(const SectorCell& cell);
-  /// Only the sectors that changed have anything to do.
-  void tighten() noexcept;
+  /// Shrinks bounds that moves and removals left too large, and frees the sectors that they left empty.
+  void tidy();
 };
 
 /// The sector that holds a box's centre.

@@ -91,10 +91,34 @@ void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
   extend_block(chunks_[chunk].block, box);
 }
 
+// Where the chunk's objects lie and how many they are, for those who read the block.
+void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
+  const Chunk& c = chunks_[chunk];
+  if (c.block == kNone) return;
+  Block& b = blocks_[c.block];
+  b.first_lane[c.index_in_block] = c.first_lane;
+  b.count_and_size[c.index_in_block] = c.count | (c.capacity == kSmallCapacity ? Block::kSmall : 0);
+}
+
+void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {
+  sides[0][i] = box.min.x, sides[1][i] = box.min.y, sides[2][i] = box.min.z;
+  sides[3][i] = box.max.x, sides[4][i] = box.max.y, sides[5][i] = box.max.z;
+}
+
+void ChunkMap::BoxRows::resize(std::size_t count) {
+  for (auto& side : sides) side.resize((count + 15) / 16 * 16);
+}
+
+void ChunkMap::set_box(std::uint32_t block, const Box& box) noexcept {
+  Block& b = blocks_[block];
+  b.box = box;
+  nodes_[b.node].block_boxes.set(b.index_in_node, box);
+}
+
 void ChunkMap::extend_block(std::uint32_t block, const Box& box) noexcept {
   Block& b = blocks_[block];
   if (holds(b.box, box)) return;
-  b.box = united(b.box, box);
+  set_box(block, united(b.box, box));
   for (std::uint32_t n = b.node; n != kNone && !holds(nodes_[n].bounds, box); n = nodes_[n].parent) {
     nodes_[n].bounds = united(nodes_[n].bounds, box);
   }
@@ -114,7 +138,7 @@ void ChunkMap::shrink_block(std::uint32_t block, const Box& gone) noexcept {
   Block& b = blocks_[block];
   if (!touches(b.box, gone)) return;
   const Box before = b.box;
-  b.box = tight(b);
+  set_box(block, tight(b));
   if (b.box != before) loosen(b.node, before);
 }
 
@@ -160,10 +184,11 @@ std::uint32_t ChunkMap::add_block(std::uint32_t node) {
     free_blocks_.pop_back();
     blocks_[block] = {};
   }
-  blocks_[block].box = kNothing;
   blocks_[block].node = node;
   blocks_[block].index_in_node = static_cast<std::uint32_t>(nodes_[node].blocks.size());
   nodes_[node].blocks.push_back(block);
+  nodes_[node].block_boxes.resize(nodes_[node].blocks.size());
+  set_box(block, kNothing);
   return block;
 }
 
@@ -183,6 +208,7 @@ void ChunkMap::put_in_block(std::uint32_t chunk, std::uint32_t block, const Box&
   c.index_in_block = b.count;
   b.chunks[b.count++] = chunk;
   set_bounds(chunk, bounds);
+  note_shape(chunk);
   add_objects(block, static_cast<std::int32_t>(c.count));
   extend_block(block, bounds);
 }
@@ -196,6 +222,8 @@ void ChunkMap::take_from_block(std::uint32_t chunk) {
   if (c.index_in_block != last) {
     for (auto& side : b.bounds) side[c.index_in_block] = side[last];
     b.chunks[c.index_in_block] = b.chunks[last];
+    b.first_lane[c.index_in_block] = b.first_lane[last];
+    b.count_and_size[c.index_in_block] = b.count_and_size[last];
     chunks_[b.chunks[last]].index_in_block = c.index_in_block;
   }
   c.block = kNone;
@@ -203,7 +231,9 @@ void ChunkMap::take_from_block(std::uint32_t chunk) {
   auto& all = nodes_[b.node].blocks;
   all[b.index_in_node] = all.back();
   blocks_[all.back()].index_in_node = b.index_in_node;
+  if (all.back() != block) set_box(all.back(), blocks_[all.back()].box);
   all.pop_back();
+  nodes_[b.node].block_boxes.resize(all.size());
   loosen(b.node, b.box);
   free_blocks_.push_back(block);
 }
@@ -241,12 +271,14 @@ void ChunkMap::split_block(std::uint32_t block, const Box& newcomer) {
     const std::uint32_t i = to.count++;
     for (std::uint32_t side = 0; side < 6; ++side) to.bounds[side][i] = old.bounds[side][from];
     to.chunks[i] = chunk;
+    to.first_lane[i] = old.first_lane[from];
+    to.count_and_size[i] = old.count_and_size[from];
     chunks_[chunk].block = up ? added : block;
     chunks_[chunk].index_in_block = i;
     if (up) moved_objects += chunks_[chunk].count;
   }
-  low.box = tight(low);
-  high.box = tight(high);
+  set_box(block, tight(low));
+  set_box(added, tight(high));
   low.objects -= moved_objects;
   high.objects += moved_objects;
   const float at = centre[order[kBlockCapacity / 2]];

@@ -192,6 +192,7 @@ void ChunkMap::grow(std::uint32_t chunk) {
 }
 
 void ChunkMap::note_change(std::uint32_t chunk) {
+  note_shape(chunk);
   Chunk& c = chunks_[chunk];
   if (c.changed) return;
   c.changed = true;

@@ -84,10 +84,21 @@ public:
   struct alignas(64) Block {
     std::array<std::array<float, kBlockCapacity>, 6> bounds{};
     std::array<std::uint32_t, kBlockCapacity> chunks{};
+    /// Of each chunk, what ChunkMap::chunk() would look up elsewhere: where its lanes begin, and how many
+    /// objects it holds, with kSmall set where it has kSmallCapacity.
+    std::array<std::uint32_t, kBlockCapacity> first_lane{}, count_and_size{};
+    static constexpr std::uint32_t kSmall = 0x80000000u;
     Box box;                  ///< of all of them
     std::uint32_t count = 0;  ///< 0: the block is free
     std::uint32_t node = 0, index_in_node = 0;
     std::uint32_t objects = 0;
+  };
+
+  /// Boxes in structure of arrays, padded to a multiple of 16.
+  struct BoxRows {
+    std::array<AlignedVector<float>, 6> sides;  ///< in the order of ChunkView
+    void set(std::size_t i, const Box& box) noexcept;
+    void resize(std::size_t count);
   };
 
   /// A region of any level; node 0 is the whole ground.
@@ -97,6 +108,7 @@ public:
     std::uint32_t first_child = kNone;  ///< the four children lie at first_child … +3
     std::uint32_t objects = 0;          ///< in all blocks here and below
     std::vector<std::uint32_t> blocks;  ///< of the keys whose smallest common region this is
+    BoxRows block_boxes;                ///< of these
   };
 
   /// The location table is the map's own unless the caller brings one, which must outlive the map and hold an
@@ -132,6 +144,20 @@ public:
             lanes(c, 5),
             ids_.data() + c.first_lane,
             c.count};
+  }
+  /// The chunk at place i of a block.
+  [[nodiscard]] ChunkView chunk(const Block& block, std::uint32_t i) const noexcept {
+    const std::uint32_t first = block.first_lane[i], size = block.count_and_size[i];
+    const std::size_t step = size & Block::kSmall ? kSmallCapacity : kCapacity;
+    const float* at = lanes_.data() + 6 * std::size_t{first};
+    return {at,
+            at + step,
+            at + 2 * step,
+            at + 3 * step,
+            at + 4 * step,
+            at + 5 * step,
+            ids_.data() + first,
+            size & ~Block::kSmall};
   }
   /// Tight union of the chunk's boxes.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;
@@ -200,6 +226,7 @@ private:
   void append(std::uint32_t chunk, ObjectId object, const Box& box);
   void erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept;
   void note_change(std::uint32_t chunk);
+  void note_shape(std::uint32_t chunk) noexcept;
 
   std::uint32_t add_block(std::uint32_t node);
   void put_in_block(std::uint32_t chunk, std::uint32_t block, const Box& bounds);
@@ -208,6 +235,7 @@ private:
   void add_objects(std::uint32_t block, std::int32_t change) noexcept;
   void set_bounds(std::uint32_t chunk, const Box& box) noexcept;
   void extend(std::uint32_t chunk, const Box& box) noexcept;
+  void set_box(std::uint32_t block, const Box& box) noexcept;
   void extend_block(std::uint32_t block, const Box& box) noexcept;
   void shrink(std::uint32_t chunk, const Box& gone) noexcept;
   void shrink_block(std::uint32_t block, const Box& gone) noexcept;

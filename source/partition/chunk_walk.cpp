@@ -95,8 +95,17 @@ Check ChunkMap::check() const {
         return bad("wrong block", node.blocks[i]);
       if (block.box != tight(block)) return bad("bounds not tight of block", node.blocks[i]);
       if (!holds(node.bounds, block.box)) return bad("bounds too small of region", n);
+      const auto& rows = node.block_boxes.sides;
+      const Box row{{rows[0][i], rows[1][i], rows[2][i]}, {rows[3][i], rows[4][i], rows[5][i]}};
+      if (row != block.box) return bad("wrong bounds in the region of block", node.blocks[i]);
       std::size_t held = 0;
-      for (std::uint32_t k = 0; k < block.count; ++k) held += chunks_[block.chunks[k]].count;
+      for (std::uint32_t k = 0; k < block.count; ++k) {
+        held += chunks_[block.chunks[k]].count;
+        const ChunkView here = chunk(block, k), there = chunk(block.chunks[k]);
+        if (here.objects != there.objects || here.count != there.count || here.min_y != there.min_y ||
+            here.max_z != there.max_z)
+          return bad("wrong lanes in the block of chunk", block.chunks[k]);
+      }
       if (held != block.objects) return bad("wrong number of objects in block", node.blocks[i]);
       below += held;
       chunks += block.count;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "culling/depth_tiles.hpp"
+#include "geometry/linear.hpp"
 #include "scene/shapes.hpp"
 
 namespace sightline::methods {
@@ -27,6 +28,33 @@ TEST(InnerShell, LeavesOpenAndHollowMeshesAsTheyAre) {
   scene::Shape dented = scene::sphere(2);
   dented.positions[7] = {0, 0, 0};
   EXPECT_EQ(simple_occluder(dented.positions, dented.indices).triangles(), 320u);
+}
+
+TEST(InnerBall, FillsWhatIsRoundAndLiesInsideIt) {
+  scene::Shape round = scene::sphere(2);
+  for (Vec3& p : round.positions) p = {3 + 2 * p.x, 2 * p.y, 2 * p.z - 1};
+  const std::optional<Sphere> ball = inner_ball(round.positions, round.indices);
+  ASSERT_TRUE(ball);
+  EXPECT_NEAR(ball->centre.x, 3, 1e-4);
+  EXPECT_GT(ball->radius, 1.8f);
+  // No triangle's plane cuts it.
+  for (std::size_t i = 0; i < round.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) {
+      return geometry::to_double(round.positions[round.indices[i + k]]);
+    };
+    const glm::dvec3 normal = glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+    EXPECT_GE(std::fabs(glm::dot(normal, corner(0) - geometry::to_double(ball->centre))), ball->radius);
+  }
+}
+
+TEST(InnerBall, IsNotFoundInWhatIsOpenDentedOrLong) {
+  scene::Shape open = scene::sphere(2), dented = open, stretched = open;
+  open.indices.resize(open.indices.size() - 3);
+  dented.positions[7] = {0, 0, 0};
+  for (Vec3& p : stretched.positions) p.y *= 1.5f;
+  for (const scene::Shape& shape : {open, dented, stretched}) {
+    EXPECT_FALSE(inner_ball(shape.positions, shape.indices));
+  }
 }
 
 }  // namespace

@@ -28,20 +28,10 @@ public:
     near_ = {front.normal.x, front.normal.y, front.normal.z, front.distance};
   }
 
-  /// The nearest point in front of the near plane where the pixel's ray meets the box's surface; `front_only`: where
-  /// it enters.
+  /// The nearest point in front of the near plane where the pixel's ray meets the box's surface;
+  /// `front_only`: where it enters.
   [[nodiscard]] double hit(double x, double y, const Box& box, bool front_only = false) const {
-    const double u = 2 * x / view_.width - 1, v = 1 - 2 * y / view_.height;
-    glm::dvec3 origin, direction;
-    if (orthographic_) {
-      origin = eye_ + across(u, v);
-      direction = forward_;
-    } else {
-      origin = eye_;
-      const glm::dmat3 m(
-          glm::transpose(glm::dmat3(glm::dvec3(rows_[0]), glm::dvec3(rows_[1]), glm::dvec3(rows_[3]))));
-      direction = glm::inverse(m) * glm::dvec3(u, v, 1);  // w grows by 1 along it
-    }
+    const auto [origin, direction] = ray(x, y);
     double from = -1e30, to = 1e30;
     const double low[3] = {box.min.x, box.min.y, box.min.z}, high[3] = {box.max.x, box.max.y, box.max.z};
     for (int a = 0; a < 3; ++a) {
@@ -61,9 +51,39 @@ public:
     return orthographic_ ? -at : 1 / at;
   }
 
+  /// The nearest point where the pixel's ray meets a ball that lies in front of the near plane.
+  [[nodiscard]] double hit(double x, double y, const Sphere& ball) const {
+    const auto [origin, direction] = ray(x, y);
+    const glm::dvec3 to = glm::dvec3(ball.centre.x, ball.centre.y, ball.centre.z) - origin;
+    const double a = glm::dot(direction, direction), b = glm::dot(direction, to),
+                 r = static_cast<double>(ball.radius), under = b * b - a * (glm::dot(to, to) - r * r);
+    const double at = (b - std::sqrt(std::max(under, 0.0))) / a;
+    if (under < 0 || (!orthographic_ && at <= 0)) return kMiss;
+    return orthographic_ ? -at : 1 / at;
+  }
+
   static constexpr double kMiss = -std::numeric_limits<double>::infinity();
 
 private:
+  struct Ray {
+    glm::dvec3 origin, direction;
+  };
+
+  Ray ray(double x, double y) const {
+    const double u = 2 * x / view_.width - 1, v = 1 - 2 * y / view_.height;
+    glm::dvec3 origin, direction;
+    if (orthographic_) {
+      origin = eye_ + across(u, v);
+      direction = forward_;
+    } else {
+      origin = eye_;
+      const glm::dmat3 m(
+          glm::transpose(glm::dmat3(glm::dvec3(rows_[0]), glm::dvec3(rows_[1]), glm::dvec3(rows_[3]))));
+      direction = glm::inverse(m) * glm::dvec3(u, v, 1);  // w grows by 1 along it
+    }
+    return {origin, direction};
+  }
+
   glm::dvec3 across(double u, double v) const {
     const glm::dvec3 x(rows_[0]), y(rows_[1]);
     const glm::dvec3 at(u * rows_[3].w - (glm::dot(x, eye_) + rows_[0].w),

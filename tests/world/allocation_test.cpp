@@ -10,6 +10,14 @@
 
 #include "scene/random.hpp"
 
+// ThreadSanitizer brings its own operators, which cannot be replaced.
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define SIGHTLINE_TSAN
+#endif
+#endif
+
+#ifndef SIGHTLINE_TSAN
 namespace {
 std::atomic<std::size_t> allocations{0};
 
@@ -25,6 +33,12 @@ void* operator new(std::size_t size) {
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return counted(size, alignof(std::max_align_t));
+}
+void operator delete(void* p, const std::nothrow_t&) noexcept {
+  std::free(p);
 }
 void operator delete(void* p) noexcept {
   std::free(p);
@@ -86,3 +100,4 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
 
 }  // namespace
 }  // namespace sightline
+#endif

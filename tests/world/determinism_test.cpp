@@ -32,15 +32,15 @@ double coarse(float x) {
   return std::floor(static_cast<double>(x) * 256) / 256;
 }
 
-struct Run {
+struct Setting {
   std::uint32_t threads = 1;
   Depth depth = Depth::standard;
   double shift = 0;
-  float far_plane = 3000;
+  float far_plane = 3000, near_plane = 0.1f;
 };
 
 // Inserts, moves, removes and culls; the hash of all that was written.
-std::uint64_t hash_of_run(const Run& run) {
+std::uint64_t hash_of_run(const Setting& run) {
   Random random(11);
   const auto box = [&] {
     const Vec3 at = random.inside({{-2500, -100, -2500}, {2500, 100, 2500}});
@@ -66,7 +66,7 @@ std::uint64_t hash_of_run(const Run& run) {
                     static_cast<float>(coarse(random.between(-900, 900)))};
       camera.forward = random.direction();
       camera.forward.y *= 0.2f;
-      camera.far_plane = run.far_plane;
+      camera.far_plane = run.far_plane, camera.near_plane = run.near_plane;
       camera.depth = run.depth;
       views.push_back({*make_view(camera, 1280, 720), {run.shift, 0, -run.shift}});
     }
@@ -96,12 +96,58 @@ TEST(Determinism, SameBitsForThreadsTargetsDepthAndPlace) {
   EXPECT_NE(endless, expected);
   EXPECT_EQ(hash_of_run({.depth = Depth::reversed, .far_plane = none}), endless);
   EXPECT_EQ(hash_of_run({.depth = Depth::reversed, .shift = 1e7, .far_plane = none}), endless);
+  // With far = near · (2^k + 1) both matrices hold a finite far plane without rounding.
+  const Setting exact{.far_plane = 2050, .near_plane = 2};
+  Setting reversed = exact;
+  reversed.depth = Depth::reversed;
+  EXPECT_EQ(hash_of_run(reversed), hash_of_run(exact));
+  reversed.shift = 1e7, reversed.threads = 8;
+  EXPECT_EQ(hash_of_run(reversed), hash_of_run(exact));
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     EXPECT_EQ(hash_of_run({}), expected) << hwy::TargetName(target);
     EXPECT_EQ(hash_of_run({.threads = 2}), expected) << hwy::TargetName(target);
   }
   hwy::SetSupportedTargetsForTest(0);
+}
+
+// Where rounding does tell the matrices apart, it does so at the far plane alone.
+TEST(Determinism, StandardAndReversedDepthDifferAtMostAboutAFarPlaneThatMatricesRound) {
+  Random random(12);
+  World world;
+  std::vector<WorldBox> boxes(20000);
+  std::vector<Handle> handles(boxes.size());
+  for (WorldBox& b : boxes) {
+    const Vec3 at = random.inside({{-4000, -100, -4000}, {4000, 100, 4000}});
+    b = {{at.x - 2.0, at.y - 2.0, at.z - 2.0}, {at.x + 2.0, at.y + 2.0, at.z + 2.0}};
+  }
+  ASSERT_FALSE(world.insert(boxes, handles));
+  std::size_t seen = 0;
+  for (int round = 0; round < 50; ++round) {
+    Camera camera{.eye = random.inside({{-900, 1, -900}, {900, 9, 900}}), .forward = random.direction()};
+    camera.forward.y *= 0.1f;
+    camera.far_plane = 3000;
+    std::array<std::vector<std::uint8_t>, 2> in{std::vector<std::uint8_t>(world.id_limit()),
+                                                std::vector<std::uint8_t>(world.id_limit())};
+    for (const Depth depth : {Depth::standard, Depth::reversed}) {
+      camera.depth = depth;
+      const WorldView view{*make_view(camera, 1280, 720), {}};
+      std::vector<ObjectId> visible(cull_capacity(world));
+      visible.resize(cull(world, {&view, 1}, {}, visible).count);
+      for (const ObjectId id : visible) in[depth == Depth::reversed][id] = 1;
+    }
+    const Vec3 forward = view_direction(*make_view(camera, 1280, 720));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const ObjectId id = handles[i].index;
+      seen += in[0][id];
+      if (in[0][id] == in[1][id]) continue;
+      const WorldPoint& p = boxes[i].min;
+      const double depth = (p.x + 2 - camera.eye.x) * forward.x + (p.y + 2 - camera.eye.y) * forward.y +
+                           (p.z + 2 - camera.eye.z) * forward.z;
+      ASSERT_NEAR(depth, 3000, 10);
+    }
+  }
+  EXPECT_GT(seen, 10000u);
 }
 
 }  // namespace

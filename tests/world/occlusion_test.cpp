@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <sightline/projection.hpp>
 
@@ -152,22 +153,143 @@ TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
   }
 }
 
+TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
+  const scene::Shape ball = scene::sphere(2);
+  const OccluderMesh mesh(ball.positions, ball.indices);
+  for (const bool orthographic : {false, true}) {
+    Camera camera{.eye = {0, 0, 9}};
+    camera.orthographic_height = orthographic ? 6.0f : 0;
+    const View view = *make_view(camera, 64, 48);
+    for (const float bad : {std::nanf(""), INFINITY, -INFINITY, 3e38f}) {
+      for (int row = 0; row < 3; ++row) {
+        for (float Vec4::*part : {&Vec4::x, &Vec4::y, &Vec4::w}) {
+          OcclusionBuffer buffer;
+          ASSERT_FALSE(buffer.begin({view, {}}));
+          Affine transform;
+          transform.rows[static_cast<std::size_t>(row)].*part = bad;
+          buffer.draw_mesh(mesh, transform);
+          const Sphere no_number{{bad, 0, 0}, 1}, no_size{{0, 0, 0}, std::nanf("")};
+          buffer.draw_balls(std::array{no_number, no_size});
+          std::vector<float> drawn(64 * 48);
+          buffer.read_nearness(drawn);
+          for (const float nearness : drawn)
+            ASSERT_FALSE(nearness > 0.2f);  // nothing before the ball's place
+        }
+      }
+    }
+  }
+}
+
+Sphere ball_of(Random& random, float largest) {
+  return {random.inside(kAround), random.between(0.05f, largest)};
+}
+
+// Of those that the near plane does not cut.
+std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Sphere> balls) {
+  std::vector<double> nearness(std::size_t{view.width} * view.height, ExactRays::kMiss);
+  const Plane front = make_frustum(view, kAround).planes[Frustum::front];
+  for (const Sphere& ball : balls) {
+    if (signed_distance(front, ball.centre.x, ball.centre.y, ball.centre.z) < ball.radius) continue;
+    for (std::uint32_t i = 0; i < nearness.size(); ++i) {
+      nearness[i] = std::max(nearness[i], rays.hit(i % view.width + 0.5, i / view.width + 0.5, ball));
+    }
+  }
+  return nearness;
+}
+
+TEST(Occlusion, DrawsBallsNowhereNearerThanTheyAreAndFillsMostOfThem) {
+  Random random(13);
+  std::size_t covered = 0, drawn_at = 0;
+  for (int round = 0; round < 200; ++round) {
+    const View view = small_view(random);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 12; ++i) balls.push_back(ball_of(random, round % 3 == 0 ? 15.0f : 4.0f));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_balls(balls);
+    std::vector<float> drawn(std::size_t{view.width} * view.height);
+    buffer.read_nearness(drawn);
+    const std::vector<double> exact = exact_depths(ExactRays(view), view, balls);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      ASSERT_LE(drawn[i], exact[i]) << "round " << round << " pixel " << i % view.width << ' '
+                                    << i / view.width;
+      covered += exact[i] > ExactRays::kMiss;
+      drawn_at += drawn[i] > -std::numeric_limits<float>::infinity();
+    }
+  }
+  EXPECT_GT(covered, 20000u);
+  EXPECT_GT(static_cast<double>(drawn_at), 0.8 * static_cast<double>(covered));
+}
+
+TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
+  Random random(14);
+  std::size_t hidden = 0, dropped_by_sphere = 0;
+  for (int round = 0; round < 200; ++round) {
+    const View view = small_view(random);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 12; ++i) balls.push_back(ball_of(random, 8));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_balls(balls);
+    const ExactRays rays(view);
+    const std::vector<double> exact = exact_depths(rays, view, balls);
+    std::vector<Sphere> queries;
+    std::array<std::vector<float>, 4> lanes;
+    Boxes boxes;
+    for (int i = 0; i < 21; ++i) {
+      const Sphere s = ball_of(random, 2);
+      queries.push_back(s);
+      lanes[0].push_back(s.centre.x), lanes[1].push_back(s.centre.y), lanes[2].push_back(s.centre.z);
+      lanes[3].push_back(s.radius);
+      boxes.push_back({{s.centre.x - s.radius, s.centre.y - s.radius, s.centre.z - s.radius},
+                       {s.centre.x + s.radius, s.centre.y + s.radius, s.centre.z + s.radius}});
+    }
+    std::vector<std::uint8_t> visible(queries.size()), by_box(queries.size());
+    buffer.may_see(SphereSpan{lanes[0].data(), lanes[1].data(), lanes[2].data(), lanes[3].data(), 21},
+                   visible);
+    buffer.may_see(span_of(boxes), by_box);
+    const Frustum frustum = make_frustum(view, kAround);
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+      bool seen = false;
+      for (std::uint32_t i = 0; i < exact.size() && !seen; ++i) {
+        seen = rays.hit(i % view.width + 0.5, i / view.width + 0.5, queries[q]) > exact[i];
+      }
+      if (seen) ASSERT_TRUE(visible[q]) << "round " << round << " sphere " << q;
+      if (!overlaps(frustum, boxes[q])) continue;
+      hidden += !visible[q];
+      dropped_by_sphere += by_box[q] && !visible[q];
+    }
+  }
+  EXPECT_GT(hidden, 200u);
+  EXPECT_GT(dropped_by_sphere, 5u);
+}
+
 TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   Random random(6);
   const View view = *make_view(Camera{.eye = {0, 2, 60}}, 333, 217);
   std::vector<Box> occluders;
   for (int i = 0; i < 200; ++i) occluders.push_back(box_of(random, 5));
   occluders.push_back({{-3, -3, 55}, {-1, 5, 70}});  // crosses the near plane
+  std::vector<Sphere> balls;
+  for (int i = 0; i < 100; ++i) balls.push_back(ball_of(random, 4));
   Boxes queries;
   for (int i = 0; i < 1000; ++i) queries.push_back(box_of(random, 1));
   const auto run = [&] {
     OcclusionBuffer buffer;
     EXPECT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
+    buffer.draw_balls(balls);
     std::vector<float> drawn(333 * 217);
     buffer.read_nearness(drawn);
     std::vector<std::uint8_t> visible(queries.size());
     buffer.may_see(span_of(queries), visible);
+    // The same numbers, read as spheres: half extents that are too small do no harm here.
+    std::vector<std::uint8_t> by_sphere(queries.size());
+    const std::vector<float> radius(queries.size(), 0.7f);
+    buffer.may_see(SphereSpan{queries.min_x.data(), queries.min_y.data(), queries.min_z.data(), radius.data(),
+                              queries.size()},
+                   by_sphere);
+    visible.insert(visible.end(), by_sphere.begin(), by_sphere.end());
     return std::pair(drawn, visible);
   };
   const auto expected = run();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <thread>
 
 #include "culling/world_state.hpp"
 #include "geometry/linear.hpp"
@@ -39,6 +40,12 @@ double depth_in(const WorldView& view, const WorldBox& b) {
   return least;
 }
 
+void run_threads(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 0; i < count; ++i) threads.emplace_back(job, data, i);
+  for (std::thread& thread : threads) thread.join();
+}
+
 void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
                   std::span<const WorldView> views, double tolerance) {
   std::vector<ObjectId> visible(cull_capacity(world));
@@ -60,6 +67,16 @@ void expect_right(const World& world, Culler& culler, const std::map<ObjectId, W
         ASSERT_FALSE(kept) << "kept object " << id << " in view " << v << " at " << depth;
     }
   }
+  // So do threads, to the bit.
+  const CullOptions threaded{.jobs = {run_threads, nullptr, 4}};
+  std::vector<ObjectId> by_threads(cull_capacity(world, threaded));
+  std::vector<std::uint8_t> their_masks(by_threads.size());
+  ASSERT_EQ(culler.cull(world, views, threaded, by_threads, their_masks).count, with_masks.count);
+  ASSERT_TRUE(std::equal(by_threads.begin(),
+                         by_threads.begin() + static_cast<std::ptrdiff_t>(with_masks.count),
+                         visible.begin()));
+  ASSERT_TRUE(std::equal(their_masks.begin(),
+                         their_masks.begin() + static_cast<std::ptrdiff_t>(with_masks.count), masks.begin()));
   // The plain passes say the same, in the same order.
   const CullResult plain = culler.cull(world, views, {}, visible);
   ASSERT_EQ(plain.count, with_masks.count);
@@ -128,8 +145,36 @@ TEST(World, EqualsBruteForceAfterTenThousandRandomOperations) {
       ASSERT_NEAR(stored.min.x, given.min.x, 1e-3);
       ASSERT_NEAR(stored.max.z, given.max.z, 1e-3);
     }
-    for (const auto& sector : world.state().sectors) ASSERT_FALSE(sector.map->check());
+    for (const auto& sector : world.state().sectors) ASSERT_FALSE(sector.map && sector.map->check());
   }
+}
+
+TEST(World, KeepsNoSectorThatNothingStandsIn) {
+  World world;
+  const std::array<WorldBox, 3> home{wide({{0, 0, 0}, {1, 1, 1}}), wide({{9000, 0, 0}, {9001, 1, 1}}),
+                                     wide({{0, 0, 9000}, {1, 1, 9001}})};
+  std::array<Handle, 3> handles;
+  ASSERT_FALSE(world.insert(home, handles));
+  Culler culler;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  // One object wanders 3,000 km: each step leaves a sector behind.
+  for (int step = 1; step <= 1000; ++step) {
+    const double x = 3000.0 * step;
+    const WorldBox box{{x, 0, 0}, {x + 1, 1, 1}};
+    ASSERT_FALSE(world.move({&handles[0], 1}, {&box, 1}));
+    ASSERT_LE(world.state().sectors.size(), 4u);
+    ASSERT_LE(world.state().sector_of_cell.size(), 3u);
+    if (step % 100 != 0) continue;
+    const WorldView view{*make_view(Camera{.eye = {0.5f, 0.5f, 10}}, 64, 64), {x, 0, 0}};
+    ASSERT_EQ(culler.cull(world, {&view, 1}, {}, visible).count, 1u);
+    ASSERT_EQ(visible[0], handles[0].index);
+  }
+  ASSERT_FALSE(world.remove(handles));
+  EXPECT_TRUE(world.state().sector_of_cell.empty());
+  ASSERT_FALSE(world.insert(home, handles));
+  const WorldView back{*make_view(Camera{.eye = {0.5f, 0.5f, 10}}, 64, 64), {}};
+  EXPECT_EQ(culler.cull(world, {&back, 1}, {}, visible).count, 1u);
+  EXPECT_EQ(world.box(handles[1]), home[1]);
 }
 
 TEST(World, FindsStaleHandlesOut) {

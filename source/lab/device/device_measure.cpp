@@ -2,6 +2,7 @@
 
 #include <sightline/error.hpp>
 
+#include "culling/draw_list.hpp"
 #include "lab/loss.hpp"
 
 namespace sightline::lab {
@@ -10,6 +11,26 @@ namespace {
 
 struct Samples {
   std::vector<double> cpu, gpu, frame;
+};
+
+// Draws what it is told.
+class Told final : public Method {
+public:
+  explicit Told(const Scene& scene) : scene_(scene), draw_list_(scene) {}
+
+  std::vector<ObjectId> visible;
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
+  void update(std::span<const ObjectId>) override {}
+  void cull(const View& view, Frame& frame) noexcept override {
+    frame.clear();
+    frame.visible.assign(visible.begin(), visible.end());
+    draw_list_.build(scene_, view, frame);
+  }
+
+private:
+  const Scene& scene_;
+  culling::DrawList draw_list_;
 };
 
 }  // namespace
@@ -24,13 +45,35 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
   result.device = bench.renderer().device().info().name;
   result.width = measure.width, result.height = measure.height;
   result.cameras = path.cameras;
-  const auto contestants = bench.contestants();
-  for (const DeviceContestant& contestant : contestants) result.methods.push_back(contestant.name);
+  struct Entrant {
+    std::string name;
+    methods::DeviceMethod* method;
+  };
+  std::vector<Entrant> contestants;
+  for (const DeviceContestant& contestant : bench.contestants())
+    contestants.push_back({contestant.name, contestant.method.get()});
+  Told* told = nullptr;
+  std::unique_ptr<methods::DeviceMethod> limit;
+  if (options.limit) {
+    if (options.moving > 0) throw Error("--limit: expected objects that do not move");
+    auto method = std::make_unique<Told>(bench.scene());
+    told = method.get();
+    limit = methods::draw_by_device(std::move(method), bench.renderer());
+    contestants.push_back({std::string(kLimit), limit.get()});
+  }
+  for (const Entrant& contestant : contestants) result.methods.push_back(contestant.name);
   Mover mover(bench.scene(), options.moving, 1);
   Frame frame;
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], measure.width, measure.height));
     std::vector<Samples> samples(contestants.size());
+    if (told) {
+      told->visible.clear();
+      const ItemBuffer seen = bench.judge(view);
+      for (ObjectId o = 0; o < bench.scene().size(); ++o) {
+        if (seen.pixels[o] > 0) told->visible.push_back(o);
+      }
+    }
     for (std::size_t repeat = 0; repeat < measure.warm_up + measure.repeats; ++repeat) {
       if (options.moving > 0) bench.update(mover.move());
       for (std::size_t k = 0; k < contestants.size(); ++k) {

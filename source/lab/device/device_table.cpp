@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "lab/device/device_measure.hpp"
+
 namespace sightline::lab {
 
 std::vector<DeviceSummary> summarise_on_device(const Comparison& comparison) {
@@ -57,7 +59,7 @@ Table device_table(const Comparison& comparison) {
 
 std::string device_verdict(const Comparison& comparison) {
   std::vector<DeviceSummary> all = summarise_on_device(comparison);
-  std::erase_if(all, [](const DeviceSummary& s) { return s.lost_objects > 0; });
+  std::erase_if(all, [](const DeviceSummary& s) { return s.lost_objects > 0 || s.method == kLimit; });
   if (all.empty()) return "Every method lost something.";
   std::ranges::stable_sort(all, {}, &DeviceSummary::frame_ms);
   const DeviceSummary& best = all.front();
@@ -68,6 +70,30 @@ std::string device_verdict(const Comparison& comparison) {
     text += fmt::format(" Next is {}, at {:.2f} times that.", all[1].method, all[1].frame_ms / best.frame_ms);
   }
   return text;
+}
+
+Table device_ratios(const Comparison& comparison, double share) {
+  Table table;
+  table.header = {"method", "views", "times as fast as " + comparison.methods.front(), "least", "most"};
+  table.text_columns = 1;
+  const auto row_of = [&](std::size_t view, std::size_t method) -> const Row& {
+    return comparison.rows[view * comparison.methods.size() + method];
+  };
+  for (std::size_t m = 1; m < comparison.methods.size(); ++m) {
+    std::vector<double> ratios;
+    for (std::size_t v = 0; v < comparison.cameras.size(); ++v) {
+      const Row &first = row_of(v, 0), &row = row_of(v, m);
+      const bool few =
+          static_cast<double>(row.truly_visible) < share * static_cast<double>(row.stats.objects);
+      if (few && first.frame && row.frame && row.frame->median > 0)
+        ratios.push_back(first.frame->median / row.frame->median);
+    }
+    const Timing t = timing_of(ratios);
+    table.rows.push_back({comparison.methods[m], fmt::format("{}", ratios.size()),
+                          fmt::format("{:.2f}", t.median), fmt::format("{:.2f}", t.min),
+                          fmt::format("{:.2f}", t.max)});
+  }
+  return table;
 }
 
 Table verification_table(const DeviceVerification& verification) {

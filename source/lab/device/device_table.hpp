@@ -10,6 +10,9 @@ namespace sightline::lab {
 Table device_table(const Comparison& comparison);
 /// Which method drew its frames fastest without losing anything.
 std::string device_verdict(const Comparison& comparison);
+/// How many times as fast as the first method's frames the others' are, over the views in which less than
+/// `share` of the scene's objects is visible: one line a method, the median, least and greatest.
+Table device_ratios(const Comparison& comparison, double share = 0.2);
 Table verification_table(const DeviceVerification& verification);
 
 /// Means over the views of one method on a device.

@@ -15,6 +15,7 @@ using geometry::to_double;
 
 constexpr std::size_t kManyTriangles = 160;
 constexpr std::size_t kMostWork = 20'000'000;  // vertices × triangles
+constexpr double kRound = 0.8;                 // inner radius / outer radius: a ball stands for the mesh
 
 glm::dvec3 middle_of(std::span<const Vec3> points) {
   glm::dvec3 sum(0);
@@ -28,12 +29,14 @@ double reach_of(std::span<const Vec3> points, const glm::dvec3& middle) {
   return reach;
 }
 
-// Each edge between two triangles, and no vertex beyond any triangle's plane.
-bool closed_and_convex(const culling::OccluderTopology& mesh, const glm::dvec3& middle, double reach) {
+// How deep `middle` lies below the nearest triangle's plane of a closed mesh that no vertex of its own stands
+// out of; 0 where the mesh is not so.
+double depth_in_convex(const culling::OccluderTopology& mesh, const glm::dvec3& middle, double reach) {
   const double tolerance = 1e-5 * reach;
+  double depth = reach;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t other : mesh.neighbours[t]) {
-      if (other == culling::OccluderTopology::kNone) return false;
+      if (other == culling::OccluderTopology::kNone) return 0;
     }
     const auto& [a, b, c] = mesh.triangles[t];
     const glm::dvec3 p = to_double(mesh.positions[a]);
@@ -42,10 +45,11 @@ bool closed_and_convex(const culling::OccluderTopology& mesh, const glm::dvec3& 
     if (!(length > 0)) continue;
     normal /= glm::dot(normal, middle - p) > 0 ? -length : length;
     for (const Vec3& v : mesh.positions) {
-      if (glm::dot(normal, to_double(v) - p) > tolerance) return false;
+      if (glm::dot(normal, to_double(v) - p) > tolerance) return 0;
     }
+    depth = std::min(depth, glm::dot(normal, p - middle) - tolerance);
   }
-  return true;
+  return std::max(depth, 0.0);
 }
 
 }  // namespace
@@ -56,7 +60,7 @@ OccluderMesh simple_occluder(std::span<const Vec3> positions, std::span<const st
   if (mesh.triangles() < kManyTriangles || all.size() * mesh.triangles() > kMostWork) return mesh;
   const glm::dvec3 middle = middle_of(all);
   const double reach = reach_of(all, middle);
-  if (!closed_and_convex(mesh.topology(), middle, reach)) return mesh;
+  if (depth_in_convex(mesh.topology(), middle, reach) == 0) return mesh;
 
   // The mesh's own outermost points in the directions of a coarse sphere, a little inwards.
   scene::Shape shell = scene::sphere(1);
@@ -68,6 +72,18 @@ OccluderMesh simple_occluder(std::span<const Vec3> positions, std::span<const st
     corner = geometry::to_vec3(middle + (to_double(*outermost) - middle) * (1 - 1e-4));
   }
   return OccluderMesh(shell.positions, shell.indices);
+}
+
+std::optional<Sphere> inner_ball(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) {
+  const OccluderMesh mesh(positions, indices);
+  const auto& all = mesh.topology().positions;
+  if (mesh.triangles() < 8 || all.size() * mesh.triangles() > kMostWork) return {};
+  const glm::dvec3 middle = middle_of(all);
+  const double reach = reach_of(all, middle), depth = depth_in_convex(mesh.topology(), middle, reach);
+  if (!(depth > kRound * reach)) return {};
+  // The centre is rounded, and so is what a transform makes of it.
+  const double rounding = 1e-6 * (reach + glm::length(middle));
+  return Sphere{geometry::to_vec3(middle), static_cast<float>(depth - rounding)};
 }
 
 }  // namespace sightline::methods

@@ -1,10 +1,13 @@
 // Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
-// 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles,
-// then all against the tiles. Where a scene is one built thing of few triangles, like a game level, all of it
-// occludes.
+// 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles
+// (round ones as balls, which are cheap, so nearly all of them), then all against the tiles by box and
+// sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
@@ -19,14 +22,34 @@ namespace sightline::methods {
 namespace {
 
 constexpr std::array kParameters{
-    ParameterInfo{"occluders", "at most so many objects occlude, the largest on the image", "512", 0, 100000,
-                  true},
-    ParameterInfo{"pixels", "px², the least area of an occluder's bounding sphere", "150", 0, 1e9},
+    ParameterInfo{"occluders", "at most so many objects occlude as meshes, the largest on the image", "512",
+                  0, 100000, true},
+    ParameterInfo{"pixels", "px², the least area of such an occluder's bounding sphere", "150", 0, 1e9},
+    ParameterInfo{"balls", "px², the least area of an object that occludes by the ball inside it", "5", 0,
+                  1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
 };
 
 WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
+}
+
+// No direction becomes shorter than this under the transform: by Gershgorin's discs about the squares of its
+// columns' lengths, a little less for rounding.
+float least_scale(const Affine& t) {
+  const auto dot = [&](int a, int b) {
+    float sum = 0;
+    for (const Vec4& row : t.rows) {
+      const float columns[3] = {row.x, row.y, row.z};
+      sum += columns[a] * columns[b];
+    }
+    return sum;
+  };
+  float least = dot(0, 0);
+  for (int a = 0; a < 3; ++a) {
+    least = std::min(least, dot(a, a) - std::fabs(dot(a, (a + 1) % 3)) - std::fabs(dot(a, (a + 2) % 3)));
+  }
+  return least > 0 ? std::sqrt(least) * (1 - 1e-5f) : 0;
 }
 
 class Masked final : public Method {
@@ -35,18 +58,20 @@ public:
       : scene_(scene),
         most_occluders_(parameters.count("occluders")),
         least_area_(static_cast<float>(parameters.number("pixels"))),
+        least_ball_(static_cast<float>(parameters.number("balls"))),
         draw_list_(scene),
         handles_(scene.size()),
         moved_(scene.size(), 0) {
     std::vector<WorldBox> boxes(scene.size());
     for (ObjectId o = 0; o < scene.size(); ++o) boxes[o] = wide(scene.bounds[o]);
     usable_ = !world_.insert(boxes, handles_);
+    kept_.resize(scene.size());
     // Objects that share few meshes are instances, whose triangles would be too many in one.
     const bool one_thing = 2 * scene.meshes.size() >= scene.size();
     if (one_thing && triangle_count(scene) <= parameters.count("whole")) {
       build_whole();
     } else {
-      meshes_.resize(scene.meshes.size());
+      find_balls();
     }
   }
 
@@ -75,6 +100,7 @@ public:
       draw_occluders(view, std::span(frame.visible).first(result.count));
       const OcclusionBuffer* buffer = &buffer_;
       result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
+      drop_hidden_spheres(std::span(frame.visible).first(result.count), result);
     }
     if (!usable_ || result.error != CullError::none) {
       frame.visible.resize(scene_.size());
@@ -93,6 +119,7 @@ private:
   struct Occluder {
     float area, distance;
     ObjectId object;
+    bool cut;  // by the near plane
   };
 
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
@@ -113,29 +140,69 @@ private:
     whole_ = std::make_unique<OccluderMesh>(positions, indices);
   }
 
-  const OccluderMesh& mesh_of(ObjectId object) {
-    const std::uint32_t index = scene_.mesh[object];
-    if (!meshes_[index]) {
-      const Mesh& mesh = scene_.meshes[index];
-      meshes_[index] = std::make_unique<OccluderMesh>(
-          simple_occluder(std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count),
-                          std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count)));
+  void find_balls() {
+    meshes_.resize(scene_.meshes.size());
+    cut_meshes_.resize(scene_.meshes.size());
+    balls_.resize(scene_.meshes.size());
+    for (std::size_t m = 0; m < balls_.size(); ++m) {
+      const Mesh& mesh = scene_.meshes[m];
+      balls_[m] = inner_ball(std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count),
+                             std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count));
     }
-    return *meshes_[index];
+  }
+
+  // What stands in for a mesh lies inside it, so of one that the near plane cuts it would still show a front
+  // where the inside is seen: such a mesh is drawn as it is.
+  const OccluderMesh& mesh_of(const Occluder& occluder) {
+    const std::uint32_t index = scene_.mesh[occluder.object];
+    std::unique_ptr<OccluderMesh>& made = (occluder.cut ? cut_meshes_ : meshes_)[index];
+    if (!made) {
+      const Mesh& mesh = scene_.meshes[index];
+      const auto positions = std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count);
+      const auto indices = std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count);
+      made = std::make_unique<OccluderMesh>(occluder.cut ? OccluderMesh(positions, indices)
+                                                         : simple_occluder(positions, indices));
+    }
+    return *made;
   }
 
   void draw_occluders(const View& view, std::span<const ObjectId> candidates) {
     if (whole_) return buffer_.draw_mesh(*whole_, {});
     const Projector projector = make_projector(view, extent(scene_));
-    picked_.clear();
+    const Plane front = make_frustum(view, extent(scene_)).planes[Frustum::front];
+    picked_.clear(), near_first_.clear(), drawn_balls_.clear();
     for (const ObjectId o : candidates) {
       if (scene_.surface[o] != Surface::opaque) continue;
       const Sphere sphere = scene_.sphere(o);
       const float area = projected_area(projector, sphere);
       const Vec3 to{sphere.centre.x - projector.eye.x, sphere.centre.y - projector.eye.y,
                     sphere.centre.z - projector.eye.z};
-      if (area >= least_area_) picked_.push_back({area, to.x * to.x + to.y * to.y + to.z * to.z, o});
+      const float distance = to.x * to.x + to.y * to.y + to.z * to.z;
+      const bool cut = signed_distance(front, sphere.centre.x, sphere.centre.y, sphere.centre.z) <=
+                       sphere.radius * (1 + 1e-4f);
+      if (!cut && balls_[scene_.mesh[o]]) {
+        if (area >= least_ball_)
+          near_first_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | o);
+      } else if (area >= least_area_) {
+        picked_.push_back({area, distance, o, cut});
+      }
     }
+    draw_picked_balls();
+    draw_picked_meshes();
+  }
+
+  void draw_picked_balls() {
+    std::sort(near_first_.begin(), near_first_.end());
+    for (const std::uint64_t key : near_first_) {
+      const auto o = static_cast<ObjectId>(key);
+      const Sphere& ball = *balls_[scene_.mesh[o]];
+      const Affine& to_world = scene_.transform[o];
+      drawn_balls_.push_back({transform_point(to_world, ball.centre), ball.radius * least_scale(to_world)});
+    }
+    buffer_.draw_balls(drawn_balls_);
+  }
+
+  void draw_picked_meshes() {
     if (picked_.size() > most_occluders_) {
       std::nth_element(picked_.begin(), picked_.begin() + most_occluders_, picked_.end(),
                        [](const Occluder& a, const Occluder& b) {
@@ -147,13 +214,34 @@ private:
       return a.distance != b.distance ? a.distance < b.distance : a.object < b.object;
     });
     for (const Occluder& occluder : picked_) {
-      buffer_.draw_mesh(mesh_of(occluder.object), scene_.transform[occluder.object]);
+      buffer_.draw_mesh(mesh_of(occluder), scene_.transform[occluder.object]);
     }
+  }
+
+  // Of what its box leaves, an object's sphere may drop some more. Keeps the rest in front, in order.
+  void drop_hidden_spheres(std::span<ObjectId> visible, CullResult& result) {
+    constexpr std::size_t kSome = 256;
+    std::array<float, kSome> x, y, z, radius;
+    std::size_t kept = 0;
+    for (std::size_t first = 0; first < visible.size(); first += kSome) {
+      const std::size_t count = std::min(kSome, visible.size() - first);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Sphere sphere = scene_.sphere(visible[first + i]);
+        x[i] = sphere.centre.x, y[i] = sphere.centre.y, z[i] = sphere.centre.z, radius[i] = sphere.radius;
+      }
+      buffer_.may_see(SphereSpan{x.data(), y.data(), z.data(), radius.data(), count}, kept_);
+      for (std::size_t i = 0; i < count; ++i) {
+        visible[kept] = visible[first + i];
+        kept += kept_[i];
+      }
+    }
+    result.culled_occlusion += visible.size() - kept;
+    result.count = kept;
   }
 
   const Scene& scene_;
   std::uint32_t most_occluders_;
-  float least_area_;
+  float least_area_, least_ball_;
   culling::DrawList draw_list_;
   World world_;
   Culler culler_;
@@ -161,8 +249,12 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::uint8_t> moved_;
   std::unique_ptr<OccluderMesh> whole_;
-  std::vector<std::unique_ptr<OccluderMesh>> meshes_;
+  std::vector<std::unique_ptr<OccluderMesh>> meshes_, cut_meshes_;
+  std::vector<std::optional<Sphere>> balls_;  // one a mesh, in its own space
   std::vector<Occluder> picked_;
+  std::vector<std::uint64_t> near_first_;  // squared distance and object
+  std::vector<Sphere> drawn_balls_;
+  std::vector<std::uint8_t> kept_;
   bool usable_ = false;
 };
 

@@ -1,0 +1,169 @@
+// What the passes over a world's blocks share, for every SIMD width: bounds and boxes against planes.
+// Included by files that foreach_target compiles again and again.
+#if defined(SIGHTLINE_CULLING_WORLD_CULL_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_CULLING_WORLD_CULL_INL
+#undef SIGHTLINE_CULLING_WORLD_CULL_INL
+#else
+#define SIGHTLINE_CULLING_WORLD_CULL_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstring>
+
+#include <sightline/culling.hpp>
+
+#include "culling/world_cull.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::culling::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using partition::ChunkMap;
+using F = hn::CappedTag<float, 16>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+
+constexpr std::size_t kBlock = ChunkMap::kBlockCapacity;
+
+// signed_distance() of a vector of points: mul and add apart, in its order, so that it rounds alike.
+HWY_INLINE VF distance(const Plane& plane, VF x, VF y, VF z) {
+  const F f;
+  const VF xy = hn::Add(hn::Mul(hn::Set(f, plane.normal.x), x), hn::Mul(hn::Set(f, plane.normal.y), y));
+  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(f, plane.normal.z), z)), hn::Set(f, plane.distance));
+}
+
+// A bit a lane, from the lowest.
+HWY_INLINE std::uint32_t bits_of(hn::Mask<F> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(F(), mask, bytes);
+  std::uint32_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((1u << hn::Lanes(F())) - 1);
+}
+
+// What one view sees of a block's chunks, a bit a chunk.
+struct ChunkBits {
+  std::uint32_t kept = 0;                              // not outside
+  std::uint32_t crossing = 0;                          // some plane
+  std::array<std::uint32_t, Frustum::sides> planes{};  // crossing this one
+};
+
+// The bounds of a block's chunks or a node's blocks, from the lane at which a bit 0 stands.
+using Sides = std::array<const float*, 6>;
+
+HWY_INLINE Sides sides_of(const ChunkMap::Block& block) {
+  const auto& b = block.bounds;
+  return {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data()};
+}
+
+// At most 32 boxes, readable up to the next multiple of 16.
+HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, const SectorView& view,
+                                    PlaneSet planes) {
+  const F f;
+  const std::size_t lanes = hn::Lanes(f);
+  const std::uint32_t all = count == 32 ? ~0u : (1u << count) - 1;
+  std::uint32_t outside = 0;
+  ChunkBits out;
+  for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
+    const int p = std::countr_zero(rest);
+    const Plane& plane = view.frustum.planes[p];
+    const auto &near = view.near_side[p], &far = view.far_side[p];
+    for (std::size_t i = 0; i < count; i += lanes) {
+      const VF high = distance(plane, hn::Load(f, sides[near[0]] + i), hn::Load(f, sides[near[1]] + i),
+                               hn::Load(f, sides[near[2]] + i));
+      const VF low = distance(plane, hn::Load(f, sides[far[0]] + i), hn::Load(f, sides[far[1]] + i),
+                              hn::Load(f, sides[far[2]] + i));
+      outside |= bits_of(hn::Lt(high, hn::Zero(f))) << i;
+      out.planes[p] |= bits_of(hn::Lt(low, hn::Zero(f))) << i;
+    }
+    if ((all & ~outside) == 0) return {};
+  }
+  out.kept = all & ~outside;
+  for (std::uint32_t& crossing : out.planes) out.crossing |= crossing &= out.kept;
+  return out;
+}
+
+HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorView& view, PlaneSet planes) {
+  return classify_boxes(sides_of(block), block.count, view, planes);
+}
+
+// The planes among `from` that a chunk crosses.
+HWY_INLINE PlaneSet planes_of(const ChunkBits& bits, std::uint32_t chunk) {
+  PlaneSet planes = 0;
+  for (std::uint32_t p = 0; p < Frustum::sides; ++p)
+    planes |= static_cast<PlaneSet>((bits.planes[p] >> chunk & 1) << p);
+  return planes;
+}
+
+// Writes up to 15 values more than count, which kCullPadding and the chunks' own padding leave room for.
+HWY_INLINE void copy_ids(const ObjectId* HWY_RESTRICT from, std::size_t count, ObjectId* HWY_RESTRICT to) {
+  const U u;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(u)) hn::StoreU(hn::Load(u, from + i), u, to + i);
+}
+
+struct Corner {
+  const float *x, *y, *z;
+  const Plane* plane;
+};
+
+HWY_INLINE std::size_t corners_of(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
+                                  Corner* out) {
+  const float* sides[6] = {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z};
+  std::size_t count = 0;
+  for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
+    const int p = std::countr_zero(rest);
+    const auto& near = view.near_side[p];
+    out[count++] = {sides[near[0]], sides[near[1]], sides[near[2]], &view.frustum.planes[p]};
+  }
+  return count;
+}
+
+HWY_INLINE hn::Mask<F> inside(const Corner* corners, std::size_t count, std::size_t i) {
+  const F f;
+  VF worst = hn::Zero(f);
+  for (std::size_t c = 0; c < count; ++c) {
+    worst = hn::Min(worst, distance(*corners[c].plane, hn::Load(f, corners[c].x + i),
+                                    hn::Load(f, corners[c].y + i), hn::Load(f, corners[c].z + i)));
+  }
+  return hn::Ge(worst, hn::Zero(f));
+}
+
+HWY_INLINE void prefetch(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes) {
+  for (std::uint32_t i = 0; i < chunk.count; i += 16) hwy::Prefetch(chunk.objects + i);
+  if (planes == 0) return;
+  Corner corners[Frustum::sides];
+  const std::size_t count = corners_of(chunk, view, planes, corners);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::uint32_t i = 0; i < chunk.count; i += 16) {
+      hwy::Prefetch(corners[c].x + i), hwy::Prefetch(corners[c].y + i), hwy::Prefetch(corners[c].z + i);
+    }
+  }
+}
+
+// One view, frustum only: ids straight into `out`.
+HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
+                                  ObjectId* HWY_RESTRICT out) {
+  const F f;
+  const U u;
+  const std::size_t lanes = hn::Lanes(f);
+  Corner corners[Frustum::sides];
+  const std::size_t count = corners_of(chunk, view, planes, corners);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chunk.count; i += lanes) {
+    auto mask = inside(corners, count, i);
+    if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
+    const auto keep = hn::RebindMask(u, mask);
+    // Packed in a register and stored whole: the packing store is microcoded on some processors.
+    hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + i), keep), u, out + kept);
+    kept += hn::CountTrue(u, keep);
+  }
+  return kept;
+}
+
+}  // namespace sightline::culling::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
