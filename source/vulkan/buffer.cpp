@@ -11,8 +11,9 @@ Buffer::Buffer(Device& device, vk::DeviceSize bytes, Memory memory, std::string_
     : device_(&device), size_(std::max<vk::DeviceSize>(bytes, 16)) {
   using Usage = vk::BufferUsageFlagBits;
   using Property = vk::MemoryPropertyFlagBits;
-  const auto usage = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc | Usage::eTransferDst | Usage::eIndexBuffer |
-                     Usage::eVertexBuffer | Usage::eIndirectBuffer | Usage::eShaderDeviceAddress;
+  const auto usage = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc |
+                     Usage::eTransferDst | Usage::eIndexBuffer | Usage::eVertexBuffer |
+                     Usage::eIndirectBuffer | Usage::eShaderDeviceAddress;
   buffer_.emplace(device.handle(), vk::BufferCreateInfo{{}, size_, usage});
   const vk::MemoryPropertyFlags host = Property::eHostVisible | Property::eHostCoherent;
   const vk::MemoryRequirements requirements = buffer_->getMemoryRequirements();

@@ -175,7 +175,8 @@ Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_
   queue_.emplace(*device_, family_index, 0);
   command_pool_.emplace(
       *device_, vk::CommandPoolCreateInfo{vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family_index});
-  const vk::DescriptorSetLayoutBinding view{0, vk::DescriptorType::eUniformBuffer, 1, vk::ShaderStageFlagBits::eAll};
+  const vk::DescriptorSetLayoutBinding view{0, vk::DescriptorType::eUniformBuffer, 1,
+                                            vk::ShaderStageFlagBits::eAll};
   set_layout_.emplace(*device_, vk::DescriptorSetLayoutCreateInfo{{}, view});
   const vk::PushConstantRange push{vk::ShaderStageFlagBits::eAll, 0, 128};
   layout_.emplace(*device_, vk::PipelineLayoutCreateInfo{{}, **set_layout_, push});

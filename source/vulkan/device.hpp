@@ -47,7 +47,8 @@ public:
   [[nodiscard]] const vk::PhysicalDeviceLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] const Features& features() const noexcept { return *features_; }
   [[nodiscard]] bool has_timestamps() const noexcept { return timestamps_; }
-  /// All pipelines share one layout: 128 bytes of push constants, and a set with one uniform buffer, the view.
+  /// All pipelines share one layout: 128 bytes of push constants, and a set with one uniform buffer, the
+  /// view.
   [[nodiscard]] const vk::raii::PipelineLayout& layout() const noexcept { return *layout_; }
 
   [[nodiscard]] const vk::raii::DescriptorSetLayout& set_layout() const noexcept { return *set_layout_; }

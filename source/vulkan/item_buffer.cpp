@@ -46,8 +46,7 @@ ItemBuffer ItemBufferPass::render(const View& view) {
     const auto draw = [&](const GraphicsPipeline& pipeline, std::uint32_t first, std::uint32_t count) {
       if (count == 0) return;
       frame.bind(pipeline);
-      frame.push(
-          Push{scene.object_data.address(), all_.list.address(), seen_.address()});
+      frame.push(Push{scene.object_data.address(), all_.list.address(), seen_.address()});
       frame.commands.bindVertexBuffers(0, scene.vertices.handle(), vk::DeviceSize{0});
       frame.commands.bindIndexBuffer(scene.indices.handle(), 0, vk::IndexType::eUint32);
       frame.commands.drawIndexedIndirect(all_.commands.handle(), first * sizeof(DrawCommand), count,
