@@ -30,7 +30,7 @@ struct TriangleGeometry {
   /// One a triangle: its number when the scene's objects are counted through in order, each triangle by
   /// triangle.
   std::span<const std::uint32_t> sources;
-  Submission submission = Submission::calls;
+  Submission submission = Submission::calls;  ///< of the last frame: a method may change its way
   bool front_faces_only =
       false;                ///< the picture is right where back faces (clockwise in world space) are culled
   std::uint64_t bytes = 0;  ///< memory that the method holds, these arrays included
