@@ -1,6 +1,10 @@
 // sightline reproduce: a paper's tables, ours beside the published.
 #include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
+#include <limits>
 #include <memory>
 
 #include "command.hpp"
@@ -93,7 +97,17 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 
+// A software rasteriser allocates and frees megabytes a frame. Given back to the system each time, they would
+// be faulted in again: a fifth of a frame, and noise.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+#endif
+}
+
 int run_draw_calls(const Options& options) {
+  keep_freed_memory();
   const auto opened = open_device(options.device.empty() ? "any" : options.device);
   vulkan::Device& device = *opened;
   const lab::DrawCallOptions how{.quick = options.quick};
@@ -101,16 +115,15 @@ int run_draw_calls(const Options& options) {
   const lab::CallGrid grid = lab::measure_call_grid(device, how, progress("table 1"));
   fmt::print("Table 1: random triangles in draw calls, {}x{}\n\n{}\n", how.width, how.height,
              render(lab::table_of(grid)));
-  fmt::print("On this device a draw call costs {:.2f} µs, a triangle {:.0f} ns.\n", grid.call_us,
-             grid.triangle_ns);
+  fmt::print("{}", lab::findings(grid));
   std::vector<lab::LevelWalk> walks;
-  for (const lab::LevelChoice& level : lab::draw_call_levels()) {
+  for (const lab::LevelChoice& level : lab::kDrawCallLevels) {
     walks.push_back(lab::walk_level(device, level, how, progress(level.kind)));
     const lab::LevelWalk& walk = walks.back();
-    fmt::print("\n{}: {}, {} triangles, {} views of {}x{}\n\n{}\n{}\n{}\n{}", walk.level, walk.kind,
+    fmt::print("\n{}: {}, {} triangles, {} views of {}x{}\n\n{}\n{}\n{}\n{}\n{}", walk.level, walk.kind,
                lab::format_count(static_cast<double>(walk.triangles)), walk.views, how.width, how.height,
-               render(lab::heights_table(walk)), render(lab::methods_table(walk)),
-               render(lab::submission_table(walk)), lab::findings(walk));
+               render(lab::heights_table(walk)), render(lab::calls_table(walk)),
+               render(lab::methods_table(walk)), render(lab::submission_table(walk)), lab::findings(walk));
     std::fflush(stdout);
   }
   if (!options.report.empty()) lab::write_draw_call_report(options.report, device.info().name, grid, walks);

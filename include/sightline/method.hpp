@@ -35,9 +35,13 @@ public:
   [[nodiscard]] virtual Guarantee guarantee() const noexcept = 0;
   /// Told after Scene::move_object of each of `objects`, before the next cull.
   virtual void update(std::span<const ObjectId> objects) = 0;
-  /// Fills `frame` with what to draw. The view has passed check(). Same view and scene, same answer, in the
-  /// same order. Allocates nothing once frame and method have grown to their sizes.
+  /// Fills `frame` with what to draw. The view has passed check(). Same view and scene, and the same times
+  /// told by took(), same answer, in the same order. Allocates nothing once frame and method have grown to
+  /// their sizes.
   virtual void cull(const View& view, Frame& frame) noexcept = 0;
+  /// Told, where the caller knows, what the last culled frame took from the beginning of culling to the
+  /// finished picture: methods that choose among ways of drawing do so by it. Allocates nothing.
+  virtual void took([[maybe_unused]] double milliseconds) noexcept {}
   /// The triangles that the frame's draws are ranges of, for a method that draws triangles instead of
   /// objects; null where draws are ranges of the scene's own meshes. Valid until update() or the method's
   /// end.

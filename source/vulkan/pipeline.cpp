@@ -3,10 +3,49 @@
 #include <array>
 
 #include "vulkan/image.hpp"
+#include "vulkan/shared.h"
 
 namespace sightline::vulkan {
 
 namespace {
+
+class VertexInput {
+public:
+  explicit VertexInput(Input input) {
+    using enum vk::Format;
+    switch (input) {
+      case Input::none:
+        break;
+      case Input::mesh:
+        set(24, {{0, 0, eR32G32B32Sfloat, 0}, {1, 0, eR32G32B32Sfloat, 12}});
+        break;
+      case Input::point:
+        set(32, {{0, 0, eR32G32B32Sfloat, 0}, {1, 0, eR32G32B32Sfloat, 16}, {2, 0, eR32Uint, 12}});
+        break;
+      case Input::corner:
+        set(sizeof(shared::CornerData),
+            {{0, 0, eR32G32B32Sfloat, 0}, {1, 0, eR32Uint, 12}, {2, 0, eR32Uint, 16}});
+        break;
+    }
+  }
+  /// Points into this.
+  [[nodiscard]] vk::PipelineVertexInputStateCreateInfo info() const {
+    vk::PipelineVertexInputStateCreateInfo input;
+    if (attributes_.empty()) return input;
+    input.setVertexBindingDescriptions(binding_);
+    input.setVertexAttributeDescriptions(attributes_);
+    return input;
+  }
+
+private:
+  void set(std::uint32_t stride, std::vector<vk::VertexInputAttributeDescription> attributes) {
+    binding_.stride = stride;
+    attributes_ = std::move(attributes);
+  }
+
+  vk::VertexInputBindingDescription binding_;
+  std::vector<vk::VertexInputAttributeDescription> attributes_;
+};
 
 vk::raii::ShaderModule module(const Device& device, Spirv code) {
   return {device.handle(), vk::ShaderModuleCreateInfo{{}, code.size_bytes(), code.data()}};
@@ -46,18 +85,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
     modules.push_back(module(device, code));
     stages.push_back({{}, stage, *modules.back(), "main", &specialisation});
   }
-  const bool mesh = state.input == Input::mesh;
-  const vk::VertexInputBindingDescription binding{0, mesh ? 24u : 32u};
-  const std::array attributes{
-      vk::VertexInputAttributeDescription{0, 0, vk::Format::eR32G32B32Sfloat, 0},
-      vk::VertexInputAttributeDescription{1, 0, vk::Format::eR32G32B32Sfloat, mesh ? 12u : 16u},
-      vk::VertexInputAttributeDescription{2, 0, vk::Format::eR32Uint, 12}};
-  vk::PipelineVertexInputStateCreateInfo input;
-  if (state.input != Input::none) {
-    input.setVertexBindingDescriptions(binding);
-    input.vertexAttributeDescriptionCount = mesh ? 2 : 3;
-    input.pVertexAttributeDescriptions = attributes.data();
-  }
+  const VertexInput vertices(state.input);
+  const vk::PipelineVertexInputStateCreateInfo input = vertices.info();
   const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, state.topology};
   const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
   vk::PipelineRasterizationStateCreateInfo raster;

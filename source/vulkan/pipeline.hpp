@@ -23,8 +23,9 @@ private:
 /// What vertices a graphics pipeline reads from its vertex buffer.
 enum class Input : std::uint8_t {
   none,
-  mesh,   ///< position and normal, 24 bytes
-  point,  ///< centre, object id and half extent, 32 bytes (partition::ChunkVertex)
+  mesh,    ///< position and normal, 24 bytes
+  point,   ///< centre, object id and half extent, 32 bytes (partition::ChunkVertex)
+  corner,  ///< position, object id and colour, 20 bytes (shared::CornerData)
 };
 
 struct GraphicsState {

@@ -9,19 +9,6 @@ namespace sightline::vulkan {
 
 namespace {
 
-// Distinct calm colours: the golden ratio walks the hue, two bits of the id the lightness.
-std::uint32_t colour_of(ObjectId object, Surface surface) {
-  const float hue = 6 * std::fmod(0.618034f * static_cast<float>(object % 65536), 1.0f);
-  const float value = 0.62f + 0.08f * static_cast<float>(object * 2654435761u >> 30);
-  const auto channel = [&](float shift) {
-    const float k = std::fmod(shift + hue, 6.0f);
-    const float strength = 1 - 0.45f * std::clamp(std::min(k, 4 - k), 0.0f, 1.0f);
-    return static_cast<std::uint32_t>(255 * value * strength);
-  };
-  const std::uint32_t alpha = surface == Surface::transparent ? 140 : 255;
-  return channel(5) | channel(3) << 8 | channel(1) << 16 | alpha << 24;
-}
-
 shared::ObjectData object_data_of(const Scene& scene, ObjectId object, std::uint32_t slot) {
   const Affine& transform = scene.transform[object];
   const Surface surface = scene.surface[object];
@@ -33,6 +20,19 @@ shared::ObjectData object_data_of(const Scene& scene, ObjectId object, std::uint
 }
 
 }  // namespace
+
+// Distinct calm colours: the golden ratio walks the hue, two bits of the id the lightness.
+std::uint32_t colour_of(ObjectId object, Surface surface) noexcept {
+  const float hue = 6 * std::fmod(0.618034f * static_cast<float>(object % 65536), 1.0f);
+  const float value = 0.62f + 0.08f * static_cast<float>(object * 2654435761u >> 30);
+  const auto channel = [&](float shift) {
+    const float k = std::fmod(shift + hue, 6.0f);
+    const float strength = 1 - 0.45f * std::clamp(std::min(k, 4 - k), 0.0f, 1.0f);
+    return static_cast<std::uint32_t>(255 * value * strength);
+  };
+  const std::uint32_t alpha = surface == Surface::transparent ? 140 : 255;
+  return channel(5) | channel(3) << 8 | channel(1) << 16 | alpha << 24;
+}
 
 shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept {
   const Box box = scene.bounds[object];

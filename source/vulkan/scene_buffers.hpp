@@ -29,6 +29,9 @@ private:
   Buffer staging_;
 };
 
+/// What an object is painted with: RGBA, 8 bits each, red lowest.
+std::uint32_t colour_of(ObjectId object, Surface surface) noexcept;
+
 /// The box with half extents rounded up, so that it holds the object after rounding.
 shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept;
 

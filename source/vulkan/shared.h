@@ -9,6 +9,7 @@
 namespace sightline::vulkan::shared {
 using mat4 = Mat4;
 using vec4 = Vec4;
+using vec3 = Vec3;
 using uint = std::uint32_t;
 #else
 #extension GL_EXT_buffer_reference : require
@@ -48,6 +49,12 @@ struct MeshData {
   uint first_slot;  // of the opaque objects of this mesh; those of mesh m + 1 follow
 };
 
+/// A corner of a world-space triangle that knows its object.
+struct CornerData {
+  vec3 position;
+  uint object, colour;
+};
+
 struct CommandData {
   uint index_count, instance_count, first_index;
   int vertex_offset;
@@ -57,7 +64,7 @@ struct CommandData {
 #ifdef __cplusplus
 static_assert(sizeof(ViewData) == 64 + 96 + 32 + 24);
 static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshData) == 16 &&
-              sizeof(CommandData) == 20);
+              sizeof(CommandData) == 20 && sizeof(CornerData) == 20);
 }  // namespace sightline::vulkan::shared
 #else
 layout(buffer_reference, scalar) readonly buffer ObjectBuffer {

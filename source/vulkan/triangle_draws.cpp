@@ -19,42 +19,50 @@ constexpr std::uint32_t kIdFrag[] =
 
 constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
-struct Push {
-  vk::DeviceAddress objects, positions, owners;
-};
-
-const Device& with_triangle_numbers(const Device& device) {
-  device.require("geometryShader", "drawing ranges of triangles");
-  return device;
+std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const Scene& scene) {
+  std::vector<shared::CornerData> out;
+  out.reserve(geometry.positions.size());
+  for (const Vec3& position : geometry.positions) out.push_back({position, 0, 0});
+  for (std::size_t i = 0; i < geometry.indices.size(); ++i)
+    out[geometry.indices[i]].object = geometry.objects[i / 3];
+  for (shared::CornerData& corner : out)
+    corner.colour = colour_of(corner.object, scene.surface[corner.object]);
+  return out;
 }
 
 }  // namespace
 
 TriangleDraws::Pipelines::Pipelines(const Device& device, bool cull_back)
-    : lit(device,
-          {.vertex = kTriangleVert, .fragment = kShadeFrag, .colour = kColourFormat, .cull_back = cull_back}),
+    : lit(device, {.vertex = kTriangleVert,
+                   .fragment = kShadeFrag,
+                   .input = Input::corner,
+                   .colour = kColourFormat,
+                   .cull_back = cull_back}),
       blended(device, {.vertex = kTriangleVert,
                        .fragment = kShadeFrag,
+                       .input = Input::corner,
                        .colour = kColourFormat,
                        .blend = true,
                        .depth_write = false,
                        .cull_back = cull_back}),
-      ids(device,
-          {.vertex = kTriangleVert, .fragment = kIdFrag, .colour = kIdFormat, .cull_back = cull_back}) {}
+      ids(device, {.vertex = kTriangleVert,
+                   .fragment = kIdFrag,
+                   .input = Input::corner,
+                   .colour = kIdFormat,
+                   .cull_back = cull_back}) {}
 
 TriangleDraws::TriangleDraws(Renderer& renderer, const TriangleGeometry& geometry)
     : renderer_(renderer),
       objects_(geometry.objects),
-      positions_(upload_bytes(renderer.device(), std::as_bytes(geometry.positions), "triangle corners")),
+      corners_(upload(renderer.device(), corners(geometry, renderer.scene()), "triangle corners")),
       indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")),
-      owners_(upload_bytes(renderer.device(), std::as_bytes(geometry.objects), "triangle owners")),
-      pipelines_(with_triangle_numbers(renderer.device()), geometry.front_faces_only) {
+      pipelines_(renderer.device(), geometry.front_faces_only) {
   const Scene& scene = renderer.scene();
   for (const Surface surface : scene.surface) is_transparent_.push_back(surface == Surface::transparent);
 }
 
 std::uint64_t TriangleDraws::bytes() const noexcept {
-  return positions_.size() + indices_.size() + owners_.size();
+  return corners_.size() + indices_.size();
 }
 
 std::size_t TriangleDraws::opaque_count(std::span<const DrawCommand> draws) const noexcept {
@@ -76,7 +84,7 @@ void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeli
   frame.bind(pipeline);
   // Strictly nearer: a triangle that crosses cells is drawn once for each, and shaded once all the same.
   frame.commands.setDepthCompareOp(frame.reversed() ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
-  frame.push(Push{renderer_.buffers().object_data.address(), positions_.address(), owners_.address()});
+  frame.commands.bindVertexBuffers(0, corners_.handle(), vk::DeviceSize{0});
   frame.commands.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint32);
   if (submission != Submission::multi_draw) {
     for (const DrawCommand& draw : draws)

@@ -10,7 +10,7 @@ namespace sightline::vulkan {
 class TriangleDraws {
 public:
   /// Copies the geometry to the renderer's device; the renderer outlives this. Throws Error where memory runs
-  /// out, or the device has no triangle numbers in fragment shaders (feature geometryShader).
+  /// out.
   TriangleDraws(Renderer& renderer, const TriangleGeometry& geometry);
 
   /// Records a cleared picture, opaque ranges, then blended ones in their order. `draws` are ranges of the
@@ -39,7 +39,7 @@ private:
   Renderer& renderer_;
   std::vector<std::uint8_t> is_transparent_;  ///< one an object
   std::span<const ObjectId> objects_;
-  Buffer positions_, indices_, owners_, commands_;
+  Buffer corners_, indices_, commands_;
   Pipelines pipelines_;
   std::optional<Image> ids_;
 };

@@ -9,6 +9,8 @@
 
 #include <sightline/io.hpp>
 
+#include "lab/reproduce/draw_call_levels.hpp"
+
 namespace sightline {
 namespace {
 
@@ -35,9 +37,11 @@ protected:
 TEST_F(OpenArena, AllLevelsLoadWithPlacesInFreeSpace) {
   const std::vector<std::string> names = level_names();
   ASSERT_EQ(names.size(), 50u);
+  std::vector<std::pair<std::uint64_t, std::string>> by_triangles;
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
     const Scene scene = load_scene("pak1-maps.pk3:" + name);
+    by_triangles.emplace_back(triangle_count(scene), "pak1-maps.pk3:" + name);
     ASSERT_TRUE(scene.level);
     EXPECT_FALSE(check(scene));
     EXPECT_GE(scene.viewpoints.size(), 4u);
@@ -48,6 +52,15 @@ TEST_F(OpenArena, AllLevelsLoadWithPlacesInFreeSpace) {
       EXPECT_GE(leaf.cluster, 0);
       EXPECT_TRUE(scene.level->may_see(leaf.cluster, leaf.cluster)) << view.name;
     }
+  }
+
+  // The levels of `reproduce draw-calls` are what their rule makes of all fifty.
+  std::erase_if(by_triangles, [](const auto& level) { return level.first < lab::kLeastLevelTriangles; });
+  std::ranges::sort(by_triangles);
+  for (std::size_t choice = 0; choice < 3; ++choice) {
+    const std::array deciles{1, 5, 9};
+    EXPECT_EQ(by_triangles[(by_triangles.size() - 1) * deciles[choice] / 10].second,
+              lab::kDrawCallLevels[choice].specification);
   }
 }
 

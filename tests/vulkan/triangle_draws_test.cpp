@@ -75,6 +75,26 @@ TEST_F(TriangleDrawsTest, BackFacesAreThoseOfTheRayJudge) {
   EXPECT_LT(differ, all / 200);  // silhouettes round differently
 }
 
+// Fragments know their object without triangle numbers, which would want geometry shaders.
+TEST(TriangleDraws, NeedNoGeometryShaders) {
+  vulkan::DeviceOptions options;
+  options.withheld = {"geometryShader"};
+  options.validation = true;
+  vulkan::Device device(options);
+  const Scene scene = *generate_world("soup?triangles=500&size=60");
+  {
+    vulkan::Renderer renderer(device, scene);
+    const auto method = *create_method("cluster-cone", scene);
+    vulkan::TriangleDraws draws(renderer, *method->geometry());
+    const View view = view_of({.eye = {0, 0, 90}, .forward = {0, 0, -1}}, 160, 100);
+    Frame frame;
+    method->cull(view, frame);
+    const auto ids = draws.item_buffer(view, frame.draws, Submission::calls);
+    EXPECT_GT(std::ranges::count_if(ids, [](ObjectId id) { return id != kNoObject; }), 100);
+  }
+  EXPECT_EQ(device.messages(), 0u) << device.first_message();
+}
+
 TEST_F(TriangleDrawsTest, DrawsAPictureWithBlendedTrianglesLast) {
   const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
   vulkan::Renderer renderer(device(), scene);

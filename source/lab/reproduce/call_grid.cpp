@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include <sightline/error.hpp>
 #include <sightline/worlds.hpp>
@@ -26,37 +27,64 @@ std::vector<DrawCommand> ranges(std::uint32_t triangles, std::uint32_t calls) {
   return draws;
 }
 
+/// Random triangles on the device, all in view.
+class Soup {
+public:
+  Soup(vulkan::Device& device, std::uint32_t triangles, const DrawCallOptions& options)
+      : triangles_(triangles),
+        scene_(or_throw(generate_world(fmt::format("soup?triangles={}&edge=0.3", triangles)))),
+        flat_(methods::flatten(scene_)),
+        renderer_(device, scene_),
+        draws_(renderer_, geometry()),
+        view_(or_throw(
+            make_view({.eye = scene_.viewpoints.back().eye, .forward = scene_.viewpoints.back().forward},
+                      options.width, options.height))) {}
+
+  /// Milliseconds of a frame.
+  double draw(std::uint32_t calls) {
+    const std::vector<DrawCommand> commands = ranges(triangles_, calls);
+    return renderer_
+        .frame(view_, [&](vulkan::Recorder& recorder) { draws_.draw(recorder, commands, Submission::calls); })
+        .frame_ms;
+  }
+
+private:
+  [[nodiscard]] TriangleGeometry geometry() const {
+    TriangleGeometry geometry;
+    geometry.positions = flat_.positions, geometry.indices = flat_.indices, geometry.objects = flat_.objects;
+    return geometry;
+  }
+
+  std::uint32_t triangles_;
+  Scene scene_;
+  methods::FlatTriangles flat_;
+  vulkan::Renderer renderer_;
+  vulkan::TriangleDraws draws_;
+  View view_;
+};
+
 }  // namespace
 
 CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& options, const Progress& progress) {
   CallGrid grid;
   grid.triangles = {100000, 200000, 300000, 400000, 500000};
   grid.calls = {1, 10, 100, 1000, 10000, 100000};
-  const std::size_t repeats = options.quick ? 3 : 9;
-  for (std::size_t n = 0; n < grid.triangles.size(); ++n) {
-    const Scene scene =
-        or_throw(generate_world(fmt::format("soup?triangles={}&edge=0.3", grid.triangles[n])));
-    const methods::FlatTriangles flat = methods::flatten(scene);
-    TriangleGeometry geometry;
-    geometry.positions = flat.positions, geometry.indices = flat.indices, geometry.objects = flat.objects;
-    vulkan::Renderer renderer(device, scene);
-    vulkan::TriangleDraws draws(renderer, geometry);
-    const Viewpoint& far = scene.viewpoints.back();
-    const View view =
-        or_throw(make_view({.eye = far.eye, .forward = far.forward}, options.width, options.height));
-    std::vector<std::vector<double>> times(grid.calls.size());
-    for (std::size_t repeat = 0; repeat <= repeats; ++repeat) {
-      for (std::size_t c = 0; c < grid.calls.size(); ++c) {
-        const std::vector<DrawCommand> commands = ranges(grid.triangles[n], grid.calls[c]);
-        const vulkan::FrameTimes frame = renderer.frame(
-            view, [&](vulkan::Recorder& recorder) { draws.draw(recorder, commands, Submission::calls); });
-        if (repeat > 0) times[c].push_back(frame.frame_ms);  // the first compiles
-      }
+  std::vector<std::unique_ptr<Soup>> soups;
+  for (const std::uint32_t triangles : grid.triangles)
+    soups.push_back(std::make_unique<Soup>(device, triangles, options));
+  const std::size_t columns = grid.calls.size(), rows = grid.triangles.size(), cells = rows * columns;
+  std::vector<std::vector<double>> times(cells);
+  const std::size_t rounds = options.quick ? 7 : 15;
+  for (std::size_t round = 0; round <= rounds; ++round) {
+    for (std::size_t k = 0; k < cells; ++k) {
+      // To and fro, and from another cell each time.
+      const std::size_t turn = (round % 2 == 0 ? k : cells - 1 - k), cell = (turn + 7 * round) % cells;
+      const double ms = soups[cell / columns]->draw(grid.calls[cell % columns]);
+      if (round > 0) times[cell].push_back(ms);  // the first compiles
     }
-    for (auto& samples : times) grid.ms.push_back(timing_of(samples).median);
-    if (progress) progress(n + 1, grid.triangles.size());
+    if (progress) progress(round + 1, rounds + 1);
   }
-  const std::size_t columns = grid.calls.size(), rows = grid.triangles.size();
+  for (auto& samples : times) grid.ms.push_back(timing_of(samples).median);
   for (std::size_t n = 0; n < rows; ++n) {
     grid.call_us += 1000 * (grid.ms[n * columns + columns - 1] - grid.ms[n * columns]) /
                     (grid.calls.back() - 1) / static_cast<double>(rows);
@@ -88,6 +116,44 @@ Table table_of(const CallGrid& grid) {
     table.rows.push_back(std::move(published));
   }
   return table;
+}
+
+std::string findings(const CallGrid& grid) {
+  constexpr double kNoise = 1.05;  // frame rates that differ by less are taken for equal
+  const std::size_t columns = grid.calls.size(), rows = grid.triangles.size();
+  std::string rises;
+  std::size_t falls = 0, steps = 0;
+  const auto step = [&](std::size_t from, std::size_t to) {
+    const double ratio = grid.ms[from] / grid.ms[to];  // of the frame rates
+    ++steps;
+    falls += ratio < 1 / kNoise;
+    if (ratio <= kNoise) return;
+    rises += fmt::format(" From {} triangles in {} calls to {} in {} it rises by {:.0f} %.",
+                         grid.triangles[from / columns], grid.calls[from % columns],
+                         grid.triangles[to / columns], grid.calls[to % columns], 100 * (ratio - 1));
+  };
+  const auto report = [&](std::string_view along) {
+    const std::string line =
+        fmt::format("Along the {} the frame rate falls in {} of {} steps, and {}\n", along, falls, steps,
+                    rises.empty() ? "never rises by more than 5 %." : "not everywhere:" + rises);
+    rises.clear(), falls = steps = 0;
+    return line;
+  };
+  for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t n = 1; n < rows; ++n) step((n - 1) * columns + c, n * columns + c);
+  }
+  std::string out = report("triangles");
+  for (std::size_t n = 0; n < rows; ++n) {
+    for (std::size_t c = 1; c < columns; ++c) step(n * columns + c - 1, n * columns + c);
+  }
+  out += report("calls");
+  return out + fmt::format(
+                   "A call costs {:.2f} µs, as much as {:.0f} triangles of {:.0f} ns: a thousand calls add "
+                   "{:.1f} ms "
+                   "to frames of {:.0f} to {:.0f} ms. (On the paper's GPU, from its two cells: {:.2f} µs.)\n",
+                   grid.call_us, 1000 * grid.call_us / grid.triangle_ns, grid.triangle_ns, grid.call_us,
+                   grid.ms.front(), grid.ms[(rows - 1) * columns],
+                   1e6 * (1 / kPublishedMostCalls - 1 / kPublishedOneCall) / (grid.calls.back() - 1));
 }
 
 }  // namespace sightline::lab

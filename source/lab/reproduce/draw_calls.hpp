@@ -2,12 +2,14 @@
 // structure, variant and height, drawn by Vulkan.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "lab/camera_path.hpp"
 #include "lab/measure.hpp"
+#include "lab/reproduce/draw_call_levels.hpp"
 #include "lab/table.hpp"
 #include "vulkan/device.hpp"
 
@@ -18,7 +20,7 @@ struct DrawCallOptions {
   std::uint32_t width = 320, height = 180;
 };
 
-/// Frame times of n triangles in d draw calls.
+/// Frame times of n triangles in d draw calls. All cells take turns, so that none has a quieter machine.
 struct CallGrid {
   std::vector<std::uint32_t> triangles, calls;
   std::vector<double> ms;  ///< triangles × calls, medians
@@ -30,11 +32,20 @@ CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& option
                            const Progress& progress = {});
 /// Ours beside the paper's, both as shares of their first cell. Of the paper's cells METHODS.md gives two.
 Table table_of(const CallGrid& grid);
+/// Whether frame rates fall along both axes, in sentences.
+std::string findings(const CallGrid& grid);
 
 /// What draws cost on a device, fitted to measured frames by least squares.
 struct DrawCosts {
   double call_ns = 0, command_ns = 0, triangle_ns = 0;
 };
+
+inline constexpr std::array<std::string_view, 3> kWalkVariants{"simple", "drawcall-wise", "zhang"};
+inline constexpr std::array<std::string_view, 3> kWalkStructures{"grid", "octree", "kd-tree"};
+
+/// A picture of which a software rasteriser's pixels take next to nothing, as a GPU's do, so that frames show
+/// what calls and triangles cost.
+inline constexpr std::uint32_t kSmallWidth = 64, kSmallHeight = 36;
 
 /// One method along the walk. Means are over the views.
 struct WalkRow {
@@ -47,29 +58,31 @@ struct WalkRow {
   double draw_calls = 0, ranges = 0, triangles = 0;
   std::uint64_t bytes = 0, lost_pixels = 0;
   std::vector<double> frame_ms_by_view;
+  double small_frame_ms = 0;  ///< in the small picture; simple and drawcall-wise alone
+  double final_ms = 0;        ///< of the final among the quickest; 0 for who was not in it
 
+  /// Exact and neither `adaptive` nor `none`.
+  [[nodiscard]] bool may_be_best() const noexcept;
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
 
 struct LevelWalk {
   std::string level, kind;
   std::uint64_t triangles = 0;
-  std::size_t views = 0;
+  std::size_t views = 0, final_views = 0;
   DrawCosts costs;
-  std::string adaptive_plan;
+  std::string adaptive_way;  ///< what adaptive settled on
+  bool adaptive_settled = false;
+  std::size_t learning_frames = 0;  ///< that it took for that
   std::vector<WalkRow> rows;
   CameraPath path;
 
   [[nodiscard]] const WalkRow& row(std::string_view method) const;
-  /// The quickest exact one, `adaptive` and `none` apart.
+  /// The quickest exact one in the final, `adaptive` and `none` apart.
   [[nodiscard]] const WalkRow& best() const;
+  /// At which a family, each range a call of its own, drew its frames quickest.
+  [[nodiscard]] int best_height(std::string_view family) const;
 };
-
-struct LevelChoice {
-  const char *specification, *kind;
-};
-/// Small, middle and large; in doors, out of doors, both.
-std::span<const LevelChoice> draw_call_levels() noexcept;
 
 /// Everything opaque, as in the paper. Methods take turns view by view. Throws Error where the level is
 /// missing.
@@ -77,6 +90,7 @@ LevelWalk walk_level(vulkan::Device& device, const LevelChoice& level, const Dra
                      const Progress& progress = {});
 
 Table heights_table(const LevelWalk& walk);     ///< fps of every structure × variant × height
+Table calls_table(const LevelWalk& walk);       ///< simple against drawcall-wise at every height
 Table methods_table(const LevelWalk& walk);     ///< each method at its best height, and what beats it
 Table submission_table(const LevelWalk& walk);  ///< calls, multi-draw, merged
 /// Sentences on the paper's claims: what held, with figures.

@@ -52,6 +52,13 @@ std::string html(const Table& table) {
   return out + "</tbody></table></div>\n";
 }
 
+std::string with_breaks(const std::string& sentences) {
+  std::string out = escape(sentences);
+  for (std::size_t at = 0; (at = out.find('\n', at)) != std::string::npos; at += 5)
+    out.replace(at, 1, "<br>\n");
+  return out;
+}
+
 // Every structure × variant at the height that was best for it, and what goes beyond them.
 nlohmann::ordered_json chart_data(const LevelWalk& walk, const std::string& id) {
   nlohmann::ordered_json chart{{"id", id}, {"views", nlohmann::ordered_json::array()}, {"series", {}}};
@@ -120,8 +127,7 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
       "<p>Serpa, Serpa &amp; Rodrigues, measured again on {} ({}, {} hardware threads)</p></header>\n",
       escape(device), escape(machine.cpu), machine.cores);
   page += "<h2>Table 1: triangles × draw calls</h2>\n" + html(table_of(grid));
-  page += fmt::format("<p>On this device a draw call costs {:.2f} µs, a triangle {:.0f} ns.</p>\n",
-                      grid.call_us, grid.triangle_ns);
+  page += "<p>" + with_breaks(findings(grid)) + "</p>\n";
   nlohmann::ordered_json data = nlohmann::ordered_json::array();
   constexpr std::array kNames{"grid", "octree", "kd-tree"};
   for (std::size_t w = 0; w < walks.size(); ++w) {
@@ -129,13 +135,11 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
     const std::string id = "walk-" + std::to_string(w + 1);
     page += fmt::format("<h2>{}</h2>\n<p>{}, {} triangles, {} views.</p>\n", escape(walk.level),
                         escape(walk.kind), format_count(static_cast<double>(walk.triangles)), walk.views);
-    std::string said = escape(findings(walk));
-    for (std::size_t at = 0; (at = said.find('\n', at)) != std::string::npos; at += 5)
-      said.replace(at, 1, "<br>\n");
-    page += "<p class=\"verdict\">" + said + "</p>\n";
+    page += "<p class=\"verdict\">" + with_breaks(findings(walk)) + "</p>\n";
     page += "<h3>Frames per second along the walk</h3>\n<figure><div class=\"chart\"><canvas id=\"" + id +
             "\" role=\"img\" aria-label=\"Frames per second along the walk\"></canvas></div></figure>\n";
     page += "<h3>Every structure, variant and height</h3>\n" + html(heights_table(walk)) +
+            "<h3>simple against drawcall-wise</h3>\n" + html(calls_table(walk)) +
             "<h3>Methods, each at its best height</h3>\n" + html(methods_table(walk)) +
             "<h3>Three ways of submission</h3>\n" + html(submission_table(walk));
     page += "<h3>From above, with the cells at height 4</h3>\n<div class=\"fates\">\n";
@@ -152,11 +156,10 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
     data.push_back(chart_data(walk, id));
   }
   page +=
-      "<footer><p>Frame times are means over the views of medians; methods take turns in one process. Lost "
-      "pixels: "
-      "rays through pixel centres meet a triangle that was not submitted, back faces culled where the method "
-      "culls "
-      "them. Ratios within one run are the result; absolute times belong to the machine "
+      "<footer><p>Frame times are means over the views of medians; methods take turns in one process, back "
+      "faces culled for all. Lost pixels: "
+      "rays through pixel centres meet a triangle that was not submitted. Ratios within one run are the "
+      "result; absolute times belong to the machine "
       "above.</p></footer>\n</main>\n";
   page += "<script type=\"application/json\" id=\"data\">";
   for (const char c : data.dump()) page += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -1,6 +1,7 @@
 #include "methods/draw_calls/draw_call_method.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace sightline {
 
@@ -57,23 +58,35 @@ void DrawCallMethod::rebuild() {
     bytes += layer.partition.bytes() + layer.units.bytes();
   }
   if (plan_.strategy == Strategy::simple) {
-    indices_ = std::move(flat.indices), objects_ = std::move(flat.objects);
+    lists_.indices = std::move(flat.indices), lists_.objects = std::move(flat.objects);
   } else {
-    indices_.resize(3 * order.size()), objects_.resize(order.size());
+    lists_.indices.resize(3 * order.size()), lists_.objects.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       std::copy_n(flat.indices.begin() + 3 * std::ptrdiff_t{order[i]}, 3,
-                  indices_.begin() + 3 * static_cast<std::ptrdiff_t>(i));
-      objects_[i] = flat.objects[order[i]];
+                  lists_.indices.begin() + 3 * static_cast<std::ptrdiff_t>(i));
+      lists_.objects[i] = flat.objects[order[i]];
     }
   }
-  positions_ = std::move(flat.positions);
-  sources_ = std::move(order);
+  lists_.positions = std::move(flat.positions);
+  lists_.sources = std::move(order);
   seen_.assign(scene_.size(), 0);
   frame_ = 0;
-  bytes += positions_.size() * sizeof(Vec3) + 4 * (indices_.size() + objects_.size() + sources_.size()) +
-           8 * seen_.size();
-  geometry_ = {positions_, indices_, objects_, sources_, plan_.submission, plan_.facing != FacingRule::none,
+  bytes += lists_.positions.size() * sizeof(Vec3) +
+           4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 8 * seen_.size();
+  geometry_ = {lists_.positions,
+               lists_.indices,
+               lists_.objects,
+               lists_.sources,
+               plan_.submission,
+               plan_.facing != FacingRule::none,
                bytes};
+}
+
+TriangleLists DrawCallMethod::give_lists() {
+  geometry_ = {};
+  geometry_.submission = plan_.submission;
+  geometry_.front_faces_only = plan_.facing != FacingRule::none;
+  return std::exchange(lists_, {});
 }
 
 void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {

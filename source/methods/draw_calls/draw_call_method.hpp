@@ -21,6 +21,13 @@ struct DrawCallPlan {
   bool operator==(const DrawCallPlan&) const = default;
 };
 
+/// The arrays behind a TriangleGeometry.
+struct TriangleLists {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices, sources;
+  std::vector<ObjectId> objects;
+};
+
 class DrawCallMethod : public Method {
 public:
   DrawCallMethod(const Scene& scene, const DrawCallPlan& plan);
@@ -36,6 +43,8 @@ public:
   [[nodiscard]] const DrawCallPlan& plan() const noexcept { return plan_; }
   /// Changes how the ranges are submitted, from the next cull on.
   void submit_by(Submission submission) noexcept { plan_.submission = geometry_.submission = submission; }
+  /// Hands the triangles over, which cull() does without; geometry() is empty until the next update.
+  [[nodiscard]] TriangleLists give_lists();
   /// Cells of the structure, for pictures: opaque triangles' first.
   [[nodiscard]] std::vector<Box> cells() const;
 
@@ -54,9 +63,7 @@ private:
   DrawCallPlan plan_;
   Box extent_;
   std::array<Layer, 2> layers_;
-  std::vector<Vec3> positions_;
-  std::vector<std::uint32_t> indices_, sources_;
-  std::vector<ObjectId> objects_;
+  TriangleLists lists_;
   TriangleGeometry geometry_;
 
   // of the frame

@@ -3,20 +3,19 @@
 
 #include "vulkan/shaders/view.h"
 
-// Draws ranges of world-space triangles. The first instance of a range is its first triangle, so that with the
-// primitive's number in the draw every fragment knows its triangle.
-layout(push_constant, scalar) uniform Push {
-  ObjectBuffer objects;
-  PositionBuffer positions;
-  WordBuffer owners;
-};
-
+// Draws ranges of world-space triangles. A corner knows its object, so that fragments need no triangle numbers:
+// a software rasteriser takes every triangle apart to hand those over.
+layout(location = 0) in vec3 position;
+layout(location = 1) in uint object;
+layout(location = 2) in uint colour;
 layout(location = 0) out vec3 world_position;
-layout(location = 1) out flat uint first_triangle;
+layout(location = 1) out flat uint fragment_object;
+layout(location = 2) out flat uint fragment_colour;
 invariant gl_Position;
 
 void main() {
-  world_position = positions.at[gl_VertexIndex];
-  first_triangle = gl_InstanceIndex;
-  gl_Position = on_pixel_grid(world_position);
+  world_position = position;
+  fragment_object = object;
+  fragment_colour = colour;
+  gl_Position = on_pixel_grid(position);
 }

@@ -1,0 +1,46 @@
+// A method that walks through a level with its triangles on the device.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lab/reproduce/draw_calls.hpp"
+#include "vulkan/triangle_draws.hpp"
+
+namespace sightline::lab {
+
+class Walker {
+public:
+  /// "none" submits all triangles in one call. Back faces are culled for every method, so that all draw one
+  /// picture.
+  Walker(vulkan::Renderer& renderer, const std::string& specification);
+
+  /// Culls and draws a frame, and tells the method what it took. Returns what was measured.
+  struct Times {
+    double frame_ms = 0, cull_ms = 0, record_ms = 0;
+  };
+  Times draw(vulkan::Renderer& renderer, const View& view);
+
+  /// What the last frame drew.
+  [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
+  [[nodiscard]] TriangleGeometry geometry() const noexcept;
+  [[nodiscard]] Method& method() const noexcept { return *method_; }
+  [[nodiscard]] bool draws_everything() const noexcept { return everything_; }
+
+  WalkRow row;
+
+private:
+  bool everything_;
+  std::unique_ptr<Method> method_;
+  std::unique_ptr<vulkan::TriangleDraws> draws_;
+  Frame frame_;
+};
+
+/// All walkers in one view by turns, in an order that is drawn anew each round. A turn is two frames, of
+/// which the second counts: the first finds the caches full of what the others left there, as no frame of a
+/// program with one method does. Medians of the rounds, a walker each.
+std::vector<Walker::Times> draw_by_turns(std::span<Walker* const> walkers, vulkan::Renderer& renderer,
+                                         const View& view, std::size_t turn, std::size_t rounds);
+
+}  // namespace sightline::lab

@@ -1,0 +1,175 @@
+// What adaptive learns from the times it is told. No clock: times are made up from what a frame draws.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <sightline/worlds.hpp>
+
+#include "lab/random_views.hpp"
+#include "lab/triangle_judge.hpp"
+#include "methods/draw_calls/adaptive.hpp"
+#include "support/random_views.hpp"
+
+namespace sightline {
+namespace {
+
+using methods::Adaptive;
+using methods::Trials;
+
+/// Tells times until they settle; at most `patience` frames.
+template <class Time>
+int settle(Trials& trials, Time time, int patience = 2000) {
+  int frames = 0;
+  for (; !trials.settled() && frames < patience; ++frames) trials.took(time(trials.current()));
+  return frames;
+}
+
+TEST(Trials, FindTheQuickestAmongNoiseAndHitches) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    scene::Random random(seed);
+    Trials trials(16, 5);
+    EXPECT_EQ(trials.current(), 5u);
+    double drift = 1;
+    const int frames = settle(trials, [&](std::uint32_t way) {
+      drift *= 1.003;  // the camera walks into ever dearer views
+      const double hitch = random.below(50) == 0 ? 8 : 1;
+      return drift * hitch * (way == 11 ? 0.8 : 1 + 0.02 * way) * random.between(0.95f, 1.05f);
+    });
+    EXPECT_TRUE(trials.settled());
+    EXPECT_EQ(trials.winner(), 11u) << "seed " << seed;
+    EXPECT_EQ(frames, 2 * (16 * 16 + 8 * 32 + 4 * 60));
+  }
+}
+
+TEST(Trials, OnceSettledTryRivalsInOneFrameOf64) {
+  Trials trials(4, 0);
+  settle(trials, [](std::uint32_t way) { return 1.0 + way; });
+  ASSERT_EQ(trials.winner(), 0u);
+  int others = 0;
+  for (int frame = 0; frame < 6400; ++frame) {
+    others += trials.current() != 0;
+    trials.took(1.0 + trials.current());
+  }
+  EXPECT_EQ(others, 100);
+  EXPECT_EQ(trials.winner(), 0u);
+}
+
+TEST(Trials, ChangeTheirMindWhenARivalBecomesQuicker) {
+  Trials trials(4, 0);
+  settle(trials, [](std::uint32_t way) { return 1.0 + 0.1 * way; });
+  ASSERT_EQ(trials.winner(), 0u);
+  for (int frame = 0; frame < 128 * 16; ++frame) trials.took(trials.current() == 1 ? 0.9 : 1.0);
+  EXPECT_EQ(trials.winner(), 1u);
+}
+
+TEST(Trials, OfThoseAlikeSettleOnTheLowestNumber) {
+  Trials trials(6, 3);
+  settle(trials, [](std::uint32_t way) { return way == 2 || way == 5 ? 1.01 - 0.001 * way : 1.5; });
+  EXPECT_EQ(trials.winner(), 2u);
+}
+
+// The first frame after a change finds cold caches, and says nothing.
+TEST(Trials, CountTheSecondFrameOfATurn) {
+  Trials trials(4, 0);
+  std::uint32_t last = 99;
+  settle(trials, [&](std::uint32_t way) {
+    const double cold = way == last ? 1 : 1.5 + (way == 2 ? 3 : 0);
+    last = way;
+    return cold * (way == 2 ? 0.9 : 1);
+  });
+  EXPECT_EQ(trials.winner(), 2u);
+}
+
+TEST(Trials, StayWhereTheyAreWithoutTimesAndIgnoreNonsense) {
+  Trials trials(3, 2);
+  for (const double nonsense : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    trials.took(nonsense);
+  EXPECT_EQ(trials.current(), 2u);
+  Trials lone(1, 0);
+  EXPECT_TRUE(lone.settled());
+  for (int frame = 0; frame < 200; ++frame) lone.took(1);
+  EXPECT_EQ(lone.current(), 0u);
+}
+
+double made_up_time(const Frame& frame, double call, double triangle) {
+  return 100 + call * static_cast<double>(frame.stats.draw_calls) +
+         triangle * static_cast<double>(frame.stats.triangles);
+}
+
+View look_round(int frame) {
+  const float turn = 0.05f * static_cast<float>(frame);
+  return *make_view({.forward = {std::sin(turn), 0, std::cos(turn)}}, 640, 360);
+}
+
+TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
+  const Scene scene = *generate_world("soup?triangles=6000&size=60");
+  for (const auto& [call, triangle] : {std::pair{100.0, 1.0}, std::pair{8.0, 1.0}, std::pair{0.1, 1.0}}) {
+    const auto method = *create_method("adaptive", scene);
+    auto& adaptive = static_cast<Adaptive&>(*method);
+    Frame frame;
+    int frames = 0;
+    for (; !adaptive.settled() && frames < 2000; ++frames) {
+      adaptive.cull(look_round(frames), frame);
+      adaptive.took(made_up_time(frame, call, triangle));
+    }
+    ASSERT_TRUE(adaptive.settled());
+    const auto mean = [&](Method& one) {
+      double sum = 0;
+      for (int v = 0; v < 126; ++v) {
+        one.cull(look_round(v), frame);
+        sum += made_up_time(frame, call, triangle);
+      }
+      return sum;
+    };
+    double best = std::numeric_limits<double>::infinity();
+    for (const std::string name :
+         {"simple-octree?submission=merged", "drawcall-wise-kd-tree?height=2", "zhang-grid?height=2",
+          "zhang-octree?height=3&submission=multi-draw", "zhang-kd-tree?height=5", "cluster-cone?size=8",
+          "cluster-cone?size=64", "cluster-cone?size=256", "cluster-cone?size=16&submission=multi-draw"}) {
+      best = std::min(best, mean(**create_method(name, scene)));
+    }
+    EXPECT_LE(mean(*method), 1.05 * best) << adaptive.in_use() << " at " << call << " a call";
+  }
+}
+
+// Whatever it tries, the picture is right, and draws are ranges of the one geometry that it gave at first.
+TEST(AdaptiveMethod, LosesNothingWhileItTries) {
+  Scene scene = *generate_world("soup?triangles=3000&size=60");
+  const auto method = *create_method("adaptive", scene);
+  auto& adaptive = static_cast<Adaptive&>(*method);
+  const auto* indices = method->geometry()->indices.data();
+  lab::TriangleJudge judge(scene);
+  const auto cameras = lab::random_cameras(scene, 40, 17);
+  std::set<std::string> tried;
+  Frame frame;
+  for (int f = 0; f < 1800; ++f) {
+    const View view = *make_view(cameras[static_cast<std::size_t>(f) % cameras.size()], 96, 64);
+    tried.insert(adaptive.in_use());
+    method->cull(view, frame);
+    ASSERT_EQ(judge.judge(view, *method->geometry(), frame).loss.lost_pixels, 0u) << adaptive.in_use();
+    ASSERT_EQ(method->geometry()->indices.data(), indices);
+    if (method->geometry()->submission == Submission::multi_draw)
+      ASSERT_EQ(frame.stats.draw_calls, frame.draws.empty() ? 0u : 1u);
+    method->took(made_up_time(frame, 8, 1));
+  }
+  EXPECT_TRUE(adaptive.settled());
+  EXPECT_GE(tried.size(), 6u);
+}
+
+TEST(AdaptiveMethod, SameTimesSameDraws) {
+  const Scene scene = *generate_world("soup?triangles=2000&size=60");
+  const auto one = *create_method("adaptive", scene), other = *create_method("adaptive", scene);
+  Frame a, b;
+  for (int f = 0; f < 1800; ++f) {
+    one->cull(look_round(f), a), other->cull(look_round(f), b);
+    ASSERT_EQ(a.visible, b.visible);
+    ASSERT_EQ(a.stats.triangles, b.stats.triangles);
+    one->took(made_up_time(a, 8, 1)), other->took(made_up_time(b, 8, 1));
+  }
+}
+
+}  // namespace
+}  // namespace sightline
