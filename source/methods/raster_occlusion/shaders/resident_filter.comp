@@ -20,6 +20,7 @@ layout(push_constant, scalar) uniform Push {
 };
 
 const uint kMostTiles = 64;
+const float kLarge = 8;  // pixels
 
 bool hides(float depth, float nearest) {
   return view.reversed != 0 ? nearest < depth : nearest > depth;
@@ -51,10 +52,6 @@ void main() {
   const uint object = candidates.at[gl_GlobalInvocationID.x];
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz, half_extent = widened(centre, box.half_extent.xyz);
-  if (shows_somewhere(centre, half_extent)) {
-    marks.at[object] = frame;
-    return;
-  }
   const Footprint print = footprint(centre, half_extent);
   const uvec2 image = uvec2(view.width, view.height), edge = (image - 1) / kDepthTile;
   bool seen = print.whole;
@@ -68,5 +65,12 @@ void main() {
       seen = !hides(tiles.at[(first.y + i / across) * (edge.x + 1) + first.x + i % across], print.nearest);
     }
   }
-  if (seen) list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;
+  if (!seen) return;
+  // A small box is cheap to rasterise, and may miss the pixel's middle next to the point.
+  const bool large = !print.whole && all(greaterThan(print.high - print.low, vec2(kLarge)));
+  if (large && shows_somewhere(centre, half_extent)) {
+    marks.at[object] = frame;
+  } else {
+    list.at[atomicAdd(test.vertex_count, kFaceVertices) / kFaceVertices] = object;
+  }
 }
