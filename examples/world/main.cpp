@@ -9,7 +9,8 @@
 #endif
 
 int main() {
-  // Your objects' boxes. A handle names each for as long as it stands; its index is the id that cull() writes.
+  // Your objects' boxes. A handle names each for as long as it stands; its index is the id that cull()
+  // writes.
   std::vector<sightline::WorldBox> boxes;
   for (int i = 0; i < 100'000; ++i) {
     const double x = i % 400 * 5.0 - 1000, z = i / 400 * -5.0;
@@ -17,7 +18,8 @@ int main() {
   }
   std::vector<sightline::Handle> handles(boxes.size());
   sightline::World world;
-  if (const auto bad = world.insert(boxes, handles)) return std::fprintf(stderr, "%s\n", bad->message.c_str()), 2;
+  if (const auto bad = world.insert(boxes, handles))
+    return std::fprintf(stderr, "%s\n", bad->message.c_str()), 2;
 
   // Kept from frame to frame, so that nothing is allocated in them.
   sightline::OcclusionBuffer occlusion;
@@ -44,7 +46,7 @@ int main() {
 
     options.occlusion = {&occluders, 1};
     const auto drawn = sightline::cull(world, {&camera, 1}, options, visible);
-    std::printf("frame %d: draw %zu of %zu boxes; occlusion alone dropped %llu\n", frame, drawn.count, world.size(),
-                static_cast<unsigned long long>(drawn.culled_occlusion));
+    std::printf("frame %d: draw %zu of %zu boxes; occlusion alone dropped %llu\n", frame, drawn.count,
+                world.size(), static_cast<unsigned long long>(drawn.culled_occlusion));
   }
 }

@@ -24,7 +24,7 @@ struct CullStats {
   std::uint64_t tested = 0;         ///< objects tested one by one
   std::uint64_t nodes_visited = 0;  ///< cells, chunks or tree nodes looked at
   std::uint64_t cull_vertices = 0;  ///< vertices fed to the culling pass
-  std::uint64_t rays = 0;              ///< cast
+  std::uint64_t rays = 0;           ///< cast
   std::uint64_t culled_frustum = 0;
   std::uint64_t culled_contribution = 0;
   std::uint64_t culled_facing = 0;  ///< no triangle of theirs can face the eye

@@ -1,13 +1,14 @@
-/* The C API of Sightline: a world of boxes that move, and what of it a camera may see. Usable from C, C#, Rust, Python's
- * ctypes and whatever else calls C.
+/* The C API of Sightline: a world of boxes that move, and what of it a camera may see. Usable from C, C#,
+ * Rust, Python's ctypes and whatever else calls C.
  *
- * Objects are opaque; the caller owns what it creates and destroys it. A function that can fail returns a status;
- * sightline_last_error() says why, in one sentence, for the last failure on the calling thread. A failed call changes
- * nothing. A world may be read by many threads at once (each culling with a culler of its own), and changed by one
- * while no other uses it. NULL where a pointer is needed is SIGHTLINE_BAD_ARGUMENT; every destroy function takes NULL.
+ * Objects are opaque; the caller owns what it creates and destroys it. A function that can fail returns a
+ * status; sightline_last_error() says why, in one sentence, for the last failure on the calling thread. A
+ * failed call changes nothing. A world may be read by many threads at once (each culling with a culler of its
+ * own), and changed by one while no other uses it. NULL where a pointer is needed is SIGHTLINE_BAD_ARGUMENT;
+ * every destroy function takes NULL.
  *
- * Lengths are metres, the world is right-handed with y up, matrices are column-major and multiply columns, clip depth
- * is 0 to 1 (either way round). */
+ * Lengths are metres, the world is right-handed with y up, matrices are column-major and multiply columns,
+ * clip depth is 0 to 1 (either way round). */
 #ifndef SIGHTLINE_H
 #define SIGHTLINE_H
 
@@ -57,8 +58,9 @@ typedef struct sightline_view {
 
 /* A perspective camera with a far plane at infinity; everything else is a matter of matrices. */
 SIGHTLINE_API sightline_status sightline_view_perspective(const double eye[3], const float forward[3],
-                                                          const float up[3], float vertical_fov, float near_plane,
-                                                          uint32_t width, uint32_t height, sightline_view* view);
+                                                          const float up[3], float vertical_fov,
+                                                          float near_plane, uint32_t width, uint32_t height,
+                                                          sightline_view* view);
 
 /* --- the world --- */
 
@@ -67,8 +69,8 @@ typedef struct sightline_world sightline_world;
 SIGHTLINE_API sightline_world* sightline_world_create(void);
 SIGHTLINE_API void sightline_world_destroy(sightline_world* world);
 /* Writes `count` handles. */
-SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box* boxes, size_t count,
-                                                      sightline_handle* handles);
+SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box* boxes,
+                                                      size_t count, sightline_handle* handles);
 SIGHTLINE_API sightline_status sightline_world_move(sightline_world* world, const sightline_handle* handles,
                                                     const sightline_box* boxes, size_t count);
 SIGHTLINE_API sightline_status sightline_world_remove(sightline_world* world, const sightline_handle* handles,
@@ -87,9 +89,11 @@ SIGHTLINE_API sightline_status sightline_world_box(const sightline_world* world,
 
 typedef struct sightline_occluder_mesh sightline_occluder_mesh;
 
-/* Three floats a position, three indices a triangle. NULL where a coordinate is not finite or a pointer is. */
-SIGHTLINE_API sightline_occluder_mesh* sightline_occluder_mesh_create(const float* positions, size_t position_count,
-                                                                      const uint32_t* indices, size_t index_count);
+/* Three floats a position, three indices a triangle. NULL for a NULL pointer or a coordinate not finite. */
+SIGHTLINE_API sightline_occluder_mesh* sightline_occluder_mesh_create(const float* positions,
+                                                                      size_t position_count,
+                                                                      const uint32_t* indices,
+                                                                      size_t index_count);
 SIGHTLINE_API void sightline_occluder_mesh_destroy(sightline_occluder_mesh* mesh);
 
 typedef struct sightline_occlusion sightline_occlusion;
@@ -97,7 +101,8 @@ typedef struct sightline_occlusion sightline_occlusion;
 SIGHTLINE_API sightline_occlusion* sightline_occlusion_create(void);
 SIGHTLINE_API void sightline_occlusion_destroy(sightline_occlusion* occlusion);
 /* Empties it and takes the view, of at most 8192 pixels a side. */
-SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion, const sightline_view* view);
+SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion,
+                                                         const sightline_view* view);
 /* Solid boxes: every point inside one must be solid. After begin. */
 SIGHTLINE_API sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
                                                               const sightline_box* boxes, size_t count);
@@ -114,15 +119,16 @@ SIGHTLINE_API sightline_culler* sightline_culler_create(void);
 SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
 
 /* Runs job(data, 0) ... job(data, count - 1) on any threads and returns when all are done. */
-typedef void (*sightline_run_jobs)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
+typedef void (*sightline_run_jobs)(void* user, uint32_t count, void (*job)(void* data, uint32_t index),
+                                   void* data);
 
 /* All zero is a sound choice: frustum only, one thread. */
 typedef struct sightline_cull_options {
-  float min_area;                               /* px2; drops what covers less, approximately; 0: nothing */
-  uint32_t threads;                             /* jobs to make, at most 64; 0 and 1: none */
-  sightline_run_jobs run_jobs;                  /* NULL: the calling thread */
-  void* user;                                   /* for run_jobs */
-  const sightline_occlusion* const* occlusion;  /* NULL, or one a view, each NULL or begun with that view */
+  float min_area;                              /* px2; drops what covers less, approximately; 0: nothing */
+  uint32_t threads;                            /* jobs to make, at most 64; 0 and 1: none */
+  sightline_run_jobs run_jobs;                 /* NULL: the calling thread */
+  void* user;                                  /* for run_jobs */
+  const sightline_occlusion* const* occlusion; /* NULL, or one a view, each NULL or begun with that view */
 } sightline_cull_options;
 
 typedef struct sightline_cull_result {
@@ -133,14 +139,16 @@ typedef struct sightline_cull_result {
 } sightline_cull_result;
 
 /* Elements that the buffers of sightline_cull need. `options` may be NULL. */
-SIGHTLINE_API size_t sightline_cull_capacity(const sightline_world* world, const sightline_cull_options* options);
+SIGHTLINE_API size_t sightline_cull_capacity(const sightline_world* world,
+                                             const sightline_cull_options* options);
 
-/* Writes the ids of what at least one of the 1 to 8 views may see and, unless `masks` is NULL, which views: bit v for
- * view v. `options` may be NULL. Allocates nothing once the culler has grown to the world's size. */
+/* Writes the ids of what at least one of the 1 to 8 views may see and, unless `masks` is NULL, which views:
+ * bit v for view v. `options` may be NULL. Allocates nothing once the culler has grown to the world's size.
+ */
 SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
                                               const sightline_view* views, size_t view_count,
-                                              const sightline_cull_options* options, uint32_t* ids, uint8_t* masks,
-                                              size_t capacity, sightline_cull_result* result);
+                                              const sightline_cull_options* options, uint32_t* ids,
+                                              uint8_t* masks, size_t capacity, sightline_cull_result* result);
 
 #ifdef __cplusplus
 }

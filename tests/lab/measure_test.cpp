@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include <sightline/version.hpp>
 #include <sightline/error.hpp>
+#include <sightline/version.hpp>
 #include <sightline/worlds.hpp>
 
 #include "lab/file.hpp"

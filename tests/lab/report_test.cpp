@@ -77,8 +77,8 @@ TEST(Report, NamesAreEscapedEverywhere) {
   for (Row& row : m.comparison.rows) {
     if (row.method == "none") row.method = evil;
   }
-  const std::string page =
-      report::make_page({m.comparison, m.scene, m.snapshot, "i.png", std::vector<std::string>(m.snapshot.methods.size(), "t.png")});
+  const std::string page = report::make_page({m.comparison, m.scene, m.snapshot, "i.png",
+                                              std::vector<std::string>(m.snapshot.methods.size(), "t.png")});
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(page, Not(HasSubstr("</script><script>a")));
   EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;&amp;&quot;&#39;"));

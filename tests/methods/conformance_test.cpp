@@ -108,7 +108,8 @@ TEST_P(Conformance, ALoneObjectInViewIsKept) {
 TEST_P(Conformance, MovedObjectsAreFollowed) {
   for (const MethodInfo& info : cpu_methods()) {
     Scene scene = *generate_world(GetParam());
-    // "adaptive" picks its structure when it is made, so that a fresh one may keep another set; see its own tests.
+    // "adaptive" picks its structure when it is made, so that a fresh one may keep another set; see its own
+    // tests.
     if (!info.fits(scene) || info.name == "adaptive") continue;
     const auto method = *create_method(info.name, scene);
     scene::Random random(13);

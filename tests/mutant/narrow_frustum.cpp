@@ -1,5 +1,5 @@
-// A deliberate fault, linked in place of make_frustum (ld --wrap): the left plane stands ten degrees too far inwards. The
-// command line built with it must find out: `verify` exits 1 and names the view and the object.
+// A deliberate fault, linked in place of make_frustum (ld --wrap): the left plane stands ten degrees too far
+// inwards. The command line built with it must find out: `verify` exits 1 and names the view and the object.
 #include <sightline/frustum.hpp>
 
 #include <cmath>
@@ -7,8 +7,10 @@
 namespace sightline {
 
 // The names that ld gives the wrapped function and what it wraps.
-Frustum real_make_frustum(const View&, const Box&) asm("__real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
-Frustum narrow_frustum(const View&, const Box&) asm("__wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
+Frustum real_make_frustum(const View&,
+                          const Box&) asm("__real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
+Frustum narrow_frustum(const View&,
+                       const Box&) asm("__wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
 
 Frustum narrow_frustum(const View& view, const Box& extent) {
   Frustum frustum = real_make_frustum(view, extent);

@@ -130,12 +130,12 @@ TEST_F(EdgeCases, FlatObjectsInTheirOwnBoxes) {
 }
 
 TEST_F(EdgeCases, FlatObjectsFarFromTheOriginAndANearPlaneCloseToTheEye) {
-  // Rounding of clip coordinates grows with the distance from the origin; behind a close near plane it is many
-  // units of depth's last place.
+  // Rounding of clip coordinates grows with the distance from the origin; behind a close near plane it is
+  // many units of depth's last place.
   Scene scene;
   const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
-  const std::uint32_t quad =
-      scene.add_mesh(corners, std::vector<Vec3>(4, Vec3{0, 0, 1}), std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3});
+  const std::uint32_t quad = scene.add_mesh(corners, std::vector<Vec3>(4, Vec3{0, 0, 1}),
+                                            std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3});
   scene::Random random(5);
   for (int i = 0; i < 3000; ++i) {
     Affine transform;

@@ -51,8 +51,8 @@ TEST_P(Exactness, NothingIsLostWhileObjectsAndCameraMove) {
   }
 }
 
-// Orthographic along an axis, with trees' triangles edge on: a rasteriser that takes their depth from positions
-// off its own grid draws them at the near plane, before the boxes that hold them.
+// Orthographic along an axis, with trees' triangles edge on: a rasteriser that takes their depth from
+// positions off its own grid draws them at the near plane, before the boxes that hold them.
 using EdgeOn = DeviceTest;
 TEST_F(EdgeOn, TrianglesStayWithinTheirBoxes) {
   Scene scene = or_throw(generate_world("forest?trees=3000&size=300"));

@@ -1,4 +1,3 @@
-#include <sightline/version.hpp>
 #include "lab/report/page.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include <sightline/version.hpp>
 
 #include "lab/report/assets.hpp"
 #include "lab/report/pictures.hpp"
