@@ -14,7 +14,7 @@ int main() {
   std::vector<sightline::WorldBox> boxes;
   for (int i = 0; i < 100'000; ++i) {
     const double x = i % 400 * 5.0 - 1000, z = i / 400 * -5.0;
-    boxes.push_back({{x - 1, 0, z - 1}, {x + 1, 2 + i % 7, z + 1}});
+    boxes.push_back({{x - 1, 0, z - 1}, {x + 1, 2.0 + i % 7, z + 1}});
   }
   std::vector<sightline::Handle> handles(boxes.size());
   sightline::World world;
