@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "culling/depth_tiles.hpp"
+#include "scene/scale_bounds.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "culling/mesh_raster.cpp"
@@ -211,22 +212,6 @@ float length_of(const Vec4& row) {
   return std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
 }
 
-// No direction becomes longer than this under the transform, by Gershgorin's discs.
-float most_scale(const Affine& t) {
-  const auto dot = [&](int a, int b) {
-    float sum = 0;
-    for (const Vec4& row : t.rows) {
-      const float columns[3] = {row.x, row.y, row.z};
-      sum += columns[a] * columns[b];
-    }
-    return sum;
-  };
-  float most = 0;
-  for (int a = 0; a < 3; ++a)
-    most = std::max(most, dot(a, a) + std::fabs(dot(a, (a + 1) % 3)) + std::fabs(dot(a, (a + 2) % 3)));
-  return std::sqrt(most) * (1 + 1e-5f);
-}
-
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
 void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
   const EyeProjection& e = tiles.projection;
@@ -237,7 +222,7 @@ void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
   const Vec4 sides[5] = {e.x, minus(width, e.w, e.x), e.y, minus(height, e.w, e.y), tiles.rays.near_plane};
   float lengths[5];
   for (int k = 0; k < 5; ++k) lengths[k] = length_of(sides[k]);
-  const float scale = most_scale(transform), w_length = length_of(e.w);
+  const float scale = scene::scale_bounds(transform).most, w_length = length_of(e.w);
   tiles.mesh.seen.clear();
   for (std::uint32_t g = 0; g < mesh.groups.size(); ++g) {
     const Sphere& ball = mesh.groups[g].ball;

@@ -16,6 +16,7 @@
 #include "culling/draw_list.hpp"
 #include "methods/methods.hpp"
 #include "methods/raster_occlusion/inner_shell.hpp"
+#include "scene/scale_bounds.hpp"
 
 namespace sightline::methods {
 
@@ -32,24 +33,6 @@ constexpr std::array kParameters{
 
 WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
-}
-
-// No direction becomes shorter than this under the transform: by Gershgorin's discs about the squares of its
-// columns' lengths, a little less for rounding.
-float least_scale(const Affine& t) {
-  const auto dot = [&](int a, int b) {
-    float sum = 0;
-    for (const Vec4& row : t.rows) {
-      const float columns[3] = {row.x, row.y, row.z};
-      sum += columns[a] * columns[b];
-    }
-    return sum;
-  };
-  float least = dot(0, 0);
-  for (int a = 0; a < 3; ++a) {
-    least = std::min(least, dot(a, a) - std::fabs(dot(a, (a + 1) % 3)) - std::fabs(dot(a, (a + 2) % 3)));
-  }
-  return least > 0 ? std::sqrt(least) * (1 - 1e-5f) : 0;
 }
 
 class Masked final : public Method {
@@ -197,7 +180,8 @@ private:
       const auto o = static_cast<ObjectId>(key);
       const Sphere& ball = *balls_[scene_.mesh[o]];
       const Affine& to_world = scene_.transform[o];
-      drawn_balls_.push_back({transform_point(to_world, ball.centre), ball.radius * least_scale(to_world)});
+      drawn_balls_.push_back(
+          {transform_point(to_world, ball.centre), ball.radius * scene::scale_bounds(to_world).least});
     }
     buffer_.draw_balls(drawn_balls_);
   }

@@ -1,7 +1,7 @@
 // Push constants of the two steps from flags to draw commands, and what they share. Up to two lists are built
 // at once, one a row of workgroups; the first holds transparent objects too.
-const uint kLanes = 256, kEach = 8;          // slots a lane takes one after the other
-const uint kBlockSlots = kLanes * kEach;     // slots a workgroup takes
+const uint kLanes = 256, kEach = 8;       // slots a lane takes one after the other
+const uint kBlockSlots = kLanes * kEach;  // slots a workgroup takes
 
 layout(buffer_reference, scalar) coherent buffer SharedWords {
   uint at[];
@@ -9,7 +9,8 @@ layout(buffer_reference, scalar) coherent buffer SharedWords {
 
 layout(push_constant, scalar) uniform Push {
   WordBuffer flags, slot_objects;
-  SharedWords scan;  // a list: one a slot and one more, what stands before it; one a block, its sum; groups done
+  // A list: one a slot and one more, what stands before it; one a block, its sum; groups done.
+  SharedWords scan;
   MeshBuffer meshes;
   ObjectBuffer objects;
   WordBuffer transparent_order;

@@ -19,17 +19,19 @@ bool behind(vec4 plane, vec4 sphere) {
   return dot(plane.xyz, sphere.xyz) + plane.w < -sphere.w - plane_slack(plane, sphere.xyz, vec3(sphere.w));
 }
 
-// Whether the box lies wholly behind a plane of the frustum. Written out: planes fetched in a loop are fetched
-// for every lane anew.
+// Whether the box, or the sphere, lies wholly behind a plane of the frustum.
 bool outside(vec3 centre, vec3 half_extent) {
-  return behind(view.planes[0], centre, half_extent) || behind(view.planes[1], centre, half_extent) ||
-         behind(view.planes[2], centre, half_extent) || behind(view.planes[3], centre, half_extent) ||
-         behind(view.planes[4], centre, half_extent) || behind(view.planes[5], centre, half_extent);
+  for (int i = 0; i < 6; ++i) {
+    if (behind(view.planes[i], centre, half_extent)) return true;
+  }
+  return false;
 }
 
 bool outside(vec4 sphere) {
-  return behind(view.planes[0], sphere) || behind(view.planes[1], sphere) || behind(view.planes[2], sphere) ||
-         behind(view.planes[3], sphere) || behind(view.planes[4], sphere) || behind(view.planes[5], sphere);
+  for (int i = 0; i < 6; ++i) {
+    if (behind(view.planes[i], sphere)) return true;
+  }
+  return false;
 }
 
 // Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
@@ -62,8 +64,8 @@ float depth_slack(vec3 centre, vec3 half_extent) {
 
 // A point in clip space moved towards the eye by a depth slack, but not across the near plane.
 vec4 nearer(vec4 clip, float slack) {
-  clip.z = view.reversed != 0 ? min(clip.z + slack, max(clip.w, clip.z))
-                              : max(clip.z - slack, min(clip.z, 0));
+  clip.z =
+      view.reversed != 0 ? min(clip.z + slack, max(clip.w, clip.z)) : max(clip.z - slack, min(clip.z, 0));
   return clip;
 }
 
@@ -80,7 +82,8 @@ float facing(uint axis, vec3 centre, vec3 half_extent) {
 }
 
 vec3 corner(vec3 centre, vec3 half_extent, uint bits) {
-  return centre + half_extent * vec3((bits & 1) != 0 ? 1 : -1, (bits & 2) != 0 ? 1 : -1, (bits & 4) != 0 ? 1 : -1);
+  return centre +
+         half_extent * vec3((bits & 1) != 0 ? 1 : -1, (bits & 2) != 0 ? 1 : -1, (bits & 4) != 0 ? 1 : -1);
 }
 
 struct Footprint {
@@ -95,7 +98,8 @@ Footprint footprint(vec3 centre, vec3 half_extent) {
   const float slack = depth_slack(centre, half_extent);
   for (uint i = 0; i < 8; ++i) {
     const vec4 clip = clip_position(corner(centre, half_extent, i), slack);
-    if (!(clip.w > 2 * view.coordinate_error)) return Footprint(vec2(0), vec2(view.width, view.height), 0, true);
+    if (!(clip.w > 2 * view.coordinate_error))
+      return Footprint(vec2(0), vec2(view.width, view.height), 0, true);
     const vec3 at = clip.xyz / clip.w;
     low = min(low, at.xy);
     high = max(high, at.xy);
@@ -104,7 +108,8 @@ Footprint footprint(vec3 centre, vec3 half_extent) {
   }
   const vec2 half_size = 0.5 * vec2(view.width, view.height);
   const vec2 rim = widest * half_size + 1.0 / 64;
-  const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - rim, b = (vec2(high.x, -low.y) + 1) * half_size + rim;
+  const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - rim,
+             b = (vec2(high.x, -low.y) + 1) * half_size + rim;
   const float away = 16.0 / 16777216;
   nearest = view.reversed != 0 ? nearest + away * nearest : nearest - away;
   return Footprint(a, b, nearest, false);

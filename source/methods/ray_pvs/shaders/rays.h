@@ -76,7 +76,8 @@ float intersect_box_flat(RayData ray, vec3 low, vec3 high) {
 // Of equally near objects the lower id.
 void offer(inout Hit nearest, float t, uint object) {
   if (t < 0) return;
-  if (nearest.object == kNoObject || t < nearest.distance || (t == nearest.distance && object < nearest.object)) {
+  if (nearest.object == kNoObject || t < nearest.distance ||
+      (t == nearest.distance && object < nearest.object)) {
     nearest.object = object;
     nearest.distance = t;
   }
