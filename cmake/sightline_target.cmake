@@ -3,7 +3,9 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 find_program(SIGHTLINE_CCACHE ccache)
 if(SIGHTLINE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${SIGHTLINE_CCACHE})
+  # Without this ccache takes no source that has a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+                                  ${SIGHTLINE_CCACHE})
 endif()
 
 function(sightline_target name)
@@ -30,4 +32,12 @@ function(sightline_module folder)
   target_compile_options(sightline_${folder} PRIVATE -fno-exceptions -fno-rtti)
   target_link_libraries(sightline_${folder} PRIVATE sightline_core_dependencies)
   set_property(GLOBAL APPEND PROPERTY sightline_core_modules sightline_${folder})
+endfunction()
+
+# sightline_precompile(TARGET HEADERS...): parses what most sources of the target include once. Only headers of others:
+# one's own are included where they are used.
+function(sightline_precompile name)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+  # For ccache: the same header gives the same bytes.
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
 endfunction()

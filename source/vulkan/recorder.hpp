@@ -79,6 +79,20 @@ public:
     full_barrier(commands);
   }
 
+  /// Where the device finds how many groups to run: a VkDispatchIndirectCommand.
+  struct Groups {
+    const Buffer& buffer;
+    vk::DeviceSize offset = 0;
+    [[nodiscard]] vk::DeviceAddress address() const noexcept { return buffer.address() + offset; }
+  };
+  template <class T>
+  void dispatch(const ComputePipeline& pipeline, const T& constants, const Groups& groups) const {
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
+    push(constants);
+    commands.dispatchIndirect(groups.buffer.handle(), groups.offset);
+    full_barrier(commands);
+  }
+
   /// Sets `bytes` of a buffer to a word, then makes them seen.
   void fill(const Buffer& buffer, std::uint32_t word, vk::DeviceSize bytes) const;
 

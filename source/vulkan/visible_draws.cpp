@@ -15,7 +15,7 @@ constexpr std::uint32_t kScanWrite[] =
     ;
 
 // As in scan.h.
-constexpr std::uint32_t kLanes = 256, kBlockSlots = kLanes * 8;
+constexpr std::uint32_t kLanes = 64, kBlockSlots = kLanes * 32;
 
 struct Push {
   vk::DeviceAddress flags, slot_objects, scan, meshes, objects, transparent_order;
@@ -29,14 +29,17 @@ std::uint32_t block_count(const SceneBuffers& scene) {
   return (scene.opaque + kBlockSlots - 1) / kBlockSlots;
 }
 
+std::uint64_t listed_at(const SceneBuffers& scene) {
+  return 2 * (std::uint64_t{scene.opaque} + block_count(scene) + 2);
+}
+
 }  // namespace
 
 VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
     : scene_(scene),
       scan_blocks_(device, kScanBlocks),
       scan_write_(device, kScanWrite),
-      scan_(device, 2 * (std::uint64_t{scene.opaque} + block_count(scene) + 2) * 4, Memory::device,
-            "prefix sums") {}
+      scan_(device, (listed_at(scene) + 4) * 4, Memory::device, "prefix sums") {}
 
 DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
@@ -51,26 +54,39 @@ DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   return out;
 }
 
-void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque,
-                         Condition transparent, vk::DeviceAddress transparent_order, const DrawBuffers& out,
-                         Condition second, const DrawBuffers* second_out) const {
-  const std::uint32_t lists = second_out != nullptr ? 2 : 1;
+std::uint32_t VisibleDraws::groups() const noexcept {
+  return std::max(1u, block_count(scene_));
+}
+
+Recorder::Groups VisibleDraws::listed() const noexcept {
+  return {scan_, listed_at(scene_) * 4};
+}
+
+void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
+                         vk::DeviceAddress transparent_order, const List* second,
+                         const Recorder::Groups* groups) const {
+  const auto list = [](const List* of) { return of ? of->out->list.address() : 0; };
+  const auto commands = [](const List* of) { return of ? of->out->commands.address() : 0; };
   const Push push{flags,
                   scene_.slot_objects.address(),
                   scan_.address(),
                   scene_.mesh_data.address(),
                   scene_.object_data.address(),
                   transparent_order,
-                  {out.list.address(), second_out ? second_out->list.address() : 0},
-                  {out.commands.address(), second_out ? second_out->commands.address() : 0},
-                  {opaque, second},
-                  transparent,
+                  {list(&first), list(second)},
+                  {commands(&first), commands(second)},
+                  {first.opaque, second ? second->opaque : Condition{}},
+                  first.transparent,
                   scene_.opaque,
                   scene_.meshes,
-                  transparent_order ? out.transparent_commands : 0};
-  const std::uint32_t threads = std::max(1u, block_count(scene_)) * kLanes;
-  frame.dispatch(scan_blocks_, push, threads, kLanes, lists);
-  frame.dispatch(scan_write_, push, threads, kLanes, lists);
+                  transparent_order ? first.out->transparent_commands : 0};
+  for (const ComputePipeline* step : {&scan_blocks_, &scan_write_}) {
+    if (groups) {
+      frame.dispatch(*step, push, *groups);
+    } else {
+      frame.dispatch(*step, push, this->groups() * kLanes, kLanes, second ? 2 : 1);
+    }
+  }
 }
 
 }  // namespace sightline::vulkan

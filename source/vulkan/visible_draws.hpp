@@ -21,20 +21,25 @@ public:
   struct Condition {
     std::uint32_t mask = ~0u, value = 1;  ///< (flags[o] & mask) == value
   };
-  /// Lists the objects that meet a condition, the transparent ones by one of their own. `transparent_order`
-  /// holds all transparent objects as they are to be drawn; 0 leaves the transparent commands as they were.
-  void build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque, Condition transparent,
-             vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
-    build(frame, flags, opaque, transparent, transparent_order, out, {}, nullptr);
-  }
+  /// Who is listed, of the opaque and of the transparent objects, and where.
+  struct List {
+    Condition opaque, transparent;
+    const DrawBuffers* out;
+  };
+  /// Lists the objects that meet a condition; into a second list, where there is one, opaque objects alone.
+  /// `transparent_order` holds all transparent objects as they are to be drawn; 0 leaves the transparent
+  /// commands as they were. `groups`, two commands of groups(), has the device decide whether it is done.
+  void build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
+             vk::DeviceAddress transparent_order, const List* second = nullptr,
+             const Recorder::Groups* groups = nullptr) const;
   void build(const Recorder& frame, vk::DeviceAddress flags, Condition condition,
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
-    build(frame, flags, condition, condition, transparent_order, out);
+    build(frame, flags, List{condition, condition, &out}, transparent_order);
   }
-  /// The same, and beside it the opaque objects that meet a second condition, into a second list.
-  void build(const Recorder& frame, vk::DeviceAddress flags, Condition opaque, Condition transparent,
-             vk::DeviceAddress transparent_order, const DrawBuffers& out, Condition second,
-             const DrawBuffers* second_out) const;
+  /// How many groups build() takes for one list.
+  [[nodiscard]] std::uint32_t groups() const noexcept;
+  /// Of the first list built last: groups of 64 over its opaque objects; then in a word how many they are.
+  [[nodiscard]] Recorder::Groups listed() const noexcept;
   /// Lists every object.
   static constexpr Condition kAll{0, 0};
 

@@ -6,9 +6,6 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kInView[] =
-#include "shaders/hiz_in_view.comp.inc"
-    ;
 constexpr std::uint32_t kTest[] =
 #include "shaders/hiz_test.comp.inc"
     ;
@@ -16,13 +13,8 @@ constexpr std::uint32_t kPyramid[] =
 #include "shaders/pyramid.comp.inc"
     ;
 
-struct InViewPush {
-  vk::DeviceAddress boxes, marks, state;
-  std::uint32_t objects, stamp;
-};
-
 struct TestPush {
-  vk::DeviceAddress boxes, marks, state, pyramid;
+  vk::DeviceAddress boxes, state, pyramid;
   std::uint32_t objects, stamp;
 };
 
@@ -35,21 +27,12 @@ class Hiz final : public TwoPhase {
 public:
   Hiz(vulkan::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, culling::contribution_from(parameters)),
-        in_view_(renderer.device(), kInView, shader_constants(contribution_)),
         test_(renderer.device(), kTest, shader_constants(contribution_)),
         reduce_(renderer.device(), kPyramid) {}
 
   void update(std::span<const ObjectId>) override {}
 
 private:
-  void find_in_view(vulkan::Recorder& frame) override {
-    const vulkan::SceneBuffers& scene = renderer_.buffers();
-    frame.dispatch(
-        in_view_,
-        InViewPush{scene.box_data.address(), marks_.address(), state_.address(), scene.objects, stamp_},
-        scene.objects);
-  }
-
   void test(vulkan::Recorder& frame) override {
     std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
     const std::uint64_t most = 4 * (std::uint64_t{width} * height * 3 / 2 + width + height + 64);
@@ -67,15 +50,15 @@ private:
       height = to_height;
     }
     const vulkan::SceneBuffers& scene = renderer_.buffers();
-    frame.dispatch(test_,
-                   TestPush{scene.box_data.address(), marks_.address(), state_.address(), pyramid_.address(),
-                            scene.objects, stamp_},
-                   scene.objects);
+    frame.dispatch(
+        test_,
+        TestPush{scene.box_data.address(), state_.address(), pyramid_.address(), scene.objects, stamp_},
+        scene.objects);
   }
 
   void count(CullStats& stats) override { stats.cull_vertices = stats.objects; }
 
-  vulkan::ComputePipeline in_view_, test_, reduce_;
+  vulkan::ComputePipeline test_, reduce_;
   vulkan::Buffer pyramid_;
 };
 

@@ -19,30 +19,27 @@ constexpr std::uint32_t kFace[] =
 constexpr std::uint32_t kDepthTiles[] =
 #include "shaders/depth_tiles.comp.inc"
     ;
-constexpr std::uint32_t kFilter[] =
-#include "shaders/resident_filter.comp.inc"
-    ;
-constexpr std::uint32_t kMark[] =
-#include "shaders/mark.frag.inc"
+constexpr std::uint32_t kSeenBox[] =
+#include "shaders/seen_box.frag.inc"
     ;
 
-constexpr std::uint32_t kDepthTile = 8;
+constexpr std::uint32_t kDepthTile = 4, kFaceVertices = 18;           // as in the shaders
 constexpr std::uint32_t kWords = partition::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
-  vk::DeviceAddress boxes, marks, candidates, state, chunks_in, chunk_objects, test;
+  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, depth, tiles, list, test;
   std::uint32_t stamp;
+};
+
+struct FacesPush {
+  vk::DeviceAddress boxes, state, list;
+  std::uint32_t across_edge;
 };
 
 struct TilesPush {
   vk::DeviceAddress depth, tiles;
   std::uint32_t width, height, reversed;
-};
-
-struct FilterPush {
-  vk::DeviceAddress boxes, marks, candidates, list, depth, tiles, test;
-  std::uint32_t stamp;
 };
 
 constexpr std::array kParameters{culling::kContributionParameter, culling::kThresholdParameter,
@@ -53,17 +50,14 @@ public:
   ResidentChunk(vulkan::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, culling::contribution_from(parameters)),
         chunks_(renderer.scene(), parameters.count("depth")),
-        in_view_(renderer.device(), kTest, shader_constants(contribution_)),
+        objects_(renderer.device(), kTest, shader_constants(contribution_)),
         faces_(renderer.device(), {.vertex = kFace,
-                                   .fragment = kMark,
+                                   .fragment = kSeenBox,
                                    .constants = shader_constants(contribution_),
                                    .depth_write = false}),
         depth_tiles_(renderer.device(), kDepthTiles),
-        filter_(renderer.device(), kFilter, shader_constants(contribution_)),
-        candidates_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device,
-                    "objects in view"),
         list_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "objects to test"),
-        test_(renderer.device(), 20, vulkan::Memory::device, "a draw command") {
+        test_(renderer.device(), 32, vulkan::Memory::device, "draw commands") {
     send_changes();
   }
 
@@ -99,7 +93,11 @@ private:
       const partition::ChunkMap::ChunkView chunk = map.chunk(changed_[i]);
       words[0] = chunk.count;
       if (chunk.count > 0) std::memcpy(words + 1, chunk.objects, chunk.count * sizeof(ObjectId));
-      regions_.push_back({i * bytes, changed_[i] * bytes, bytes});
+      if (i > 0 && changed_[i] == changed_[i - 1] + 1) {
+        regions_.back().size += bytes;
+      } else {
+        regions_.push_back({i * bytes, changed_[i] * bytes, bytes});
+      }
     }
     device.run([&](const vk::raii::CommandBuffer& commands) {
       commands.copyBuffer(staging_.handle(), resident_.handle(), regions_);
@@ -107,66 +105,64 @@ private:
     });
   }
 
-  void find_in_view(vulkan::Recorder& frame) override {
+  void test(vulkan::Recorder& frame) override {
     chunks_.select(frame.view, contribution_);
     auto* entry = chunks_in_.mapped<std::uint32_t>();
     for (const std::uint32_t chunk : chunks_.inside()) *entry++ = chunk | kWhollyIn;
     for (const std::uint32_t chunk : chunks_.crossing()) *entry++ = chunk;
     const auto count = static_cast<std::uint32_t>(chunks_.inside().size() + chunks_.crossing().size());
-    chunks_in_count_ = count;
-    const std::array<std::uint32_t, 5> empty{0, 1, 0, 0, 0};
-    frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, empty);
-    vulkan::full_barrier(frame.commands);
     if (count == 0) return;
-    frame.dispatch(in_view_,
-                   Push{renderer_.buffers().box_data.address(), marks_.address(), candidates_.address(),
-                        state_.address(), chunks_in_.address(), resident_.address(), test_.address(), stamp_},
-                   count, 1);
-  }
-
-  void test(vulkan::Recorder& frame) override {
-    if (chunks_in_count_ == 0) return;
+    const std::array<std::uint32_t, 8> draws{0, 1, 0, 0, 0, 1, kFaceVertices * renderer_.buffers().objects,
+                                             0};
+    frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, draws);
+    frame.targets.depth.copy_to(frame.commands, depth_for(frame));
     // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
     const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
-    const std::uint32_t tiles =
-        ((width + kDepthTile - 1) / kDepthTile) * ((height + kDepthTile - 1) / kDepthTile);
-    if (depth_.size() < std::uint64_t{4} * width * height) {
-      depth_ = vulkan::Buffer(renderer_.device(), std::uint64_t{4} * width * height, vulkan::Memory::device,
-                              "depth");
-    }
-    if (tiles_of_depth_.size() < std::uint64_t{4} * tiles) {
-      tiles_of_depth_ =
-          vulkan::Buffer(renderer_.device(), std::uint64_t{4} * tiles, vulkan::Memory::device, "depth tiles");
-    }
-    const vk::DeviceAddress boxes = renderer_.buffers().box_data.address(),
-                            farthest = tiles_of_depth_.address();
-    frame.targets.depth.copy_to(frame.commands, depth_);
-    frame.dispatch(depth_tiles_, TilesPush{depth_.address(), farthest, width, height, frame.reversed()},
-                   tiles, 64);
-    frame.dispatch(filter_,
-                   FilterPush{boxes, marks_.address(), candidates_.address(), list_.address(),
-                              depth_.address(), farthest, test_.address(), stamp_},
-                   chunks_in_count_, 1);
+    frame.dispatch(depth_tiles_,
+                   TilesPush{depth_.address(), farthest_.address(), width, height, frame.reversed()},
+                   tiles_across(width) * tiles_across(height), 64);
+    const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
+    frame.dispatch(objects_,
+                   Push{boxes, state_.address(), chunks_in_.address(), resident_.address(), depth_.address(),
+                        farthest_.address(), list_.address(), test_.address(), stamp_},
+                   count, 1);
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
-    frame.push(BoxPush{boxes, marks_.address(), list_.address(), 0, 0, stamp_});
-    frame.commands.drawIndirect(test_.handle(), 0, 1, 16);
+    for (const std::uint32_t across_edge : {0, 1}) {
+      frame.push(FacesPush{boxes, state_.address(), list_.address(), across_edge});
+      frame.commands.drawIndirect(test_.handle(), 16 * across_edge, 1, 16);
+    }
     frame.end_rendering();
-    vulkan::full_barrier(frame.commands);
+  }
+
+  [[nodiscard]] static std::uint32_t tiles_across(std::uint32_t pixels) {
+    return (pixels + kDepthTile - 1) / kDepthTile;
+  }
+
+  /// Room for the frame's depth and its tiles.
+  const vulkan::Buffer& depth_for(const vulkan::Recorder& frame) {
+    const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
+    const std::uint64_t bytes = std::uint64_t{4} * width * height,
+                        tile_bytes = std::uint64_t{4} * tiles_across(width) * tiles_across(height);
+    vulkan::Device& device = renderer_.device();
+    if (depth_.size() < bytes) depth_ = vulkan::Buffer(device, bytes, vulkan::Memory::device, "depth");
+    if (farthest_.size() < tile_bytes) {
+      farthest_ = vulkan::Buffer(device, tile_bytes, vulkan::Memory::device, "depth tiles");
+    }
+    return depth_;
   }
 
   void count(CullStats& stats) override {
-    stats.cull_vertices = read_words(renderer_.device(), test_, 5)[4];
+    stats.cull_vertices = stats.tested;
     stats.nodes_visited = chunks_.nodes_visited();
   }
 
   GroundChunks chunks_;
-  vulkan::ComputePipeline in_view_;
+  vulkan::ComputePipeline objects_;
   vulkan::GraphicsPipeline faces_;
-  vulkan::ComputePipeline depth_tiles_, filter_;
-  vulkan::Buffer candidates_, list_, test_;
-  vulkan::Buffer resident_, chunks_in_, staging_, depth_, tiles_of_depth_;
-  std::uint32_t chunks_in_count_ = 0;
+  vulkan::ComputePipeline depth_tiles_;
+  vulkan::Buffer list_, test_;
+  vulkan::Buffer resident_, chunks_in_, staging_, depth_, farthest_;
   std::uint32_t room_ = 0;  ///< chunks that the buffers hold
   std::vector<std::uint32_t> changed_;
   std::vector<vk::BufferCopy> regions_;

@@ -32,22 +32,25 @@ VisibleDraws::Condition among(std::uint32_t stamp, std::uint32_t mask, std::uint
 }
 constexpr VisibleDraws::Condition kNever{0, 1};
 
-struct Push {
-  vk::DeviceAddress boxes, objects, marks, state, tiles;
+struct NewTilesPush {
+  vk::DeviceAddress boxes, late, follow_up, listed, tiles;
+  std::uint32_t objects, scan_groups, stamp;
+};
+
+struct TiedPush {
+  vk::DeviceAddress boxes, objects, state, tiles;
   std::uint32_t count, stamp;
 };
 
-vulkan::Buffer zeros(vulkan::Device& device, std::size_t words) {
-  return upload(device, std::vector<std::uint32_t>(words), "marks");
-}
+// What follows from there being something new: two VkDispatchIndirectCommands, as in new_tiles.comp.
+constexpr vk::DeviceSize kTiedGroups = 0, kScanGroups = 12, kFollowUpSize = 24;
 
 }  // namespace
 
 TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution)
     : renderer_(renderer),
       contribution_(contribution),
-      state_(zeros(renderer.device(), renderer.scene().size())),
-      marks_(zeros(renderer.device(), renderer.scene().size())),
+      state_(upload(renderer.device(), std::vector<std::uint32_t>(renderer.scene().size()), "states")),
       new_tiles_(renderer.device(), kNewTiles, shader_constants(contribution)),
       tied_(renderer.device(), kTiedComp, shader_constants(contribution)),
       tied_pipeline_(renderer.device(), {.vertex = kObjectVert,
@@ -55,36 +58,35 @@ TwoPhase::TwoPhase(Renderer& renderer, const culling::Contribution& contribution
                                          .input = vulkan::Input::mesh,
                                          .colour = vulkan::kColourFormat,
                                          .depth_write = false}),
+      follow_up_(renderer.device(), kFollowUpSize, vulkan::Memory::device, "dispatches"),
       early_(renderer.draws().make_buffers(renderer.device())),
-      late_(renderer.draws().make_buffers(renderer.device())) {}
+      late_(renderer.draws().make_buffers(renderer.device())),
+      again_(renderer.draws().make_buffers(renderer.device())),
+      next_(renderer.draws().make_buffers(renderer.device())) {}
 
 void TwoPhase::record(vulkan::Recorder& frame) {
   begin_frame(frame);
-  const auto sort = renderer_.transparent_order();
-  {
-    const auto pass = frame.pass("what is in view", PassKind::cull);
-    find_in_view(frame);
-    renderer_.draws().build(frame, state_.address(), among(stamp_, kDrawnEarly, kDrawnEarly), kNever, 0,
-                            early_);
-  }
   {
     const auto pass = frame.pass("draw last frame's visible objects", PassKind::draw);
     renderer_.draw_opaque(frame, early_, Renderer::Style::lit, Renderer::Clear::both);
   }
   {
     const auto pass = frame.pass("occlusion test", PassKind::cull);
+    frame.commands.fillBuffer(follow_up_.handle(), 0, VK_WHOLE_SIZE, 0);
+    frame.commands.fillBuffer(again_.commands.handle(), 0, VK_WHOLE_SIZE, 0);
     test(frame);
   }
   {
     const auto pass = frame.pass("what is new", PassKind::cull);
-    settle_ties(frame);
-    renderer_.draws().build(frame, state_.address(), among(stamp_, kDrawnEarly | kSeen, kSeen),
-                            among(stamp_, kSeen, kSeen), sort, late_, among(stamp_, kTied, kTied), &early_);
+    list_what_is_new(frame);
   }
-  const auto pass = frame.pass("draw new objects", PassKind::draw);
-  renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
-  renderer_.draw_opaque(frame, early_, tied_pipeline_, tiles_.address(), vulkan::Recorder::Compare::equal);
-  renderer_.draw_transparent(frame, late_);
+  {
+    const auto pass = frame.pass("draw new objects", PassKind::draw);
+    renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
+    renderer_.draw_opaque(frame, again_, tied_pipeline_, tiles_.address(), vulkan::Recorder::Compare::equal);
+    renderer_.draw_transparent(frame, late_);
+  }
+  std::swap(early_, next_);
 }
 
 void TwoPhase::begin_frame(const vulkan::Recorder& frame) {
@@ -96,36 +98,46 @@ void TwoPhase::begin_frame(const vulkan::Recorder& frame) {
   if (grown || over) frame.fill(tiles_, 0, tiles_.size());
   if (!over) return;
   frame.fill(state_, 0, state_.size());
-  frame.fill(marks_, 0, marks_.size());
   stamp_ = 2;
 }
 
-void TwoPhase::settle_ties(vulkan::Recorder& frame) {
+void TwoPhase::list_what_is_new(vulkan::Recorder& frame) {
   const vulkan::SceneBuffers& scene = renderer_.buffers();
-  const Push push{scene.box_data.address(),
-                  scene.object_data.address(),
-                  marks_.address(),
-                  state_.address(),
-                  tiles_.address(),
-                  scene.objects,
-                  stamp_};
-  frame.dispatch(new_tiles_, push, scene.objects);
-  frame.dispatch(tied_, push, scene.objects);
+  const VisibleDraws& draws = renderer_.draws();
+  const VisibleDraws::Condition seen = among(stamp_, kSeen, kSeen);
+  const VisibleDraws::List late{among(stamp_, kDrawnEarly | kSeen, kSeen), seen, &late_},
+      next{seen, kNever, &next_};
+  draws.build(frame, state_.address(), late, renderer_.transparent_order(), &next);
+  // Where nothing new is opaque, what follows has no groups to run.
+  const vulkan::Recorder::Groups fresh = draws.listed(), tied{follow_up_, kTiedGroups},
+                                 scan{follow_up_, kScanGroups};
+  frame.dispatch(new_tiles_,
+                 NewTilesPush{scene.box_data.address(), late_.list.address(), follow_up_.address(),
+                              fresh.address(), tiles_.address(), scene.objects, draws.groups(), stamp_},
+                 fresh);
+  frame.dispatch(tied_,
+                 TiedPush{scene.box_data.address(), scene.object_data.address(), state_.address(),
+                          tiles_.address(), scene.objects, stamp_},
+                 tied);
+  draws.build(frame, state_.address(), {among(stamp_, kTied, kTied), kNever, &again_}, 0, nullptr, &scan);
 }
 
 void TwoPhase::read_back(Frame& frame) {
   const std::vector<std::uint32_t> state = read_words(renderer_.device(), state_, renderer_.scene().size());
   std::vector<std::uint32_t> drawn(state.size());
-  std::uint64_t in_view = 0;
+  std::uint64_t in_view = 0, culled = 0;
   for (std::size_t i = 0; i < state.size(); ++i) {
+    const std::uint32_t stamp = state[i] >> 4, bits = stamp == stamp_ ? state[i] : 0;
+    // What was seen last frame was drawn at once, in view or not.
+    const bool early = (bits & kDrawnEarly) != 0 || (stamp + 1 == stamp_ && (state[i] & kSeen) != 0);
     const bool blended = renderer_.scene().surface[i] == Surface::transparent;
-    const std::uint32_t bits = state[i] >> 4 == stamp_ ? state[i] : 0;
-    drawn[i] = (bits & (blended ? kSeen : kSeen | kDrawnEarly)) != 0;
+    drawn[i] = (bits & kSeen) != 0 || (early && !blended);
     in_view += bits & kInView;
+    culled += (bits & kInView) != 0 && !drawn[i];
   }
   report_visible(renderer_, drawn, {}, {}, frame);
   frame.stats.tested = in_view;
-  frame.stats.culled_occlusion = in_view - frame.visible.size();
+  frame.stats.culled_occlusion = culled;
   count(frame.stats);
 }
 

@@ -17,25 +17,23 @@ public:
   void read_back(Frame& frame) final;
 
 protected:
-  /// Sets the state of every object that is in view (state.h).
-  virtual void find_in_view(vulkan::Recorder& frame) = 0;
-  /// Marks objects in view that the depth so far does not hide.
+  /// Sets the state (state.h) of every object that is in view, and whether the depth so far leaves it seen.
   virtual void test(vulkan::Recorder& frame) = 0;
   virtual void count(CullStats& stats) = 0;
 
   vulkan::Renderer& renderer_;
   culling::Contribution contribution_;
-  vulkan::Buffer state_, marks_;
-  std::uint32_t stamp_ = 1;  ///< the frame's number, in states and marks
+  vulkan::Buffer state_;
+  std::uint32_t stamp_ = 1;  ///< the frame's number, in states
 
 private:
   void begin_frame(const vulkan::Recorder& frame);
-  void settle_ties(vulkan::Recorder& frame);
+  void list_what_is_new(vulkan::Recorder& frame);
 
   vulkan::ComputePipeline new_tiles_, tied_;
   vulkan::GraphicsPipeline tied_pipeline_;
-  vulkan::Buffer tiles_;
-  vulkan::DrawBuffers early_, late_;
+  vulkan::Buffer tiles_, follow_up_;
+  vulkan::DrawBuffers early_, late_, again_, next_;  ///< next: early in the frame that comes
 };
 
 }  // namespace sightline::methods

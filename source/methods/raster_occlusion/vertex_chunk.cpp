@@ -48,7 +48,9 @@ private:
     auto* const input = input_.mapped<partition::ChunkVertex>();
     const std::size_t room = renderer_.scene().size();
     vertices_ = 0;
+    std::uint32_t inside = 0;
     for (const auto list : {chunks_.inside(), chunks_.crossing()}) {
+      inside = vertices_;
       for (const std::uint32_t chunk : list) {
         vertices_ += chunks_.map().write_vertices(chunk, {input + vertices_, room - vertices_});
       }
@@ -60,7 +62,10 @@ private:
     frame.bind(boxes_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
     frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), 0, 0, 0, 1});
     frame.commands.bindVertexBuffers(0, input_.handle(), vk::DeviceSize{0});
-    if (vertices_ > 0) frame.commands.draw(vertices_, 1, 0, 0);
+    // Chunks wholly in view apart from those at its edges: a rasteriser that clips a batch as soon as one
+    // vertex asks for it, as llvmpipe does, need not clip theirs.
+    if (inside > 0) frame.commands.draw(inside, 1, 0, 0);
+    if (vertices_ > inside) frame.commands.draw(vertices_ - inside, 1, inside, 0);
     frame.end_rendering();
   }
 

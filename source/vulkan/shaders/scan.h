@@ -1,6 +1,6 @@
 // Push constants of the two steps from flags to draw commands, and what they share. Up to two lists are built
 // at once, one a row of workgroups; the first holds transparent objects too.
-const uint kLanes = 256, kEach = 8;       // slots a lane takes one after the other
+const uint kLanes = 64, kEach = 32;       // slots a lane takes one after the other
 const uint kBlockSlots = kLanes * kEach;  // slots a workgroup takes
 
 layout(buffer_reference, scalar) coherent buffer SharedWords {
@@ -9,7 +9,8 @@ layout(buffer_reference, scalar) coherent buffer SharedWords {
 
 layout(push_constant, scalar) uniform Push {
   WordBuffer flags, slot_objects;
-  // A list: one a slot and one more, what stands before it; one a block, its sum; groups done.
+  // A list: one a slot and one more, what stands before it; one a block, its sum; groups done. After both: a
+  // VkDispatchIndirectCommand over the first list, and how long it is.
   SharedWords scan;
   MeshBuffer meshes;
   ObjectBuffer objects;
@@ -33,6 +34,10 @@ uint sums_at(uint job) {
 }
 uint done_at(uint job) {
   return sums_at(job) + block_count();
+}
+
+uint listed_at() {
+  return prefix_at(2);
 }
 
 uint meets(uint object, uvec2 condition) {

@@ -2,7 +2,7 @@
 #include "vulkan/shared.h"
 
 #include "scan.h"
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
 // Every block adds what stands before it and writes its part of the list; the block that ends last writes the
 // commands: one a mesh for the opaque objects, then one a transparent object.
@@ -45,7 +45,12 @@ void main() {
     if (meets(object, condition) != 0) list.at[place] = object;
   }
   if (lane == 0 && block + 1 == gl_NumWorkGroups.x) {
-    scan.at[prefix_at(job) + opaque] = before + (opaque > 0 ? scan.at[sums_at(job) + block] : 0);
+    const uint total = before + (opaque > 0 ? scan.at[sums_at(job) + block] : 0);
+    scan.at[prefix_at(job) + opaque] = total;
+    if (job == 0) {
+      const uint words[4] = uint[](total / 64 + uint(total % 64 != 0), 1, 1, total);
+      for (uint i = 0; i < 4; ++i) scan.at[listed_at() + i] = words[i];
+    }
   }
   memoryBarrierBuffer();
   barrier();

@@ -147,4 +147,5 @@ vec4 certain_mark(uint bits) {
   return vec4(at, view.reversed, 1);
 }
 
-const vec4 kNowhere = vec4(2, 2, 2, 1);  // beyond the far plane and to the side
+// Where all corners of what is not drawn are put: in view, so that nothing need be clipped.
+const vec4 kNowhere = vec4(0, 0, 0.5, 1);

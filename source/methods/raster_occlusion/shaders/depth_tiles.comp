@@ -1,7 +1,6 @@
 #version 460
 #include "vulkan/shared.h"
 
-#include "resident.h"
 layout(local_size_x = 64) in;
 
 // The farthest depth of each tile of 8 x 8 pixels.
@@ -11,6 +10,8 @@ layout(push_constant, scalar) uniform Push {
   FloatBuffer depth, tiles;
   uint width, height, reversed;
 };
+
+const uint kDepthTile = 4;
 
 void main() {
   const uint columns = (width + kDepthTile - 1) / kDepthTile, rows = (height + kDepthTile - 1) / kDepthTile;

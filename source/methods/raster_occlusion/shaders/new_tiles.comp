@@ -5,25 +5,33 @@
 
 #include "boxes.h"
 #include "state.h"
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
-// Takes over the marks, and notes the tiles that objects drawn late may touch.
+// Notes the tiles that objects drawn late may touch, and has the work done that follows from there being any.
+// VkDispatchIndirectCommands: of this shader, by what was listed late; of what follows, zeros as yet.
+layout(buffer_reference, scalar) readonly buffer ListedBuffer { uvec3 groups; uint count; };
+layout(buffer_reference, scalar) buffer FollowUpBuffer { uvec3 tied, scan; };
+
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
-  ObjectBuffer data;
-  WordBuffer marks, state, tiles;
-  uint objects, frame;
+  WordBuffer late;
+  FollowUpBuffer follow_up;
+  ListedBuffer listed;
+  WordBuffer tiles;
+  uint objects, scan_groups, frame;
 };
 
 void main() {
-  const uint object = gl_GlobalInvocationID.x;
-  if (object == 0) tiles.at[0] = frame;
-  if (object >= objects || marks.at[object] != frame) return;
-  const uint bits = state_bits(frame, state.at[object]) | kSeen;
-  state.at[object] = state_word(frame, bits);
-  if (bits != (kInView | kSeen) || data.at[object].transparent != 0) return;
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= listed.count) return;
+  if (i == 0) {
+    tiles.at[0] = frame;
+    follow_up.tied = uvec3((objects + 255) / 256, 1, 1);
+    follow_up.scan = uvec3(scan_groups, 1, 1);
+  }
+  const BoxData box = boxes.at[late.at[i]];
   uvec2 first, last;
-  tile_range(footprint(boxes.at[object].centre_radius.xyz, boxes.at[object].half_extent.xyz), first, last);
+  tile_range(footprint(box.centre_radius.xyz, box.half_extent.xyz), first, last);
   const uint columns = tile_count().x;
   for (uint y = first.y; y <= last.y; ++y) {
     for (uint x = first.x; x <= last.x; ++x) tiles.at[1 + y * columns + x] = frame;

@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   ObjectBuffer data;
-  WordBuffer marks, state, tiles;
+  WordBuffer state, tiles;
   uint objects, frame;
 };
 
