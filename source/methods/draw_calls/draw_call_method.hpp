@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "methods/draw_calls/blend_order.hpp"
 #include "methods/draw_calls/units.hpp"
 #include "methods/methods.hpp"
 
@@ -49,7 +50,8 @@ public:
   [[nodiscard]] std::vector<Box> cells() const;
 
 private:
-  /// Opaque and transparent triangles apart, so that the latter can be blended over the former.
+  /// Opaque and transparent triangles apart: the latter are blended over the former, once each and far to
+  /// near.
   struct Layer {
     partition::TrianglePartition partition;
     Units units;
@@ -57,12 +59,14 @@ private:
 
   void rebuild();
   void take(const Layer& layer, const Facing& facing, Frame& frame) noexcept;
-  void submit(Frame& frame) noexcept;
+  void merge() noexcept;
+  void submit(Frame& frame) const noexcept;
 
   const Scene& scene_;
   DrawCallPlan plan_;
   Box extent_;
   std::array<Layer, 2> layers_;
+  BlendOrder blend_order_;
   TriangleLists lists_;
   TriangleGeometry geometry_;
 
