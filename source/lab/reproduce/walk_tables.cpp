@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
+#include <span>
 
 #include "lab/reproduce/draw_calls.hpp"
 
@@ -57,9 +59,15 @@ struct Rivals {
 Table calls_table(const LevelWalk& walk) {
   Table table;
   const std::string small = fmt::format("frame at {}x{}", kSmallWidth, kSmallHeight);
-  table.header = {
-      "simple / drawcall-wise", "calls", "calls", "ratio", "CPU", "frame", "were calls free", small,
-      "triangles zhang / wise"};
+  table.header = {"simple / drawcall-wise",
+                  "simple's calls",
+                  "drawcall-wise's",
+                  "ratio",
+                  "CPU",
+                  "frame",
+                  "were calls free",
+                  small,
+                  "triangles zhang / wise"};
   for (const auto structure : kWalkStructures) {
     const int best = walk.best_height(fmt::format("drawcall-wise-{}", structure));
     for (int height = 1; height <= 6; ++height) {
@@ -158,47 +166,59 @@ std::string final_line(const LevelWalk& walk) {
   return line + '\n';
 }
 
+/// "1.10 to 1.30": the least and the greatest over the structures.
+template <class Ratio>
+std::string range_of(std::span<const Rivals> rivals, Ratio ratio, int digits = 2) {
+  const auto [least, most] = std::ranges::minmax(rivals | std::views::transform(ratio));
+  return fmt::format("{:.{}f} to {:.{}f}", least, digits, most, digits);
+}
+
+std::string compared(const std::string& where, std::span<const Rivals> rivals) {
+  return fmt::format(
+      "{} simple makes {} × the calls of drawcall-wise; its frames take {} × as long (at most {} ×, were "
+      "drawcall-wise's calls free; {} × in a picture of {}x{}), its recording on the CPU {} ×. zhang submits "
+      "{} × the triangles of drawcall-wise.\n",
+      where, range_of(rivals, &Rivals::calls, 1), range_of(rivals, &Rivals::frames),
+      range_of(rivals, &Rivals::limit), range_of(rivals, &Rivals::small_frames), kSmallWidth, kSmallHeight,
+      range_of(rivals, &Rivals::recording), range_of(rivals, &Rivals::triangles));
+}
+
 }  // namespace
 
 std::string findings(const LevelWalk& walk) {
-  std::string out;
+  std::vector<Rivals> fourth, best;
+  std::string heights;
   for (const auto structure : kWalkStructures) {
-    const int best = walk.best_height(fmt::format("drawcall-wise-{}", structure));
-    for (const int height : {best, 4}) {
-      if (height == 4 && best == 4) continue;
-      const Rivals r(walk, structure, height);
-      out += fmt::format(
-          "{}, height {}{}: simple makes {:.1f} × the calls of drawcall-wise, whose frames are {:.2f} × as "
-          "fast (at most {:.2f} ×, were its calls free; {:.2f} × in a picture of {}x{}) and whose recording "
-          "on the CPU is {:.2f} × as fast; zhang "
-          "submits {:.2f} × the triangles of drawcall-wise.\n",
-          structure, height, height == best ? " (drawcall-wise at its best)" : " (the paper's best)",
-          r.calls(), r.frames(), r.limit(), r.small_frames(), kSmallWidth, kSmallHeight, r.recording(),
-          r.triangles());
-    }
+    const int height = walk.best_height(fmt::format("drawcall-wise-{}", structure));
+    heights += fmt::format("{}{} {}", heights.empty() ? "" : ", ", structure, height);
+    fourth.emplace_back(walk, structure, 4);
+    best.emplace_back(walk, structure, height);
   }
+  std::string out = compared("At height 4, the paper's best,", fourth) +
+                    compared(fmt::format("Where drawcall-wise is quickest (height of {})", heights), best);
   std::array<double, 7> by_height{};
   for (const WalkRow& row : walk.rows) {
     if (row.height > 0 && row.submission == Submission::calls) by_height[row.height] += 1 / row.frame_ms;
   }
   const auto winner = std::max_element(by_height.begin(), by_height.end()) - by_height.begin();
-  const WalkRow &best = walk.best(), &adaptive = walk.row("adaptive");
+  const WalkRow &quickest = walk.best(), &adaptive = walk.row("adaptive");
   out += fmt::format(
       "cluster-cone submits {:.2f} × the triangles of zhang-octree.\n",
       walk.row("cluster-cone?submission=merged").triangles / walk.row("zhang-octree?height=4").triangles);
   out += fmt::format(
-      "Measured on this device: a call {:.2f} µs, a command of a multi-draw {:.2f} µs, a triangle {:.0f} "
-      "ns.\n",
+      "Fitted to the frames, a call costs {:.2f} µs, a command of a multi-draw {:.2f} µs, and a triangle "
+      "with its "
+      "pixels {:.0f} ns.\n",
       walk.costs.call_ns / 1000, walk.costs.command_ns / 1000, walk.costs.triangle_ns);
   out += final_line(walk);
   out += fmt::format(
       "Quickest: {} ({:.0f} fps); the height that did best over all methods: "
       "{}.\n",
-      best.method, 1000 / best.final_ms, winner);
+      quickest.method, 1000 / quickest.final_ms, winner);
   out += fmt::format(
       "adaptive {} {} in {} frames; in the final it takes {:.3f} × the frame time of the quickest.\n",
       walk.adaptive_settled ? "settled on" : "had not settled, and used", walk.adaptive_way,
-      walk.learning_frames, adaptive.final_ms / best.final_ms);
+      walk.learning_frames, adaptive.final_ms / quickest.final_ms);
   const WalkRow &nothing = walk.row("nothing"), &none = walk.row("none");
   out += fmt::format(
       "An empty frame takes {:.2f} ms ({:.2f} in the small picture), everything in one call {:.2f} "
