@@ -23,7 +23,7 @@ struct DrawCallOptions {
 /// Frame times of n triangles in d draw calls. All cells take turns, so that none has a quieter machine.
 struct CallGrid {
   std::vector<std::uint32_t> triangles, calls;
-  std::vector<double> ms;  ///< triangles × calls, medians
+  std::vector<double> ms;  ///< triangles × calls, means of the quicker four fifths
   double call_us = 0;      ///< what a call adds, microseconds: the slope along the calls, mean of all rows
   double triangle_ns = 0;  ///< what a triangle adds: the slope along the triangles with one call
 };

@@ -1,6 +1,5 @@
 #include "lab/reproduce/walker.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <numeric>
 #include <utility>
@@ -51,19 +50,6 @@ Walker::Times Walker::draw(vulkan::Renderer& renderer, const View& view) {
   return out;
 }
 
-namespace {
-
-// Frames of a software rasteriser come in two speeds, by where its threads happen to run: medians jump from
-// one to the other, means do not.
-double typical(std::span<double> samples) {
-  std::ranges::sort(samples);
-  const std::size_t kept = samples.size() - samples.size() / 5;
-  return std::accumulate(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(kept), 0.0) /
-         static_cast<double>(kept);
-}
-
-}  // namespace
-
 std::vector<Walker::Times> draw_by_turns(std::span<Walker* const> walkers, vulkan::Renderer& renderer,
                                          const View& view, std::size_t turn, std::size_t rounds) {
   struct Samples {
@@ -86,8 +72,8 @@ std::vector<Walker::Times> draw_by_turns(std::span<Walker* const> walkers, vulka
   }
   std::vector<Walker::Times> medians;
   for (Samples& s : samples)
-    medians.push_back(
-        {timing_of(s.frame).median, timing_of(s.cull).median, timing_of(s.record).median, typical(s.frame)});
+    medians.push_back({timing_of(s.frame).median, timing_of(s.cull).median, timing_of(s.record).median,
+                       typical_of(s.frame)});
   return medians;
 }
 

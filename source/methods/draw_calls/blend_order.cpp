@@ -16,6 +16,12 @@ BlendOrder::BlendOrder(const FlatTriangles& flat, std::span<const std::uint32_t>
   }
 }
 
+TriangleRange BlendOrder::range_of(ObjectId object) const noexcept {
+  const auto at = std::ranges::lower_bound(objects_, object, {}, &Object::object);
+  if (at == objects_.end() || at->object != object) return {};
+  return {at->first, at->end - at->first};
+}
+
 void BlendOrder::arrange(const Scene& scene, const View& view, std::vector<TriangleRange>& ranges) noexcept {
   if (ranges.empty()) return;
   std::ranges::sort(ranges, {}, &TriangleRange::first);

@@ -18,6 +18,9 @@ public:
   BlendOrder(const FlatTriangles& flat, std::span<const std::uint32_t> triangles,
              std::span<const std::uint32_t> positions);
 
+  /// An object's triangles in the list; none where it has none.
+  [[nodiscard]] TriangleRange range_of(ObjectId object) const noexcept;
+
   /// Puts ranges of the list, in any order and overlapping or not, in the order in which whole objects are
   /// blended: objects far to near by their boxes' centres, equal ones by number, each one's triangles in
   /// theirs; every triangle once. Allocates nothing once it has grown.

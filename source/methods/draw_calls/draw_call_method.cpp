@@ -26,10 +26,6 @@ DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : s
   rebuild();
 }
 
-void DrawCallMethod::update(std::span<const ObjectId> moved) {
-  if (!moved.empty()) rebuild();
-}
-
 void DrawCallMethod::rebuild() {
   FlatTriangles flat = flatten(scene_);
   extent_ = extent(scene_);
@@ -41,7 +37,6 @@ void DrawCallMethod::rebuild() {
     order.reserve(flat.size() + flat.size() / 4);
   }
   const bool with_cones = plan_.facing != FacingRule::none;
-  std::uint64_t bytes = 0;
   for (const Surface surface : {Surface::opaque, Surface::transparent}) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < flat.size(); ++t) {
@@ -66,7 +61,6 @@ void DrawCallMethod::rebuild() {
       blend_order_ = BlendOrder(flat, triangles, positions);
     }
     layer.partition.drop_triangles();
-    bytes += layer.partition.bytes() + layer.units.bytes();
   }
   if (plan_.strategy == Strategy::simple) {
     lists_.indices = std::move(flat.indices), lists_.objects = std::move(flat.objects);
@@ -82,8 +76,16 @@ void DrawCallMethod::rebuild() {
   lists_.sources = std::move(order);
   seen_.assign(scene_.size(), 0);
   frame_ = 0;
-  bytes += lists_.positions.size() * sizeof(Vec3) +
-           4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 8 * seen_.size();
+  movers_.clear();
+  is_mover_.assign(scene_.size(), 0);
+  describe();
+}
+
+void DrawCallMethod::describe() {
+  std::uint64_t bytes = lists_.positions.size() * sizeof(Vec3) +
+                        4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) +
+                        9 * scene_.size();
+  for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.units.bytes();
   geometry_ = {lists_.positions,
                lists_.indices,
                lists_.objects,
@@ -111,7 +113,9 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
     runs_.clear(), ranges_.clear();
     frame.stats.nodes_visited += layer.partition.walk(frustum, runs_);
     take(layer, facing, frame);
-    if (&layer == &layers_[1]) {
+    const bool transparent = &layer == &layers_[1];
+    take_movers(frustum, transparent, frame);
+    if (transparent) {
       blend_order_.arrange(scene_, view, ranges_);
     } else if (plan_.submission == Submission::merged) {
       merge();
