@@ -4,8 +4,11 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <sightline/method.hpp>
 #include <sightline/worlds.hpp>
@@ -13,8 +16,8 @@
 namespace sightline {
 namespace {
 
-const Scene& twenty_million() {
-  static const Scene scene = *generate_world("soup?triangles=20000000&per-object=1000&size=2000&edge=1.5");
+Scene& twenty_million() {
+  static Scene scene = *generate_world("soup?triangles=20000000&per-object=1000&size=2000&edge=1.5");
   return scene;
 }
 
@@ -58,6 +61,24 @@ void cull(benchmark::State& state, const std::string& name, float far_plane) {
   state.counters["triangles"] = static_cast<double>(frame.stats.triangles);
 }
 
+// An object of a thousand triangles to and fro.
+void move_one(benchmark::State& state, const std::string& name) {
+  Method& method = method_named(name);
+  const std::array<ObjectId, 1> moved{7};
+  float way = 1;
+  for (auto _ : state) {
+    Affine transform = twenty_million().transform[7];
+    transform.rows[0].w += std::exchange(way, -way);
+    twenty_million().move_object(7, transform);
+    method.update(moved);
+  }
+  const Box box = twenty_million().bounds[7];
+  Frame frame;
+  method.cull(*make_view({.eye = {box.min.x, box.min.y, box.max.z + 50}}, 640, 360), frame);
+  if (std::ranges::find(frame.visible, ObjectId{7}) == frame.visible.end())
+    state.SkipWithError("what moved is not drawn");
+}
+
 void register_all() {
   for (const std::string name : {"drawcall-wise-octree?height=6", "zhang-octree?height=6",
                                  "zhang-kd-tree?height=6", "cluster-cone?size=128"}) {
@@ -70,6 +91,7 @@ void register_all() {
           far_plane)
           ->Unit(benchmark::kMillisecond);
     }
+    benchmark::RegisterBenchmark(("move_one/" + name).c_str(), move_one, name)->Unit(benchmark::kMillisecond);
   }
 }
 

@@ -1,18 +1,13 @@
 #include "culling/draw_list.hpp"
 
 #include <array>
-#include <bit>
 #include <utility>
+
+#include "culling/view_depth.hpp"
 
 namespace sightline::culling {
 
 namespace {
-
-// Floats in the order of their values as unsigned integers.
-std::uint32_t sortable(float value) noexcept {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
-}
 
 ObjectId id_of(std::uint64_t key) noexcept {
   return static_cast<ObjectId>(key);
@@ -46,13 +41,9 @@ void DrawList::sort(std::vector<std::uint64_t>& keys) noexcept {
 
 void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcept {
   const Vec3 eye = eye_position(view), forward = view_direction(view);
-  const Boxes& b = scene.bounds;
   opaque_.clear(), transparent_.clear();
   for (const ObjectId id : frame.visible) {
-    const float depth = (0.5f * (b.min_x[id] + b.max_x[id]) - eye.x) * forward.x +
-                        (0.5f * (b.min_y[id] + b.max_y[id]) - eye.y) * forward.y +
-                        (0.5f * (b.min_z[id] + b.max_z[id]) - eye.z) * forward.z;
-    const std::uint32_t near_first = sortable(depth);
+    const std::uint32_t near_first = sortable(view_depth(scene.bounds[id], eye, forward));
     const bool blended = scene.surface[id] == Surface::transparent;
     (blended ? transparent_ : opaque_)
         .push_back(std::uint64_t{blended ? ~near_first : near_first} << 32 | id);

@@ -3,6 +3,7 @@
 
 #include "culling/draw_list.hpp"
 #include "methods/device_method.hpp"
+#include "vulkan/triangle_draws.hpp"
 
 namespace sightline::methods {
 
@@ -11,17 +12,14 @@ namespace {
 class CpuOnDevice final : public DeviceMethod {
 public:
   CpuOnDevice(std::unique_ptr<Method> method, vulkan::Renderer& renderer)
-      : renderer_(renderer), method_(std::move(method)), draw_list_(renderer.scene()) {}
+      : renderer_(renderer), method_(std::move(method)) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return method_->guarantee(); }
   void update(std::span<const ObjectId> objects) override { method_->update(objects); }
+  void took(double milliseconds) noexcept override { method_->took(milliseconds); }
 
   void record(vulkan::Recorder& frame) override {
     method_->cull(frame.view, frame_);
-    if (method_->geometry()) {
-      // The renderer holds whole objects: a method that draws triangles of its own is drawn object by object.
-      draw_list_.build(renderer_.scene(), frame.view, frame_);
-    }
     const auto pass = frame.pass("draw", vulkan::PassKind::draw);
     renderer_.draw(frame, frame_.visible, frame_.draws);
   }
@@ -35,13 +33,108 @@ public:
 private:
   vulkan::Renderer& renderer_;
   std::unique_ptr<Method> method_;
+  Frame frame_;
+};
+
+/// Draws ranges of the method's own triangles.
+class TrianglesOnDevice final : public DeviceMethod {
+public:
+  TrianglesOnDevice(std::unique_ptr<Method> method, vulkan::Renderer& renderer)
+      : renderer_(renderer), method_(std::move(method)), draw_list_(renderer.scene()) {
+    take_over();
+  }
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return method_->guarantee(); }
+  void update(std::span<const ObjectId> objects) override {
+    if (objects.empty()) return;
+    method_->update(objects);
+    take_over();
+  }
+  void took(double milliseconds) noexcept override { method_->took(milliseconds); }
+
+  void record(vulkan::Recorder& frame) override {
+    method_->cull(frame.view, frame_);
+    const auto pass = frame.pass("draw", vulkan::PassKind::draw);
+    triangles_->draw(frame, frame_.draws, method_->geometry()->submission);
+  }
+
+  void read_back(Frame& frame) override {
+    frame = frame_;
+    std::ranges::sort(frame.visible);
+    frame.draws.clear();
+  }
+
+  bool record_everything(vulkan::Recorder& frame, Order order) override {
+    const auto pass = frame.pass("draw", vulkan::PassKind::draw);
+    triangles_->draw(frame, everything(frame.view, order), Submission::calls);
+    return true;
+  }
+
+  std::optional<std::vector<ObjectId>> everything_seen(const View& view) override {
+    return triangles_->item_buffer(view, everything(view, Order::rising), Submission::calls);
+  }
+
+private:
+  /// Copies the geometry to the device, and finds each object's triangles in it.
+  void take_over() {
+    const TriangleGeometry& geometry = *method_->geometry();
+    triangles_.reset();
+    triangles_.emplace(renderer_, geometry);
+    const Scene& scene = renderer_.scene();
+    std::vector<std::uint32_t> at(triangle_count(scene), kNowhere);  // of each triangle the first copy
+    for (std::uint32_t t = static_cast<std::uint32_t>(geometry.sources.size()); t-- > 0;)
+      at[geometry.sources[t]] = t;
+    ranges_.assign(scene.size(), {});
+    std::uint32_t source = 0;
+    for (ObjectId object = 0; object < scene.size(); ++object) {
+      std::vector<DrawCommand>& ranges = ranges_[object];
+      for (std::size_t i = 0; i < scene.triangles(object); ++i, ++source) {
+        const std::uint32_t t = at[source];
+        if (t == kNowhere) continue;
+        if (!ranges.empty() && ranges.back().first_instance + ranges.back().index_count / 3 == t) {
+          ranges.back().index_count += 3;
+        } else {
+          ranges.push_back({3, 1, 3 * t, 0, t});
+        }
+      }
+    }
+  }
+
+  /// Every triangle once: opaque objects in that order, then transparent ones far to near.
+  std::vector<DrawCommand> everything(const View& view, Order order) {
+    const Scene& scene = renderer_.scene();
+    const auto blended = [&](ObjectId object) { return scene.surface[object] == Surface::transparent; };
+    Frame all;
+    for (ObjectId object = 0; object < scene.size(); ++object) {
+      if (blended(object)) all.visible.push_back(object);
+    }
+    draw_list_.build(scene, view, all);
+    std::vector<DrawCommand> draws;
+    const auto draw = [&](ObjectId object) {
+      draws.insert(draws.end(), ranges_[object].begin(), ranges_[object].end());
+    };
+    for (ObjectId i = 0; i < scene.size(); ++i) {
+      const ObjectId object = order == Order::rising ? i : static_cast<ObjectId>(scene.size() - 1 - i);
+      if (!blended(object)) draw(object);
+    }
+    std::ranges::for_each(all.visible, draw);
+    return draws;
+  }
+
+  static constexpr std::uint32_t kNowhere = 0xffffffff;
+
+  vulkan::Renderer& renderer_;
+  std::unique_ptr<Method> method_;
+  std::optional<vulkan::TriangleDraws> triangles_;
   culling::DrawList draw_list_;
+  std::vector<std::vector<DrawCommand>> ranges_;  ///< by object
   Frame frame_;
 };
 
 }  // namespace
 
 std::unique_ptr<DeviceMethod> draw_by_device(std::unique_ptr<Method> method, vulkan::Renderer& renderer) {
+  if (method->geometry()) return std::make_unique<TrianglesOnDevice>(std::move(method), renderer);
   return std::make_unique<CpuOnDevice>(std::move(method), renderer);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,21 @@ public:
   /// What the last frame drew, ascending by id, and its counts; not part of a frame, for checking. Draws are
   /// left empty: they stay on the device.
   virtual void read_back(Frame& frame) = 0;
+  /// Told what the last frame took, as Method::took is.
+  virtual void took([[maybe_unused]] double milliseconds) noexcept {}
+  /// For a method that draws triangles of its own, in their own shading and perhaps their front faces alone:
+  /// records all of them, the picture that its frames are to be compared with. Of opaque objects at one depth
+  /// the first drawn shows: the lowest number in one order, the highest in the other. False, and nothing
+  /// recorded, for the rest, whose picture is the scene's.
+  enum class Order : std::uint8_t { rising, falling };
+  virtual bool record_everything([[maybe_unused]] vulkan::Recorder& frame, [[maybe_unused]] Order order) {
+    return false;
+  }
+  /// Which object each pixel of that picture shows, row 0 first, transparent ones left out; nothing for the
+  /// rest. Draws and waits.
+  virtual std::optional<std::vector<ObjectId>> everything_seen([[maybe_unused]] const View& view) {
+    return std::nullopt;
+  }
 };
 
 struct DeviceMethodInfo {

@@ -1,13 +1,18 @@
 #include "partition/triangle_partition.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace sightline::partition {
 
 namespace {
 
-// Fewer are not worth a split: a call costs more than they do.
-constexpr std::size_t kLeastTriangles = 2;
+// What a draw call costs, in triangles: by table 1 of the paper (one call or 100,000 of 100,000 triangles).
+constexpr std::size_t kCallsWorth = 11;
+
+// A split into k saves at best what k − 1 children hold, and costs at worst k − 1 calls: nodes of fewer
+// triangles than k calls are worth have less to gain than to lose. A grid's cells are all alike.
+constexpr std::array<std::size_t, 3> kLeastTriangles{2, 8 * kCallsWorth, 2 * kCallsWorth};
 
 }  // namespace
 
@@ -35,7 +40,7 @@ struct TrianglePartition::Builder {
     const std::size_t self = out.nodes_.size();
     out.nodes_.push_back({{}, 0, out.cells(), 0});
     Split parts;
-    if (levels == 0 || triangles.size() < kLeastTriangles ||
+    if (levels == 0 || triangles.size() < kLeastTriangles[static_cast<std::size_t>(structure)] ||
         !split(structure, all, triangles, region, parts)) {
       out.nodes_[self].bounds = cell(triangles, region);
     } else {

@@ -25,7 +25,8 @@ public:
   };
 
   /// Structures of Serpa et al. over `triangles` (ascending ids into `all`), `height` levels of splitting.
-  /// A node is not split where that would multiply its triangles. Coordinates are finite.
+  /// A node is not split where that would multiply its triangles, nor a tree's where it holds fewer than its
+  /// children's calls are worth. Coordinates are finite.
   void build(Structure structure, const TriangleSpan& all, std::span<const std::uint32_t> triangles,
              std::uint32_t height);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <sightline/worlds.hpp>
 
@@ -21,7 +22,7 @@ using methods::Trials;
 
 /// Tells times until they settle; at most `patience` frames.
 template <class Time>
-int settle(Trials& trials, Time time, int patience = 2000) {
+int settle(Trials& trials, Time time, int patience = 4 * 16 * Trials::kMostPairs) {
   int frames = 0;
   for (; !trials.settled() && frames < patience; ++frames) trials.took(time(trials.current()));
   return frames;
@@ -33,15 +34,43 @@ TEST(Trials, FindTheQuickestAmongNoiseAndHitches) {
     Trials trials(16, 5);
     EXPECT_EQ(trials.current(), 5u);
     double drift = 1;
+    int frame = 0;
     const int frames = settle(trials, [&](std::uint32_t way) {
-      drift *= 1.003;  // the camera walks into ever dearer views
+      drift *= ++frame / 200 % 2 == 0 ? 1.003 : 1 / 1.003;  // the camera walks into dearer and cheaper views
       const double hitch = random.below(50) == 0 ? 8 : 1;
       return drift * hitch * (way == 11 ? 0.8 : 1 + 0.02 * way) * random.between(0.95f, 1.05f);
     });
     EXPECT_TRUE(trials.settled());
     EXPECT_EQ(trials.winner(), 11u) << "seed " << seed;
-    EXPECT_EQ(frames, 2 * (16 * 16 + 8 * 32 + 4 * 60));
+    EXPECT_LT(frames, 1500);  // so clear a case does not need the longest run
   }
+}
+
+// Frames as a software rasteriser gives them: in two speeds that last for some frames, in views from cheap to
+// thrice as dear. What is settled on is hardly ever more than 3 % slower than the best, however many are
+// alike.
+TEST(Trials, FindOneNearTheQuickestThoughFramesComeInTwoSpeeds) {
+  constexpr std::array kTruth{1.085, 1.083, 1.09, 1.117, 1.139, 1.183, 1.019,
+                              1.043, 1.0,   1.02, 1.097, 1.25,  1.03,  1.116};
+  int poor = 0;
+  double regret = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    scene::Random random(seed);
+    Trials trials(kTruth.size(), 0);
+    int frame = 0;
+    double speed = 1;
+    const int frames = settle(trials, [&](std::uint32_t way) {
+      if (random.below(5) < 2) speed = random.below(10) < 3 ? 1.35 : 1;
+      const double view = 2 + std::sin(0.05 * ++frame);
+      return kTruth[way] * view * speed * random.between(0.95f, 1.05f);
+    });
+    EXPECT_LE(frames, 5500);
+    const double slower = kTruth[trials.winner()] - 1;
+    regret += slower / 60;
+    poor += slower > 0.03;
+  }
+  EXPECT_LT(regret, 0.01);
+  EXPECT_LE(poor, 3);
 }
 
 TEST(Trials, OnceSettledTryRivalsInOneFrameOf64) {
@@ -61,13 +90,29 @@ TEST(Trials, ChangeTheirMindWhenARivalBecomesQuicker) {
   Trials trials(4, 0);
   settle(trials, [](std::uint32_t way) { return 1.0 + 0.1 * way; });
   ASSERT_EQ(trials.winner(), 0u);
-  for (int frame = 0; frame < 128 * 16; ++frame) trials.took(trials.current() == 1 ? 0.9 : 1.0);
+  for (int frame = 0; frame < 128 * 3 * 10; ++frame) trials.took(trials.current() == 1 ? 0.85 : 1.0);
   EXPECT_EQ(trials.winner(), 1u);
+}
+
+// The best of three noisy rivals looks quicker now and then by chance alone.
+TEST(Trials, ChangeNothingForNoise) {
+  int changes = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    scene::Random random(seed);
+    Trials trials(4, 0);
+    settle(trials, [](std::uint32_t way) { return 1.0 + 0.1 * way; });
+    std::uint32_t held = trials.winner();
+    for (int frame = 0; frame < 128 * 300; ++frame) {
+      trials.took((random.below(10) < 3 ? 1.35 : 1.0) * random.between(0.95f, 1.05f));
+      changes += trials.winner() != std::exchange(held, trials.winner());
+    }
+  }
+  EXPECT_LE(changes, 2);
 }
 
 TEST(Trials, OfThoseAlikeSettleOnTheLowestNumber) {
   Trials trials(6, 3);
-  settle(trials, [](std::uint32_t way) { return way == 2 || way == 5 ? 1.01 - 0.001 * way : 1.5; });
+  settle(trials, [](std::uint32_t way) { return way == 2 || way == 5 ? 1.006 - 0.001 * way : 1.5; });
   EXPECT_EQ(trials.winner(), 2u);
 }
 
@@ -111,7 +156,7 @@ TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
     auto& adaptive = static_cast<Adaptive&>(*method);
     Frame frame;
     int frames = 0;
-    for (; !adaptive.settled() && frames < 2000; ++frames) {
+    for (; !adaptive.settled() && frames < 6000; ++frames) {
       adaptive.cull(look_round(frames), frame);
       adaptive.took(made_up_time(frame, call, triangle));
     }
@@ -145,11 +190,12 @@ TEST(AdaptiveMethod, LosesNothingWhileItTries) {
   const auto cameras = lab::random_cameras(scene, 40, 17);
   std::set<std::string> tried;
   Frame frame;
-  for (int f = 0; f < 1800; ++f) {
+  for (int f = 0; f < 6000 && (f < 1000 || !adaptive.settled()); ++f) {
     const View view = *make_view(cameras[static_cast<std::size_t>(f) % cameras.size()], 96, 64);
-    tried.insert(adaptive.in_use());
+    const bool is_new = tried.insert(adaptive.in_use()).second;
     method->cull(view, frame);
-    ASSERT_EQ(judge.judge(view, *method->geometry(), frame).loss.lost_pixels, 0u) << adaptive.in_use();
+    if (is_new || f % 6 == 0)
+      ASSERT_EQ(judge.judge(view, *method->geometry(), frame).loss.lost_pixels, 0u) << adaptive.in_use();
     ASSERT_EQ(method->geometry()->indices.data(), indices);
     if (method->geometry()->submission == Submission::multi_draw)
       ASSERT_EQ(frame.stats.draw_calls, frame.draws.empty() ? 0u : 1u);

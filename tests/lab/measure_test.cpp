@@ -46,6 +46,14 @@ Comparison two_views(std::vector<Row> rows) {
   return comparison;
 }
 
+TEST(Timing, TypicalIsTheMeanOfTheQuickerFourFifths) {
+  std::vector<double> ms{9, 1, 100, 3, 2, 100, 4, 5, 6, 10};
+  EXPECT_DOUBLE_EQ(typical_of(ms), 5.0);
+  std::vector<double> few{3, 1, 2};
+  EXPECT_DOUBLE_EQ(typical_of(few), 2.0);
+  EXPECT_EQ(typical_of({}), 0.0);
+}
+
 TEST(Timing, MedianLeastAndGreatest) {
   std::array<double, 5> odd{5, 1, 9, 3, 2};
   EXPECT_EQ(timing_of(odd).median, 3);

@@ -47,7 +47,12 @@ void expect_sound(const Scene& scene, const Frame& frame, const TriangleGeometry
     ASSERT_EQ(drawn, frame.visible.size()) << name;
   }
   ASSERT_EQ(frame.stats.objects, scene.size()) << name;
-  ASSERT_EQ(frame.stats.draw_calls, frame.draws.size()) << name;
+  if (geometry && geometry->submission == Submission::multi_draw) {
+    ASSERT_LE(frame.stats.draw_calls, 2u) << name;  // opaque ranges, transparent ranges
+    ASSERT_EQ(frame.stats.draw_calls == 0, frame.draws.empty()) << name;
+  } else {
+    ASSERT_EQ(frame.stats.draw_calls, frame.draws.size()) << name;
+  }
   const CullStats& s = frame.stats;
   ASSERT_EQ(
       s.culled_frustum + s.culled_contribution + s.culled_facing + s.culled_occlusion + frame.visible.size(),
@@ -123,6 +128,10 @@ TEST_P(Conformance, MovedObjectsAreFollowed) {
         scene.move_object(object, transform);
         moved.push_back(object);
       }
+      // Cells of triangles are built anew only once many objects have moved; until then what they keep
+      // depends on their history. See the methods' own tests for that.
+      for (ObjectId object = 0; method->geometry() && object < scene.size(); ++object)
+        moved.push_back(object);
       method->update(moved);
       const auto fresh = *create_method(info.name, scene);
       const View view = test::random_view(random, kAround);

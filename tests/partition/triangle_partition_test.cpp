@@ -115,7 +115,11 @@ TEST(TrianglePartition, ATriangleIsOnlyInCellsItReachesInto) {
 }
 
 TEST(TrianglePartition, RegularCellsHaveTheirShareOfTheRoot) {
-  const Flat flat(test::awkward_triangles()[0].triangles);
+  scene::Random random(46);
+  std::vector<test::Triangle> triangles;
+  for (int i = 0; i < 8000; ++i)
+    triangles.push_back(test::random_triangle(random, {{-50, -20, -50}, {50, 20, 50}}, 0.8f));
+  const Flat flat(triangles);
   TrianglePartition octree, grid;
   octree.build(Structure::octree, flat.span(), flat.ids, 2);
   grid.build(Structure::grid, flat.span(), flat.ids, 3);
@@ -134,16 +138,37 @@ TEST(TrianglePartition, RegularCellsHaveTheirShareOfTheRoot) {
   }
 }
 
+// A split that cannot gain what its calls may cost is left alone: 8 × 11 triangles, eleven being a call's
+// worth.
+TEST(TrianglePartition, TreesKeepFewTrianglesInOneCell) {
+  scene::Random random(47);
+  for (const auto& [structure, least] :
+       {std::pair{Structure::octree, 88}, std::pair{Structure::kd_tree, 22}}) {
+    for (const int count : {least - 1, least}) {
+      std::vector<test::Triangle> triangles;
+      for (int i = 0; i < count; ++i)
+        triangles.push_back(test::random_triangle(random, {{-50, -20, -50}, {50, 20, 50}}, 0.8f));
+      const Flat flat(triangles);
+      TrianglePartition partition;
+      partition.build(structure, flat.span(), flat.ids, 6);
+      EXPECT_EQ(partition.cells() > 1, count == least);
+      expect_sound_tree(partition, triangles.size());
+    }
+  }
+}
+
 TEST(TrianglePartition, KdTreeSplitsAtTheMeanOfTheAxisOfHighestVariance) {
   std::vector<test::Triangle> triangles;
-  for (const float x : {0.0f, 1.0f, 2.0f, 21.0f})
-    triangles.push_back({Vec3{x, 0, 0}, Vec3{x + 0.3f, 1, 0}, Vec3{x + 0.3f, 0, 2}});
+  for (int i = 0; i < 8; ++i) {
+    for (const float x : {0.0f, 1.0f, 2.0f, 21.0f})
+      triangles.push_back({Vec3{x, 0, 0}, Vec3{x + 0.3f, 1, 0}, Vec3{x + 0.3f, 0, 2}});
+  }
   const Flat flat(triangles);
   TrianglePartition partition;
   partition.build(Structure::kd_tree, flat.span(), flat.ids, 1);
   ASSERT_EQ(partition.cells(), 2u);
   EXPECT_NEAR(partition.region(0).max.x, 6.2, 1e-5);
-  EXPECT_EQ(partition.triangles(0).size(), 3u);
+  EXPECT_EQ(partition.triangles(0).size(), 24u);
 }
 
 TEST(TrianglePartition, WalkFindsExactlyTheCellsThatOverlap) {

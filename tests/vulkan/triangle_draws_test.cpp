@@ -75,6 +75,61 @@ TEST_F(TriangleDrawsTest, BackFacesAreThoseOfTheRayJudge) {
   EXPECT_LT(differ, all / 200);  // silhouettes round differently
 }
 
+// Opaque triangles, then all transparent objects far to near: what Renderer and DrawList draw without
+// culling.
+std::vector<DrawCommand> whole_picture(const Scene& scene, const View& view) {
+  std::vector<std::pair<float, ObjectId>> far_first;
+  std::vector<std::uint32_t> first{0};
+  std::vector<DrawCommand> draws;
+  const auto draw = [&](ObjectId object) {
+    const std::uint32_t count = scene.meshes[scene.mesh[object]].index_count;
+    draws.push_back({count, 1, 3 * first[object], 0, first[object]});
+  };
+  const Vec3 eye = eye_position(view), forward = view_direction(view);
+  for (ObjectId object = 0; object < scene.size(); ++object) {
+    first.push_back(first.back() + scene.meshes[scene.mesh[object]].index_count / 3);
+    if (scene.surface[object] == Surface::opaque) {
+      draw(object);
+      continue;
+    }
+    const Box box = scene.bounds[object];
+    const float depth = (0.5f * (box.min.x + box.max.x) - eye.x) * forward.x +
+                        (0.5f * (box.min.y + box.max.y) - eye.y) * forward.y +
+                        (0.5f * (box.min.z + box.max.z) - eye.z) * forward.z;
+    far_first.emplace_back(-depth, object);
+  }
+  std::ranges::sort(far_first);
+  for (const auto& [depth, object] : far_first) draw(object);
+  return draws;
+}
+
+TEST_F(TriangleDrawsTest, TransparentTrianglesBlendAsWithoutCulling) {
+  Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
+  for (ObjectId object = 0; object < scene.size(); object += 3) scene.surface[object] = Surface::transparent;
+  vulkan::Renderer renderer(device(), scene);
+  const auto all = *create_method("simple-octree", scene);  // its list is the scene's, in order
+  for (const std::string name : {"simple-octree", "drawcall-wise-kd-tree", "zhang-grid",
+                                 "zhang-octree?height=6", "cluster-cone", "adaptive"}) {
+    const auto method = *create_method(name, scene);
+    TriangleGeometry everything = *all->geometry();
+    everything.front_faces_only = method->geometry()->front_faces_only;
+    vulkan::TriangleDraws draws(renderer, *method->geometry()), truth(renderer, everything);
+    for (const Camera& camera : lab::random_cameras(scene, 8, 15)) {
+      const View view = view_of(camera, 160, 100);
+      Frame frame;
+      method->cull(view, frame);
+      renderer.frame(view, [&](vulkan::Recorder& recorder) {
+        draws.draw(recorder, frame.draws, method->geometry()->submission);
+      });
+      const vulkan::Picture picture = renderer.picture();
+      renderer.frame(view, [&](vulkan::Recorder& recorder) {
+        truth.draw(recorder, whole_picture(scene, view), Submission::calls);
+      });
+      ASSERT_EQ(picture, renderer.picture()) << name;
+    }
+  }
+}
+
 // Fragments know their object without triangle numbers, which would want geometry shaders.
 TEST(TriangleDraws, NeedNoGeometryShaders) {
   vulkan::DeviceOptions options;

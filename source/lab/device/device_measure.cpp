@@ -85,8 +85,10 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
         samples[m].frame.push_back(times.frame_ms);
       }
     }
-    const ItemBuffer truth = bench.judge(view);
+    const ItemBuffer scene_truth = bench.judge(view);
     for (std::size_t m = 0; m < contestants.size(); ++m) {
+      const std::optional<ItemBuffer> own = bench.judge_own(*contestants[m].method, view);
+      const ItemBuffer& truth = own ? *own : scene_truth;
       contestants[m].method->read_back(frame);
       const Loss loss = compare_to_truth(truth, frame.visible);
       Row row;

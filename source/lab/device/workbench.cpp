@@ -18,7 +18,29 @@ Workbench::Workbench(vulkan::Device& device, Scene& scene, std::span<const std::
 }
 
 vulkan::FrameTimes Workbench::draw(methods::DeviceMethod& method, const View& view) {
-  return renderer_.frame(view, [&](vulkan::Recorder& frame) { method.record(frame); });
+  const vulkan::FrameTimes times =
+      renderer_.frame(view, [&](vulkan::Recorder& frame) { method.record(frame); });
+  method.took(times.frame_ms);
+  return times;
+}
+
+std::optional<ItemBuffer> Workbench::judge_own(methods::DeviceMethod& method, const View& view) {
+  std::optional<std::vector<ObjectId>> seen = method.everything_seen(view);
+  if (!seen) return std::nullopt;
+  ItemBuffer out;
+  out.width = view.width, out.height = view.height;
+  out.ids = std::move(*seen);
+  out.pixels.resize(scene_.size());
+  for (const ObjectId id : out.ids) {
+    if (id != kNoObject) ++out.pixels[id];
+  }
+  return out;
+}
+
+vulkan::Picture Workbench::own_picture(methods::DeviceMethod& method, const View& view,
+                                       methods::DeviceMethod::Order order) {
+  renderer_.frame(view, [&](vulkan::Recorder& frame) { method.record_everything(frame, order); });
+  return renderer_.picture();
 }
 
 ItemBuffer Workbench::judge(const View& view) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,10 +28,15 @@ public:
   [[nodiscard]] std::span<DeviceContestant> contestants() noexcept { return contestants_; }
   [[nodiscard]] methods::DeviceMethod& reference() noexcept { return *reference_; }
 
-  /// One frame of one method.
+  /// One frame of one method, which is told what it took.
   vulkan::FrameTimes draw(methods::DeviceMethod& method, const View& view);
   /// The rasteriser's verdict. The next picture is drawn anew in any case.
   [[nodiscard]] ItemBuffer judge(const View& view);
+  /// For a method that draws triangles of its own: what all of them look like to the rasteriser, opaque ones
+  /// alone, and their picture. Nothing for the rest, whose truth is the scene's.
+  [[nodiscard]] std::optional<ItemBuffer> judge_own(methods::DeviceMethod& method, const View& view);
+  [[nodiscard]] vulkan::Picture own_picture(methods::DeviceMethod& method, const View& view,
+                                            methods::DeviceMethod::Order order);
   /// Tells everybody who holds a copy that these objects have moved.
   void update(std::span<const ObjectId> moved);
 

@@ -74,7 +74,7 @@ CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& option
     soups.push_back(std::make_unique<Soup>(device, triangles, options));
   const std::size_t columns = grid.calls.size(), rows = grid.triangles.size(), cells = rows * columns;
   std::vector<std::vector<double>> times(cells);
-  const std::size_t rounds = options.quick ? 7 : 15;
+  const std::size_t rounds = options.quick ? 11 : 20;
   for (std::size_t round = 0; round <= rounds; ++round) {
     for (std::size_t k = 0; k < cells; ++k) {
       // To and fro, and from another cell each time.
@@ -84,7 +84,7 @@ CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& option
     }
     if (progress) progress(round + 1, rounds + 1);
   }
-  for (auto& samples : times) grid.ms.push_back(timing_of(samples).median);
+  for (auto& samples : times) grid.ms.push_back(typical_of(samples));
   for (std::size_t n = 0; n < rows; ++n) {
     grid.call_us += 1000 * (grid.ms[n * columns + columns - 1] - grid.ms[n * columns]) /
                     (grid.calls.back() - 1) / static_cast<double>(rows);

@@ -23,7 +23,7 @@ struct DrawCallOptions {
 /// Frame times of n triangles in d draw calls. All cells take turns, so that none has a quieter machine.
 struct CallGrid {
   std::vector<std::uint32_t> triangles, calls;
-  std::vector<double> ms;  ///< triangles × calls, medians
+  std::vector<double> ms;  ///< triangles × calls, means of the quicker four fifths
   double call_us = 0;      ///< what a call adds, microseconds: the slope along the calls, mean of all rows
   double triangle_ns = 0;  ///< what a triangle adds: the slope along the triangles with one call
 };
@@ -58,10 +58,12 @@ struct WalkRow {
   double draw_calls = 0, ranges = 0, triangles = 0;
   std::uint64_t bytes = 0, lost_pixels = 0;
   std::vector<double> frame_ms_by_view;
-  double small_frame_ms = 0;  ///< in the small picture; simple and drawcall-wise alone
-  double final_ms = 0;        ///< of the final among the quickest; 0 for who was not in it
+  double small_frame_ms = 0;  ///< in the small picture; simple, drawcall-wise, none and nothing
+  /// Of the final among the quickest: mean over its views of the mean of the quicker four fifths of the
+  /// rounds. 0 for who was not in it.
+  double final_ms = 0;
 
-  /// Exact and neither `adaptive` nor `none`.
+  /// Exact and neither `adaptive` nor `none` nor `nothing`.
   [[nodiscard]] bool may_be_best() const noexcept;
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };

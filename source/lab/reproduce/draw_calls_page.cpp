@@ -40,8 +40,16 @@ for (const chart of JSON.parse(document.getElementById("data").textContent)) {
                 y: { title: { display: true, text: "frames per second" }, beginAtZero: true } } } });
 })";
 
+constexpr const char* kStyle = R"(
+main > h3 { margin: 1.6rem 0 .6rem; }
+th, td { padding: .4rem .55rem; } table { font-size: .86rem; }
+table.numbers th:nth-child(2), table.numbers td:nth-child(2) { text-align: right; }
+.verdict ul { margin: 0; padding: 0 0 0 1.1rem; } .verdict li + li { margin-top: .45rem; }
+)";
+
 std::string html(const Table& table) {
-  std::string out = "<div class=\"wide\"><table><thead><tr>";
+  std::string out = "<div class=\"wide\"><table";
+  out += table.text_columns == 1 ? " class=\"numbers\"><thead><tr>" : "><thead><tr>";
   for (const std::string& cell : table.header) out += "<th>" + escape(cell);
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
@@ -52,11 +60,14 @@ std::string html(const Table& table) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string with_breaks(const std::string& sentences) {
-  std::string out = escape(sentences);
-  for (std::size_t at = 0; (at = out.find('\n', at)) != std::string::npos; at += 5)
-    out.replace(at, 1, "<br>\n");
-  return out;
+std::string as_list(const std::string& sentences) {
+  std::string out = "<ul>";
+  for (std::size_t at = 0; at < sentences.size();) {
+    const std::size_t end = std::min(sentences.find('\n', at), sentences.size());
+    out += "<li>" + escape(sentences.substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out + "</ul>";
 }
 
 // Every structure × variant at the height that was best for it, and what goes beyond them.
@@ -122,12 +133,13 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>Draw calls – Sightline</title>\n<style>\n";
   page.append(report::kPageStyle)
+      .append(kStyle)
       .append("</style></head>\n<body><main>\n<header><h1>Culling that counts draw calls</h1>");
   page += fmt::format(
       "<p>Serpa, Serpa &amp; Rodrigues, measured again on {} ({}, {} hardware threads)</p></header>\n",
       escape(device), escape(machine.cpu), machine.cores);
   page += "<h2>Table 1: triangles × draw calls</h2>\n" + html(table_of(grid));
-  page += "<p>" + with_breaks(findings(grid)) + "</p>\n";
+  page += "<div class=\"verdict\">" + as_list(findings(grid)) + "</div>\n";
   nlohmann::ordered_json data = nlohmann::ordered_json::array();
   constexpr std::array kNames{"grid", "octree", "kd-tree"};
   for (std::size_t w = 0; w < walks.size(); ++w) {
@@ -135,7 +147,7 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
     const std::string id = "walk-" + std::to_string(w + 1);
     page += fmt::format("<h2>{}</h2>\n<p>{}, {} triangles, {} views.</p>\n", escape(walk.level),
                         escape(walk.kind), format_count(static_cast<double>(walk.triangles)), walk.views);
-    page += "<p class=\"verdict\">" + with_breaks(findings(walk)) + "</p>\n";
+    page += "<div class=\"verdict\">" + as_list(findings(walk)) + "</div>\n";
     page += "<h3>Frames per second along the walk</h3>\n<figure><div class=\"chart\"><canvas id=\"" + id +
             "\" role=\"img\" aria-label=\"Frames per second along the walk\"></canvas></div></figure>\n";
     page += "<h3>Every structure, variant and height</h3>\n" + html(heights_table(walk)) +

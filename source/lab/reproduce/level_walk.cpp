@@ -21,13 +21,15 @@ public:
   void add_view(std::span<const std::unique_ptr<Walker>> walkers) {
     std::vector<std::array<double, 4>> samples;
     std::array<double, 4> mean{};
+    const auto all = static_cast<double>(walkers.size() - 1);
     for (const auto& walker : walkers) {
+      if (walker->row.method == "nothing") continue;
       const bool multi = walker->geometry().submission == Submission::multi_draw;
       const auto ranges = static_cast<double>(walker->frame().draws.size());
       samples.push_back({multi ? 0 : ranges, multi ? ranges : 0,
                          static_cast<double>(walker->frame().stats.triangles),
                          walker->row.frame_ms_by_view.back()});
-      for (std::size_t i = 0; i < 4; ++i) mean[i] += samples.back()[i] / static_cast<double>(walkers.size());
+      for (std::size_t i = 0; i < 4; ++i) mean[i] += samples.back()[i] / all;
     }
     for (auto& sample : samples) {
       for (std::size_t i = 0; i < 4; ++i) sample[i] -= mean[i];
@@ -56,7 +58,7 @@ private:
 };
 
 std::vector<std::string> specifications() {
-  std::vector<std::string> out{"none"};
+  std::vector<std::string> out{"nothing", "none"};
   for (const auto variant : kWalkVariants) {
     for (const auto structure : kWalkStructures) {
       for (int height = 1; height <= 6; ++height)
@@ -82,8 +84,9 @@ public:
       walkers_.push_back(std::make_unique<Walker>(renderer_, specification));
     for (const auto& walker : walkers_) {
       everybody_.push_back(walker.get());
-      if (walker->row.submission == Submission::calls &&
-          (walker->row.family.starts_with("simple-") || walker->row.family.starts_with("drawcall-wise-"))) {
+      const std::string& family = walker->row.family;
+      if (!walker->culls() || (walker->row.submission == Submission::calls &&
+                               (family.starts_with("simple-") || family.starts_with("drawcall-wise-")))) {
         paper_.push_back(walker.get());
       }
     }
@@ -93,7 +96,7 @@ public:
   void let_adaptive_learn() {
     Walker& walker = *walkers_.back();
     const auto& adaptive = static_cast<const methods::Adaptive&>(walker.method());
-    constexpr std::size_t kSteps = 500, kMost = 6 * kSteps;
+    constexpr std::size_t kSteps = 500, kMost = 14 * kSteps;
     const CameraPath path = make_path(scene_, "walk", kSteps);
     for (std::size_t step = 0; step < kMost && !adaptive.settled(); ++step, ++out_.learning_frames)
       walker.draw(renderer_, view_of(path.cameras[step % path.cameras.size()]));
@@ -114,7 +117,7 @@ public:
       row.draw_calls += static_cast<double>(frame.stats.draw_calls) / views();
       row.ranges += static_cast<double>(frame.draws.size()) / views();
       row.triangles += static_cast<double>(frame.stats.triangles) / views();
-      if (!walkers_[w]->draws_everything())
+      if (walkers_[w]->culls())
         row.lost_pixels += judge_.judge(view, walkers_[w]->geometry(), frame).loss.lost_pixels;
     }
     fit_.add_view(walkers_);
@@ -138,10 +141,10 @@ public:
     const CameraPath path = make_path(scene_, "walk", options_.quick ? 24 : 40);
     out_.final_views = path.cameras.size();
     for (std::size_t v = 0; v < out_.final_views; ++v) {
-      const auto medians =
-          draw_by_turns(finalists, renderer_, view_of(path.cameras[v]), v, options_.quick ? 9 : 15);
+      const auto times =
+          draw_by_turns(finalists, renderer_, view_of(path.cameras[v]), v, options_.quick ? 24 : 40);
       for (std::size_t w = 0; w < finalists.size(); ++w)
-        finalists[w]->row.final_ms += medians[w].frame_ms / static_cast<double>(out_.final_views);
+        finalists[w]->row.final_ms += times[w].typical_ms / static_cast<double>(out_.final_views);
     }
   }
 
@@ -169,7 +172,7 @@ private:
 }  // namespace
 
 bool WalkRow::may_be_best() const noexcept {
-  return family != "adaptive" && family != "none" && lost_pixels == 0;
+  return family != "adaptive" && family != "none" && family != "nothing" && lost_pixels == 0;
 }
 
 const WalkRow& LevelWalk::row(std::string_view method) const {

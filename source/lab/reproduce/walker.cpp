@@ -11,12 +11,14 @@
 namespace sightline::lab {
 
 Walker::Walker(vulkan::Renderer& renderer, const std::string& specification)
-    : everything_(specification == "none") {
+    : what_(specification == "none"      ? What::everything
+            : specification == "nothing" ? What::nothing
+                                         : What::method) {
   row.method = specification;
   row.family = std::string(specified_name(specification));
   const std::size_t at = specification.find("height=");
   row.height = at == std::string::npos ? 0 : static_cast<std::uint32_t>(specification[at + 7] - '0');
-  method_ = or_throw(create_method(everything_ ? "simple-grid?height=1" : specification, renderer.scene()));
+  method_ = or_throw(create_method(culls() ? specification : "simple-grid?height=1", renderer.scene()));
   row.submission = geometry().submission;
   row.bytes = geometry().bytes;
   draws_ = std::make_unique<vulkan::TriangleDraws>(renderer, geometry());
@@ -32,13 +34,13 @@ Walker::Times Walker::draw(vulkan::Renderer& renderer, const View& view) {
   Times out;
   const vulkan::FrameTimes times = renderer.frame(view, [&](vulkan::Recorder& recorder) {
     const auto begin = std::chrono::steady_clock::now();
-    if (everything_) {
+    if (culls()) {
+      method_->cull(view, frame_);
+    } else if (what_ == What::everything) {
       const auto count = static_cast<std::uint32_t>(method_->geometry()->objects.size());
       frame_.clear();
       frame_.draws.push_back({3 * count, 1, 0, 0, 0});
       frame_.stats.draw_calls = 1, frame_.stats.triangles = count;
-    } else {
-      method_->cull(view, frame_);
     }
     out.cull_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     draws_->draw(recorder, frame_.draws, method_->geometry()->submission);
@@ -70,7 +72,8 @@ std::vector<Walker::Times> draw_by_turns(std::span<Walker* const> walkers, vulka
   }
   std::vector<Walker::Times> medians;
   for (Samples& s : samples)
-    medians.push_back({timing_of(s.frame).median, timing_of(s.cull).median, timing_of(s.record).median});
+    medians.push_back({timing_of(s.frame).median, timing_of(s.cull).median, timing_of(s.record).median,
+                       typical_of(s.frame)});
   return medians;
 }
 

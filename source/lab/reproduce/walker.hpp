@@ -12,13 +12,14 @@ namespace sightline::lab {
 
 class Walker {
 public:
-  /// "none" submits all triangles in one call. Back faces are culled for every method, so that all draw one
-  /// picture.
+  /// "none" submits all triangles in one call, "nothing" not one. Back faces are culled for every method, so
+  /// that all draw one picture.
   Walker(vulkan::Renderer& renderer, const std::string& specification);
 
   /// Culls and draws a frame, and tells the method what it took. Returns what was measured.
   struct Times {
     double frame_ms = 0, cull_ms = 0, record_ms = 0;
+    double typical_ms = 0;  ///< of several frames: the mean of the quicker four fifths
   };
   Times draw(vulkan::Renderer& renderer, const View& view);
 
@@ -26,12 +27,12 @@ public:
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] TriangleGeometry geometry() const noexcept;
   [[nodiscard]] Method& method() const noexcept { return *method_; }
-  [[nodiscard]] bool draws_everything() const noexcept { return everything_; }
+  [[nodiscard]] bool culls() const noexcept { return what_ == What::method; }
 
   WalkRow row;
 
 private:
-  bool everything_;
+  enum class What : std::uint8_t { method, everything, nothing } what_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<vulkan::TriangleDraws> draws_;
   Frame frame_;

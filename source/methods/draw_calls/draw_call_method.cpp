@@ -1,6 +1,7 @@
 #include "methods/draw_calls/draw_call_method.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace sightline {
@@ -25,10 +26,6 @@ DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : s
   rebuild();
 }
 
-void DrawCallMethod::update(std::span<const ObjectId> moved) {
-  if (!moved.empty()) rebuild();
-}
-
 void DrawCallMethod::rebuild() {
   FlatTriangles flat = flatten(scene_);
   extent_ = extent(scene_);
@@ -40,7 +37,6 @@ void DrawCallMethod::rebuild() {
     order.reserve(flat.size() + flat.size() / 4);
   }
   const bool with_cones = plan_.facing != FacingRule::none;
-  std::uint64_t bytes = 0;
   for (const Surface surface : {Surface::opaque, Surface::transparent}) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < flat.size(); ++t) {
@@ -52,10 +48,19 @@ void DrawCallMethod::rebuild() {
     } else {
       layer.partition.build(plan_.structure, flat.span(), triangles, plan_.height);
     }
-    triangles = {};
-    layer.units = make_units(plan_.strategy, flat, layer.partition, order, with_cones);
+    if (surface == Surface::opaque) {
+      layer.units = make_units(plan_.strategy, flat, layer.partition, order, with_cones);
+    } else {
+      std::vector<std::uint32_t> positions = triangles;  // in the global list of `simple`
+      if (plan_.strategy != Strategy::simple) {
+        std::iota(positions.begin(), positions.end(), static_cast<std::uint32_t>(order.size()));
+        order.insert(order.end(), triangles.begin(), triangles.end());
+      }
+      layer.units =
+          make_blended_units(plan_.strategy, flat, layer.partition, triangles, positions, with_cones);
+      blend_order_ = BlendOrder(flat, triangles, positions);
+    }
     layer.partition.drop_triangles();
-    bytes += layer.partition.bytes() + layer.units.bytes();
   }
   if (plan_.strategy == Strategy::simple) {
     lists_.indices = std::move(flat.indices), lists_.objects = std::move(flat.objects);
@@ -71,8 +76,16 @@ void DrawCallMethod::rebuild() {
   lists_.sources = std::move(order);
   seen_.assign(scene_.size(), 0);
   frame_ = 0;
-  bytes += lists_.positions.size() * sizeof(Vec3) +
-           4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 8 * seen_.size();
+  movers_.clear();
+  is_mover_.assign(scene_.size(), 0);
+  describe();
+}
+
+void DrawCallMethod::describe() {
+  std::uint64_t bytes = lists_.positions.size() * sizeof(Vec3) +
+                        4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) +
+                        9 * scene_.size();
+  for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.units.bytes();
   geometry_ = {lists_.positions,
                lists_.indices,
                lists_.objects,
@@ -100,10 +113,15 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
     runs_.clear(), ranges_.clear();
     frame.stats.nodes_visited += layer.partition.walk(frustum, runs_);
     take(layer, facing, frame);
+    const bool transparent = &layer == &layers_[1];
+    take_movers(frustum, transparent, frame);
+    if (transparent) {
+      blend_order_.arrange(scene_, view, ranges_);
+    } else if (plan_.submission == Submission::merged) {
+      merge();
+    }
     submit(frame);
   }
-  frame.stats.draw_calls =
-      plan_.submission == Submission::multi_draw ? !frame.draws.empty() : frame.draws.size();
   frame.stats.culled_facing = touched_ - frame.visible.size();
   frame.stats.culled_frustum = scene_.size() - touched_;
 }
@@ -128,25 +146,18 @@ void DrawCallMethod::take(const Layer& layer, const Facing& facing, Frame& frame
   }
 }
 
-void DrawCallMethod::submit(Frame& frame) noexcept {
-  if (plan_.submission == Submission::merged && !ranges_.empty()) {
-    // In the global list the runs of different cells interleave, and a triangle may stand in several.
-    if (plan_.strategy == Strategy::simple) std::ranges::sort(ranges_, {}, &TriangleRange::first);
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < ranges_.size(); ++i) {
-      TriangleRange& open = ranges_[last];
-      if (ranges_[i].first <= open.first + open.count) {
-        open.count = std::max(open.count, ranges_[i].first + ranges_[i].count - open.first);
-      } else {
-        ranges_[++last] = ranges_[i];
-      }
-    }
-    ranges_.resize(last + 1);
-  }
+void DrawCallMethod::merge() noexcept {
+  // In the global list the runs of different cells interleave, and a triangle may stand in several.
+  if (plan_.strategy == Strategy::simple) std::ranges::sort(ranges_, {}, &TriangleRange::first);
+  merge_neighbours(ranges_);
+}
+
+void DrawCallMethod::submit(Frame& frame) const noexcept {
   for (const TriangleRange& range : ranges_) {
     frame.draws.push_back({3 * range.count, 1, 3 * range.first, 0, range.first});
     frame.stats.triangles += range.count;
   }
+  frame.stats.draw_calls += plan_.submission == Submission::multi_draw ? !ranges_.empty() : ranges_.size();
 }
 
 std::vector<Box> DrawCallMethod::cells() const {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "methods/draw_calls/blend_order.hpp"
 #include "methods/draw_calls/units.hpp"
 #include "methods/methods.hpp"
 
@@ -35,7 +36,8 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override {
     return plan_.facing == FacingRule::printed ? Guarantee::approximate : Guarantee::exact;
   }
-  /// Builds everything anew: meant for what stands still.
+  /// What moves is drawn whole from then on where its box is in view, at the cost of its own corners. Builds
+  /// everything anew once a quarter of the objects move, or after give_lists().
   void update(std::span<const ObjectId> moved) override;
   void cull(const View& view, Frame& frame) noexcept override;
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
@@ -49,22 +51,39 @@ public:
   [[nodiscard]] std::vector<Box> cells() const;
 
 private:
-  /// Opaque and transparent triangles apart, so that the latter can be blended over the former.
+  /// Opaque and transparent triangles apart: the latter are blended over the former, once each and far to
+  /// near.
   struct Layer {
     partition::TrianglePartition partition;
     Units units;
   };
 
+  struct Mover {
+    ObjectId object;
+    TriangleRange range;  ///< all its triangles
+  };
+
   void rebuild();
+  void describe();
+  void place(ObjectId object);
+  void add_mover(ObjectId object);
+  void take_movers(const Frustum& frustum, bool transparent, Frame& frame) noexcept;
   void take(const Layer& layer, const Facing& facing, Frame& frame) noexcept;
-  void submit(Frame& frame) noexcept;
+  void merge() noexcept;
+  void submit(Frame& frame) const noexcept;
 
   const Scene& scene_;
   DrawCallPlan plan_;
   Box extent_;
   std::array<Layer, 2> layers_;
+  BlendOrder blend_order_;
   TriangleLists lists_;
   TriangleGeometry geometry_;
+  std::vector<Mover> movers_;
+  std::vector<std::uint8_t> is_mover_;  ///< one an object
+  /// Of each object and one past the last, once something has moved: where its corners and its triangles
+  /// begin when all are counted through.
+  std::vector<std::uint32_t> first_corner_, first_source_;
 
   // of the frame
   std::vector<partition::TrianglePartition::Run> runs_;

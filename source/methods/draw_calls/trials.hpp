@@ -1,18 +1,21 @@
 // Finds out which of several ways is quickest while they are in use: by turns at first, then by rare trials.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
+
+#include "scene/random.hpp"
 
 namespace sightline::methods {
 
 /// At first every way takes its turn: two frames, of which the second counts, for the first finds the caches
-/// cold. Rounds run to and fro, so that a camera on its way favours none; nothing counts as more than twice a
-/// round's median, so that a hitch decides little. After some rounds the slower half is dropped, then all but
-/// four, then one is settled on, the lowest number of those that are alike within 1 %: 1,200 frames with a
-/// dozen ways. From then on one frame in 64 tries one of the three that came next, and a rival that turns out
-/// 5 % quicker takes the winner's place. Same times told, same turns; allocates only when made.
+/// cold. Rounds come in pairs, one in an order drawn anew and one in its reverse, so that a camera on its way
+/// favours none; nothing counts as more than twice a round's median, so that a hitch decides little. A way
+/// leaves once it is surely slower than the leader, by what the pairs' differences scatter, or once eight and
+/// later four are enough; those that are surely alike, or run till the end, are settled by their means, the
+/// lowest number first of those alike within half a per cent: some 4,500 frames with a dozen ways. From then
+/// on one frame in 64 tries one of the three that held out longest, and a rival that is surely quicker takes
+/// the winner's place. Same times told, same turns; allocates only when made.
 class Trials {
 public:
   /// At least one way; `first` has the first turn, and keeps it until a time is told.
@@ -27,30 +30,36 @@ public:
   /// The one settled on; until then the best so far.
   [[nodiscard]] std::uint32_t winner() const noexcept { return ways_.front().id; }
 
-private:
-  static constexpr std::array<std::uint32_t, 3> kRounds{16, 32, 60};
-  static constexpr std::uint32_t kFinalists = 4, kBetweenTrials = 128, kTrials = 5;
-  static constexpr double kWorthAChange = 0.95, kAlike = 1.01;
+  static constexpr std::uint32_t kMostPairs = 192;  ///< of rounds; then it settles
 
+private:
   struct Way {
-    std::uint32_t id = 0, samples = 0;
-    double sum = 0;                        ///< of the phase's times
-    std::array<double, kTrials> ratios{};  ///< to the winner's, once settled
+    std::uint32_t id = 0;
+    double mean = 0;               ///< of its pairs' times
+    double slower = 0, error = 0;  ///< than the leader: mean difference, and its standard error
+  };
+  /// A rival's logarithmic ratios to the winner, old ones fading.
+  struct Record {
+    double weight = 0, sum = 0, squares = 0;
   };
 
-  [[nodiscard]] Way& turn(std::uint32_t position) noexcept;
   void end_round() noexcept;
-  void end_phase() noexcept;
+  void compare() noexcept;
+  void settle() noexcept;
   void watch(double time) noexcept;
 
-  std::vector<Way> ways_;  ///< those still in the running first
+  std::vector<Way> ways_;             ///< those still in the running first, then the last to leave
+  std::vector<std::uint32_t> order_;  ///< of the round: ids
   std::vector<double> round_, sorted_;
-  std::uint32_t running_, position_ = 0, rounds_ = 0, phase_ = 0;
+  std::vector<double> pairs_;  ///< times of pair p and way w at [p · ways + w]
+  std::uint32_t running_, position_ = 0, rounds_ = 0;
   std::uint32_t current_;
+  scene::Random random_{1};
   bool settled_ = false;
   bool warm_ = false;  ///< the turn's first frame is over
 
   // once settled
+  std::vector<Record> records_;  ///< one a rival
   bool trying_ = false;
   double own_ = 0;
   std::uint32_t since_ = 0, rival_ = 0;

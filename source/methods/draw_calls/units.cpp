@@ -19,12 +19,15 @@ void end_unit(Units& units, const FlatTriangles& flat, Triangles triangles) {
   units.object_start.push_back(static_cast<std::uint32_t>(units.objects.size()));
 }
 
-void add_runs(Units& units, const FlatTriangles& flat, Triangles triangles) {
+/// Runs of triangles that stand side by side; position(t) is where.
+template <class Position>
+void add_runs(Units& units, const FlatTriangles& flat, Triangles triangles, Position position) {
   for (std::size_t i = 0; i < triangles.size();) {
-    std::size_t end = i + 1;
-    while (end < triangles.size() && triangles[end] == triangles[end - 1] + 1) ++end;
-    units.ranges.push_back({triangles[i], static_cast<std::uint32_t>(end - i)});
-    i = end;
+    const std::uint32_t first = position(triangles[i]);
+    std::uint32_t count = 1;
+    while (i + count < triangles.size() && position(triangles[i + count]) == first + count) ++count;
+    units.ranges.push_back({first, count});
+    i += count;
   }
   end_unit(units, flat, triangles);
 }
@@ -43,17 +46,19 @@ std::uint64_t Units::bytes() const noexcept {
          ranges.size() * sizeof(TriangleRange) + cones.size() * sizeof(FacingCone);
 }
 
-Units make_units(Strategy strategy, const FlatTriangles& flat, const partition::TrianglePartition& cells,
-                 TriangleOrder& order, bool with_cones) {
+namespace {
+
+/// Units of a strategy's kind, their ranges made by add(units, triangles).
+template <class Add>
+Units units_of(Strategy strategy, const FlatTriangles& flat, const partition::TrianglePartition& cells,
+               bool with_cones, Add add) {
   Units units;
   const partition::TriangleSpan all = flat.span();
   std::array<std::vector<std::uint32_t>, kParts> parts;
   for (std::uint32_t cell = 0; cell < cells.cells(); ++cell) {
     const Triangles triangles = cells.triangles(cell);
-    if (strategy == Strategy::simple) {
-      add_runs(units, flat, triangles);
-    } else if (strategy == Strategy::drawcall_wise) {
-      add_copy(units, flat, triangles, order);
+    if (strategy != Strategy::zhang) {
+      add(units, triangles);
       if (with_cones) units.cones.push_back(cone_of(all, triangles, cells.region(cell)));
     } else {
       for (auto& part : parts) part.clear();
@@ -61,13 +66,37 @@ Units make_units(Strategy strategy, const FlatTriangles& flat, const partition::
         parts[part_of(unit_normal(all[triangle]))].push_back(triangle);
       for (const auto& part : parts) {
         if (part.empty()) continue;
-        add_copy(units, flat, part, order);
+        add(units, part);
         units.cones.push_back(cone_of(all, part, cells.region(cell)));
       }
     }
     units.cell_start.push_back(static_cast<std::uint32_t>(units.range_start.size() - 1));
   }
   return units;
+}
+
+}  // namespace
+
+Units make_units(Strategy strategy, const FlatTriangles& flat, const partition::TrianglePartition& cells,
+                 TriangleOrder& order, bool with_cones) {
+  return units_of(strategy, flat, cells, with_cones, [&](Units& units, Triangles triangles) {
+    if (strategy == Strategy::simple) {
+      add_runs(units, flat, triangles, [](std::uint32_t triangle) { return triangle; });
+    } else {
+      add_copy(units, flat, triangles, order);
+    }
+  });
+}
+
+Units make_blended_units(Strategy strategy, const FlatTriangles& flat,
+                         const partition::TrianglePartition& cells, std::span<const std::uint32_t> triangles,
+                         std::span<const std::uint32_t> positions, bool with_cones) {
+  const auto position = [&](std::uint32_t triangle) {
+    return positions[static_cast<std::size_t>(std::ranges::lower_bound(triangles, triangle) -
+                                              triangles.begin())];
+  };
+  return units_of(strategy, flat, cells, with_cones,
+                  [&](Units& units, Triangles some) { add_runs(units, flat, some, position); });
 }
 
 }  // namespace sightline::methods

@@ -1,6 +1,7 @@
 // What a visible cell can draw: the submission strategies of Serpa et al. as data.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -36,9 +37,16 @@ struct Units {
 /// The lists that ranges refer to: numbers of flat triangles, in the order they are drawn in.
 using TriangleOrder = std::vector<std::uint32_t>;
 
-/// Makes the units of a partition. `order` is the global list for `simple` (every triangle, untouched); for
-/// the others the copies are appended. `with_cones` gives drawcall-wise units cones too.
+/// Makes the units of a partition of opaque triangles. `order` is the global list for `simple` (every
+/// triangle, untouched); for the others the copies are appended. `with_cones` gives drawcall-wise units cones
+/// too.
 Units make_units(Strategy strategy, const FlatTriangles& flat, const partition::TrianglePartition& cells,
                  TriangleOrder& order, bool with_cones = false);
+
+/// The same of transparent triangles, which are drawn in order of depth and only once: whatever the strategy,
+/// units are runs of one list. `triangles` are all of them, ascending; triangles[i] stands at positions[i].
+Units make_blended_units(Strategy strategy, const FlatTriangles& flat,
+                         const partition::TrianglePartition& cells, std::span<const std::uint32_t> triangles,
+                         std::span<const std::uint32_t> positions, bool with_cones);
 
 }  // namespace sightline::methods
