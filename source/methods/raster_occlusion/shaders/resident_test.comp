@@ -83,11 +83,12 @@ void main() {
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
   if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
   if (!contributes(box.centre_radius, half_extent)) return;
-  const bool drawn = (state_bits(frame - 1, state.at[object]) & kSeen) != 0;
+  const uint before = state_bits(frame - 1, state.at[object]);
+  const bool drawn = (before & kSeen) != 0;
   const uint bits = drawn ? kInView | kDrawnEarly : kInView;
-  // What was drawn early has cost its time already: whether it still shows is asked in one frame of four (Mattausch,
-  // Bittner & Wimmer 2008).
-  const bool rests = drawn && (object + frame) % 4 != 0;
+  // What is drawn early for the second time was seen with all else there: whether it still shows is asked in one
+  // frame of four (Mattausch, Bittner & Wimmer 2008).
+  const bool rests = drawn && (before & kDrawnEarly) != 0 && (object + frame) % 4 != 0;
   bool seen = rests || reaches_near_plane(centre, half_extent), unsure = false, inside = false;
   if (!seen) {
     const Footprint print = footprint(centre, half_extent);
