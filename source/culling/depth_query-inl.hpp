@@ -16,9 +16,9 @@ namespace sightline::culling::HWY_NAMESPACE {
 HWY_INLINE bool hidden_in_tile(const DepthTiles& tiles, std::uint32_t x0, std::uint32_t y0, std::uint32_t x1,
                                std::uint32_t y1, float nearness, std::uint32_t tx, std::uint32_t ty) {
   const F f;
-  const std::size_t flat = std::size_t{ty} * tiles.stride + tx, tile = std::size_t{ty} * tiles.columns + tx;
-  if (nearness < tiles.farthest[flat]) return true;
-  if (nearness > tiles.nearest[flat]) return false;
+  const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
+  if (nearness < tiles.farthest[tile]) return true;
+  if (!(nearness <= tiles.nearest[tile])) return false;
   // The rectangle's pixels within the tile.
   const std::uint32_t left = std::max(x0, tx * kTile) - tx * kTile,
                       right = std::min(x1, tx * kTile + 7) - tx * kTile;
@@ -27,7 +27,6 @@ HWY_INLINE bool hidden_in_tile(const DepthTiles& tiles, std::uint32_t x0, std::u
   const std::uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left);
   const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (7 - high))) & (~std::uint64_t{0} << (8 * low));
   const std::uint64_t wanted = columns * 0x0101010101010101u & rows;
-  if ((wanted & ~tiles.covered[tile]) != 0) return false;
   const VF limit = hn::Set(f, nearness);
   const float* depth = &tiles.nearness[tile * 64];
   // The least nearness of the wanted pixels, by which one guess of a branch is enough.
