@@ -89,7 +89,9 @@ HWY_INLINE void store_spans(VF left, VF right, hn::Mask<F> in_rows, float width,
   const auto zero = hn::Zero(f), limit = hn::Set(f, width), half = hn::Set(f, 0.5f);
   const auto begin = hn::Min(hn::Max(hn::Ceil(hn::Sub(left, half)), zero), limit);
   const auto end = hn::Min(hn::Max(hn::Floor(hn::Add(right, half)), zero), limit);
-  hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, begin)), i16, &out.begin[i]);
+  // Where there is no row the span begins behind all others.
+  const auto start = hn::IfThenElse(in_rows, begin, hn::Set(f, 16384.0f));
+  hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, start)), i16, &out.begin[i]);
   hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, hn::IfThenElseZero(in_rows, end))), i16, &out.end[i]);
 }
 
@@ -114,8 +116,15 @@ HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   return out;
 }
 
-// A byte a scanline of the tile that starts at column x, a bit a pixel.
+// The columns that the spans of a tile's scanlines hold; and of the tile that starts at column x the pixels,
+// a byte a scanline, a bit a pixel.
 #if HWY_TARGET == HWY_SCALAR
+HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
+  return static_cast<std::uint32_t>(*std::min_element(&spans.begin[line], &spans.begin[line] + kTile));
+}
+HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
+  return static_cast<std::uint32_t>(*std::max_element(&spans.end[line], &spans.end[line] + kTile));
+}
 HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
   std::uint64_t pixels = 0;
   for (std::uint32_t row = 0; row < 8; ++row) {
@@ -127,6 +136,14 @@ HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::ui
   return pixels;
 }
 #else
+HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Load(i16, &spans.begin[line]))));
+}
+HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.end[line]))));
+}
 HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
   const hn::FixedTag<std::int16_t, 8> i16;
   const hn::FixedTag<std::uint8_t, 8> half;
@@ -143,6 +160,8 @@ HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::ui
   return bits[0] & ~bits[1];
 }
 #endif
+
+constexpr std::uint32_t kWide = 3;  // tiles
 
 // Draws what `spans_from` says of sixteen lines from a pixel centre on, tile by tile.
 template <std::size_t kPlanes, class SpansFrom>
@@ -165,7 +184,11 @@ HWY_INLINE void draw_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
     const std::size_t line = (ty - range.begin_y) % 2 * kTile;
     const float y = static_cast<float>(ty * kTile) + 0.5f;
     if (line == 0) spans = spans_from(y);
-    for (std::uint32_t tx = range.begin_x; tx < range.end_x; ++tx) {
+    // Of a wide polygon that lies aslant, a row of tiles holds only a part.
+    const bool wide = range.end_x - range.begin_x > kWide;
+    const std::uint32_t begin_x = wide ? first_column(spans, line) / kTile : range.begin_x,
+                        end_x = wide ? (end_column(spans, line) + kTile - 1) / kTile : range.end_x;
+    for (std::uint32_t tx = begin_x; tx < end_x; ++tx) {
       const std::uint64_t pixels = pixels_of(spans, line, tx * kTile);
       const float x = static_cast<float>(tx * kTile) + 0.5f;
       std::array<float, kPlanes> base;

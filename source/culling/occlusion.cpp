@@ -133,12 +133,12 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::vec3& normal, f
     return Vec4{scale * row.x + shift * e.w.x, scale * row.y + shift * e.w.y, scale * row.z + shift * e.w.z,
                 scale * row.w + shift * e.w.w};
   };
-  polygon = clip(polygon, tiles.rays.near_plane);
-  for (const Vec4& plane :
-       {beyond(e.x, 1, w), beyond(e.x, -1, 2 * w), beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
+  for (const Vec4& plane : {tiles.rays.near_plane, beyond(e.x, 1, w), beyond(e.x, -1, 2 * w),
+                            beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
     polygon = clip(polygon, plane);
+    if (polygon.count < 3) return;
   }
-  if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
+  if (polygon.count > Convex::kMaxEdges) return;
   std::array<float, Polygon::kMost> x, y;
   Convex out;
   float nearest = -kInfinity, reach = 0, area = 0;
