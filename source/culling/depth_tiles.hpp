@@ -141,5 +141,7 @@ void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const
                  std::uint8_t* visible) noexcept;
 void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
                    std::uint8_t* visible) noexcept;
+/// Three corners a triangle.
+bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept;
 
 }  // namespace sightline::culling

@@ -366,6 +366,10 @@ void OcclusionBuffer::may_see(const SphereSpan& spheres, std::span<std::uint8_t>
   culling::query_spheres(*tiles_, tiles_->projection, spheres, visible.data());
 }
 
+bool OcclusionBuffer::may_see(std::span<const Vec3> triangles) const noexcept {
+  return culling::query_triangles(*tiles_, triangles);
+}
+
 std::uint32_t OcclusionBuffer::width() const noexcept {
   return tiles_->width;
 }

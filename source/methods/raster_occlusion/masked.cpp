@@ -1,11 +1,13 @@
 // Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
 // 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles
 // (round ones as balls, which are cheap, so nearly all of them), then all against the tiles by box and
-// sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes.
+// sphere. Where a scene is one built thing of few triangles, like a game level, nearly all of it occludes, and
+// what its box leaves of an object is tested triangle by triangle.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -14,6 +16,7 @@
 #include <sightline/world.hpp>
 
 #include "culling/draw_list.hpp"
+#include "geometry/linear.hpp"
 #include "methods/methods.hpp"
 #include "methods/raster_occlusion/inner_shell.hpp"
 #include "scene/scale_bounds.hpp"
@@ -30,6 +33,8 @@ constexpr std::array kParameters{
                   1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
 };
+
+constexpr double kSurface = 0.99;  // share of it that occludes where a scene occludes as one
 
 WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
@@ -83,7 +88,8 @@ public:
       draw_occluders(view, std::span(frame.visible).first(result.count));
       const OcclusionBuffer* buffer = &buffer_;
       result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
-      drop_hidden_spheres(std::span(frame.visible).first(result.count), result);
+      const auto left = std::span(frame.visible).first(result.count);
+      whole_ ? drop_hidden_triangles(left, result) : drop_hidden_spheres(left, result);
     }
     if (!usable_ || result.error != CullError::none) {
       frame.visible.resize(scene_.size());
@@ -109,18 +115,58 @@ private:
   void build_whole() {
     std::vector<Vec3> positions;
     std::vector<std::uint32_t> indices;
+    corners_.clear(), first_corner_.clear();
     for (ObjectId o = 0; o < scene_.size(); ++o) {
-      if (moved_[o] || scene_.surface[o] != Surface::opaque) continue;
+      first_corner_.push_back(static_cast<std::uint32_t>(corners_.size()));
+      if (moved_[o]) continue;
       const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
       const auto first = static_cast<std::uint32_t>(positions.size());
       for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
         positions.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + v]));
       }
       for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-        indices.push_back(first + scene_.indices[mesh.first_index + i]);
+        const std::uint32_t index = first + scene_.indices[mesh.first_index + i];
+        corners_.push_back(positions[index]);
+        if (scene_.surface[o] == Surface::opaque) indices.push_back(index);
       }
     }
-    whole_ = std::make_unique<OccluderMesh>(positions, indices);
+    first_corner_.push_back(static_cast<std::uint32_t>(corners_.size()));
+    whole_ = std::make_unique<OccluderMesh>(positions, large_triangles(positions, indices));
+  }
+
+  // Triangles that together hold nearly all of the surface: details hide little and cost as much as walls.
+  std::vector<std::uint32_t> large_triangles(std::span<const Vec3> positions,
+                                             std::span<const std::uint32_t> indices) const {
+    std::vector<std::pair<double, std::uint32_t>> by_area;
+    double total = 0;
+    for (std::uint32_t i = 0; i + 3 <= indices.size(); i += 3) {
+      const glm::dvec3 a = geometry::to_double(positions[indices[i]]),
+                       b = geometry::to_double(positions[indices[i + 1]]),
+                       c = geometry::to_double(positions[indices[i + 2]]);
+      by_area.emplace_back(glm::length(glm::cross(b - a, c - a)), i);
+      total += by_area.back().first;
+    }
+    std::sort(by_area.begin(), by_area.end(), std::greater());
+    std::vector<std::uint32_t> kept;
+    double sum = 0;
+    for (const auto& [area, i] : by_area) {
+      if (sum > kSurface * total) break;
+      sum += area;
+      kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
+    }
+    return kept;
+  }
+
+  // Of what its box leaves, an object's triangles may drop some more. Keeps the rest in front, in order.
+  void drop_hidden_triangles(std::span<ObjectId> visible, CullResult& result) {
+    std::size_t kept = 0;
+    for (const ObjectId o : visible) {
+      const auto its = std::span(corners_).subspan(first_corner_[o], first_corner_[o + 1] - first_corner_[o]);
+      visible[kept] = o;
+      kept += its.empty() || buffer_.may_see(its);
+    }
+    result.culled_occlusion += visible.size() - kept;
+    result.count = kept;
   }
 
   void find_balls() {
@@ -233,6 +279,9 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::uint8_t> moved_;
   std::unique_ptr<OccluderMesh> whole_;
+  std::vector<Vec3>
+      corners_;  // of the triangles of objects that never moved, object by object, in world space
+  std::vector<std::uint32_t> first_corner_;  // one an object, and the end
   std::vector<std::unique_ptr<OccluderMesh>> meshes_, cut_meshes_;
   std::vector<std::optional<Sphere>> balls_;  // one a mesh, in its own space
   std::vector<Occluder> picked_;
