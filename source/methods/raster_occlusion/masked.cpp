@@ -82,14 +82,19 @@ public:
     stats.objects = scene_.size();
     frame.visible.resize(cull_capacity(world_));
     const WorldView at{view, {}};
-    CullResult result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+    CullResult result;
+    // What is in view at all, from which occluders are picked.
+    if (!whole_) result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+    const bool worth_it = whole_ || (result.error == CullError::none && result.count > 1);
     // A world or view beyond what the tiles hold is culled by frustum alone, or not at all.
-    if (usable_ && result.error == CullError::none && result.count > 1 && !buffer_.begin(at)) {
+    if (usable_ && worth_it && !buffer_.begin(at)) {
       draw_occluders(view, std::span(frame.visible).first(result.count));
       const OcclusionBuffer* buffer = &buffer_;
       result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
       const auto left = std::span(frame.visible).first(result.count);
       whole_ ? drop_hidden_triangles(left, result) : drop_hidden_spheres(left, result);
+    } else if (whole_) {
+      result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
     }
     if (!usable_ || result.error != CullError::none) {
       frame.visible.resize(scene_.size());
