@@ -117,7 +117,7 @@ struct OccluderTopology {
   std::array<partition::AlignedVector<std::int32_t>, 3> corner, neighbour;
 
   /// Runs of triangles with the ball that holds them: what is out of view or hidden as a whole is not set up.
-  static constexpr std::uint32_t kGroup = 64;
+  static constexpr std::uint32_t kGroup = 16;
   struct Group {
     Sphere ball;
     std::uint32_t first = 0, end = 0;  ///< triangles; first is a multiple of 16
