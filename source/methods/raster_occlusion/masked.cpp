@@ -1,14 +1,15 @@
 // Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
 // 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles
 // (round ones as balls, which are cheap, so nearly all of them), then all against the tiles by box and
-// sphere. Where a scene is one built thing of few triangles, like a game level, nearly all of it occludes, and
-// what its box leaves of an object is tested triangle by triangle.
+// sphere. Where a scene is one built thing of few triangles, like a game level, nearly all of it occludes,
+// and what its box leaves of an object is tested triangle by triangle.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include <sightline/occlusion.hpp>
@@ -57,6 +58,7 @@ public:
     // Objects that share few meshes are instances, whose triangles would be too many in one.
     const bool one_thing = 2 * scene.meshes.size() >= scene.size();
     if (one_thing && triangle_count(scene) <= parameters.count("whole")) {
+      find_corners();
       build_whole();
     } else {
       find_balls();
@@ -73,7 +75,9 @@ public:
       first_time = first_time || !moved_[o];
       moved_[o] = 1;
     }
-    if (whole_ && first_time) build_whole();
+    if (!whole_) return;
+    for (const ObjectId o : objects) place_corners(o);
+    if (first_time) build_whole();
   }
 
   void cull(const View& view, Frame& frame) noexcept override {
@@ -116,26 +120,33 @@ private:
     bool cut;  // by the near plane
   };
 
+  // The corners of every object's triangles, in world space.
+  void place_corners(ObjectId o) {
+    const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
+    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+      corners_[first_corner_[o] + i] = transform_point(
+          scene_.transform[o], scene_.positions[mesh.first_vertex + scene_.indices[mesh.first_index + i]]);
+    }
+  }
+
+  void find_corners() {
+    first_corner_.assign(1, 0);
+    for (ObjectId o = 0; o < scene_.size(); ++o)
+      first_corner_.push_back(first_corner_.back() + scene_.meshes[scene_.mesh[o]].index_count);
+    corners_.resize(first_corner_.back());
+    for (ObjectId o = 0; o < scene_.size(); ++o) place_corners(o);
+  }
+
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
   void build_whole() {
     std::vector<Vec3> positions;
-    std::vector<std::uint32_t> indices;
-    corners_.clear(), first_corner_.clear();
     for (ObjectId o = 0; o < scene_.size(); ++o) {
-      first_corner_.push_back(static_cast<std::uint32_t>(corners_.size()));
-      if (moved_[o]) continue;
-      const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
-      const auto first = static_cast<std::uint32_t>(positions.size());
-      for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-        positions.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + v]));
-      }
-      for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-        const std::uint32_t index = first + scene_.indices[mesh.first_index + i];
-        corners_.push_back(positions[index]);
-        if (scene_.surface[o] == Surface::opaque) indices.push_back(index);
-      }
+      if (moved_[o] || scene_.surface[o] != Surface::opaque) continue;
+      positions.insert(positions.end(), corners_.begin() + first_corner_[o],
+                       corners_.begin() + first_corner_[o + 1]);
     }
-    first_corner_.push_back(static_cast<std::uint32_t>(corners_.size()));
+    std::vector<std::uint32_t> indices(positions.size());
+    std::iota(indices.begin(), indices.end(), 0u);
     whole_ = std::make_unique<OccluderMesh>(positions, large_triangles(positions, indices));
   }
 
@@ -168,7 +179,7 @@ private:
     for (const ObjectId o : visible) {
       const auto its = std::span(corners_).subspan(first_corner_[o], first_corner_[o + 1] - first_corner_[o]);
       visible[kept] = o;
-      kept += its.empty() || buffer_.may_see(its);
+      kept += buffer_.may_see(its);
     }
     result.culled_occlusion += visible.size() - kept;
     result.count = kept;
@@ -284,8 +295,7 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::uint8_t> moved_;
   std::unique_ptr<OccluderMesh> whole_;
-  std::vector<Vec3>
-      corners_;  // of the triangles of objects that never moved, object by object, in world space
+  std::vector<Vec3> corners_;  // of all triangles, object by object, in world space; for `whole_`
   std::vector<std::uint32_t> first_corner_;  // one an object, and the end
   std::vector<std::unique_ptr<OccluderMesh>> meshes_, cut_meshes_;
   std::vector<std::optional<Sphere>> balls_;  // one a mesh, in its own space
