@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include <sightline/sightline.hpp>
+
+#include "bytes.hpp"
 
 namespace {
 
@@ -17,19 +18,8 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-class Bytes {
-public:
-  Bytes(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
-  [[nodiscard]] bool empty() const { return at_ == end_; }
-  template <class T>
-  T take() {
-    T out{};
-    const auto n = std::min(sizeof(T), static_cast<std::size_t>(end_ - at_));
-    std::memcpy(&out, at_, n);
-    at_ += n;
-    return out;
-  }
-  std::uint8_t byte() { return take<std::uint8_t>(); }
+struct Bytes : fuzz::Bytes {
+  using fuzz::Bytes::Bytes;
   // Mostly ordinary, now and then anything.
   float number() {
     const std::uint8_t kind = byte();
@@ -37,9 +27,6 @@ public:
                     : static_cast<float>(take<std::int16_t>()) / static_cast<float>(1 << (kind % 16));
   }
   Vec3 point() { return {number(), number(), number()}; }
-
-private:
-  const std::uint8_t *at_, *end_;
 };
 
 View view_of(Bytes& in) {
@@ -122,6 +109,12 @@ void occlude(Bytes& in, const View& view, const Boxes& boxes, const Spheres& sph
   buffer.may_see(spheres.span(), seen);
   for (std::size_t i = 0; i < spheres.x.size(); ++i) require(seen[i] <= 1);
   buffer.may_see(span_of(boxes), {in.number(), in.number(), in.number()}, seen);
+  std::vector<Vec3> corners(3 * (in.byte() % 40));
+  for (Vec3& c : corners) c = in.point();
+  bool any = false;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    any = buffer.may_see(std::span<const Vec3>(corners).subspan(i, 3)) || any;
+  require(buffer.may_see(std::span<const Vec3>(corners)) == any);
   std::vector<float> pixels(std::size_t{buffer.width()} * buffer.height());
   buffer.read_nearness(pixels);
 }

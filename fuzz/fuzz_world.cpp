@@ -4,27 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
+#include "bytes.hpp"
+
 namespace {
 
-// Reads the fuzzer's bytes; zeros when they are used up.
-class Bytes {
-public:
-  Bytes(const std::uint8_t* data, std::size_t size) : at_(data), end_(data + size) {}
-  [[nodiscard]] bool empty() const { return at_ == end_; }
-
-  template <class T>
-  T take() {
-    T value{};
-    const std::size_t n = std::min(sizeof(T), static_cast<std::size_t>(end_ - at_));
-    std::memcpy(&value, at_, n);
-    at_ += n;
-    return value;
-  }
-  std::uint8_t byte() { return take<std::uint8_t>(); }
+struct Bytes : sightline::fuzz::Bytes {
+  using sightline::fuzz::Bytes::Bytes;
   // Mostly sane, sometimes any bits at all.
   double number(double scale) {
     const std::uint8_t kind = byte();
@@ -32,9 +20,6 @@ public:
     if (kind < 40) return scale * 1e6 * take<std::int8_t>();
     return scale * take<std::int16_t>() / 256.0;
   }
-
-private:
-  const std::uint8_t *at_, *end_;
 };
 
 void require(bool holds) {

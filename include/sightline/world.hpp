@@ -84,6 +84,7 @@ private:
 struct WorldView {
   View view;
   WorldPoint origin;
+  bool operator==(const WorldView&) const = default;
 };
 
 /// Views that one call culls together.

@@ -79,18 +79,15 @@ struct Discs {
 
 HWY_INLINE void draw_discs(DepthTiles& tiles, const Discs& discs, float aspect, std::size_t count,
                            float least_radius) {
-  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  const auto width = static_cast<float>(tiles.width);
   for (std::size_t i = 0; i < count; ++i) {
     if (!(discs.clear[i] > 0 && discs.radius[i] > least_radius && discs.radius[i] < 1e6f)) continue;
     const Disc disc{discs.x[i], discs.y[i], discs.radius[i], aspect};
     const float wide = disc.radius_y * aspect;
-    const float top = std::max(disc.y - disc.radius_y, 0.5f),
-                bottom = std::min(disc.y + disc.radius_y, height - 0.5f);
-    if (!(disc.x + wide > 0 && disc.x - wide < width && top <= bottom)) continue;
-    if (hidden_rect(tiles, disc.x - wide, top, disc.x + wide, bottom, discs.near[i])) continue;
-    Convex plane;
-    plane.at[0] = discs.near[i];
-    draw_spans<1>(tiles, plane, top, bottom,
+    const TileRange range =
+        tiles_of(tiles, disc.x - wide, disc.x + wide, disc.y - disc.radius_y, disc.y + disc.radius_y);
+    if (hidden_tiles(tiles, range, discs.near[i])) continue;
+    draw_spans<1>(tiles, {{discs.near[i]}, {0}, {0}}, range,
                   [&](float first_y) HWY_ATTR { return spans_of(disc, first_y, width); });
   }
 }

@@ -22,11 +22,7 @@ namespace sightline::culling::HWY_NAMESPACE {
 void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxSpan& boxes,
                      std::uint8_t* visible) {
   const F f;
-  const hn::RebindToSigned<F> i32;
   const std::size_t lanes = hn::Lanes(f);
-  const VF half = hn::Set(f, 0.5f), zero = hn::Zero(f);
-  alignas(64) std::array<std::int32_t, 16> x0, y0, x1, y1;
-  alignas(64) std::array<float, 16> near;
   for (std::size_t first = 0; first < boxes.count; first += lanes) {
     // The last vector repeats boxes rather than reading beyond them.
     alignas(64) std::array<std::array<float, 16>, 6> tail;
@@ -93,29 +89,10 @@ void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxS
       nearest = hn::Add(hn::Add(hn::Max(tn.x[0], tn.x[1]), hn::Max(tn.y[0], tn.y[1])),
                         hn::Add(hn::Max(tn.z[0], tn.z[1]), tn.error));
     }
-    const auto columns = hn::Set(f, static_cast<float>(tiles.width)),
-               lines = hn::Set(f, static_cast<float>(tiles.height));
-    const auto to_int = [&](VF v, VF limit) HWY_ATTR {
-      return hn::ConvertTo(i32, hn::Min(hn::Max(v, hn::Set(f, -1.0f)), limit));
-    };
-    // Pixel centres c with low <= c <= high, as columns [begin, last].
-    hn::Store(to_int(hn::Ceil(hn::Sub(hn::Max(hn::Sub(left, slack), zero), half)), columns), i32, x0.data());
-    hn::Store(to_int(hn::Ceil(hn::Sub(hn::Max(hn::Sub(top, slack), zero), half)), lines), i32, y0.data());
-    hn::Store(to_int(hn::Floor(hn::Sub(hn::Min(hn::Add(right, slack), columns), half)), columns), i32,
-              x1.data());
-    hn::Store(to_int(hn::Floor(hn::Sub(hn::Min(hn::Add(bottom, slack), lines), half)), lines), i32,
-              y1.data());
-    hn::Store(hn::IfThenElse(before, nearest, hn::Set(f, kInfinity)), f, near.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(near[i] < kInfinity)) {  // on or behind the eye's plane, or beyond numbers
-        visible[first + i] = 1;
-        continue;
-      }
-      const bool covers = x0[i] <= x1[i] && y0[i] <= y1[i];
-      visible[first + i] =
-          covers && !hidden(tiles, static_cast<std::uint32_t>(x0[i]), static_cast<std::uint32_t>(y0[i]),
-                            static_cast<std::uint32_t>(x1[i]), static_cast<std::uint32_t>(y1[i]), near[i]);
-    }
+    test_rectangles(tiles,
+                    {hn::Sub(left, slack), hn::Add(right, slack), hn::Sub(top, slack), hn::Add(bottom, slack),
+                     nearest, before},
+                    count, visible + first);
   }
 }
 }  // namespace sightline::culling::HWY_NAMESPACE

@@ -15,111 +15,105 @@
 
 #include "culling/depth_raster-inl.hpp"
 
-#ifndef SIGHTLINE_BOX_OUTLINES
-#define SIGHTLINE_BOX_OUTLINES
-namespace sightline::culling {
-
-// Corner c of a box has the greater x, y, z where bit 0, 1, 2 is set. Edge 4a + i runs along axis a, upwards,
-// from corner kEdges[4a + i]. Faces -x, +x, -y, +y, -z, +z with their corners counterclockwise as seen from
-// outside.
-inline constexpr std::uint8_t kEdges[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
-inline constexpr std::uint8_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                              {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-
-// The outline of a box by which faces look at the eye (Schmalstieg & Tobler 1999, made by rule): the edges
-// between a face that does and one that does not, in the direction of the former.
-struct BoxOutlines {
-  std::uint8_t count[64] = {};
-  std::uint8_t edge[64][12] = {};
-  bool downwards[64][12] = {};  // against the edge's own direction
-
-  constexpr BoxOutlines() {
-    for (int faces = 0; faces < 64; ++faces) {
-      for (int f = 0; f < 6; ++f) {
-        if ((faces >> f & 1) == 0) continue;
-        for (int k = 0; k < 4; ++k) {
-          const std::uint8_t a = kFaces[f][k], b = kFaces[f][(k + 1) % 4];
-          bool inner = false;
-          for (int g = 0; g < 6; ++g) {
-            for (int j = 0; j < 4; ++j) {
-              inner = inner || ((faces >> g & 1) != 0 && kFaces[g][j] == b && kFaces[g][(j + 1) % 4] == a);
-            }
-          }
-          if (inner) continue;
-          const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
-          for (int i = 4 * axis; i < 4 * axis + 4; ++i) {
-            if (kEdges[i] == (a & b)) edge[faces][count[faces]] = static_cast<std::uint8_t>(i);
-          }
-          downwards[faces][count[faces]++] = a > b;
-        }
-      }
-    }
-  }
-};
-inline constexpr BoxOutlines kOutlines;
-
-}  // namespace sightline::culling
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace sightline::culling::HWY_NAMESPACE {
 
 template <std::size_t kCount>
 using Vectors = std::array<std::array<float, 16>, kCount>;
 
-// A vector of boxes, projected, with all that any of their outlines may need.
+// A vector of boxes, ready to be drawn. Corner c of a box has the greater x, y, z where bit 0, 1, 2 is set.
 struct ProjectedBoxes {
-  alignas(64) Vectors<6> sides;                            // about the eye
-  alignas(64) Vectors<8> x, y;                             // of the corners
-  alignas(64) Vectors<12> slope, right_at, left_at, rise;  // of the edges; see add_edge()
-  alignas(64) Vectors<3> at, across, down;                 // of the plane that looks at the eye, by axis
-  alignas(64) std::array<float, 16> clearance, left, right, top, bottom, nearest, inset;
-  std::uint32_t facing[6];  // a bit a box: the face surely looks at the eye
-  std::uint32_t grazing;    // some face looks at it, but not surely
+  alignas(64) Vectors<6> sides;  // about the eye
+  alignas(64) Vectors<8> x, y;   // of the corners
+  // The outline, two edges along each axis: x = at + slope·y; what does not bound a side lies at infinity.
+  alignas(64) Vectors<6> slope, left_at, right_at;
+  alignas(64) Vectors<3> at, across, down;  // of the plane that looks at the eye, by axis
+  alignas(64) std::array<float, 16> left, right, top, bottom, nearest;
+  alignas(64) std::array<std::int32_t, 16> begin_x, end_x, begin_y, end_y;  // tiles
+  std::uint32_t drawn, cut;  // a bit a box: to be drawn as it stands; face by face
 };
 
-// Which faces look at the eye, and their planes.
-HWY_INLINE void find_faces(const DepthTiles& tiles, VF nearest, ProjectedBoxes& out) {
+// Which faces surely look at the eye, by axis: the one of the lesser coordinate, or of the greater.
+struct Facing {
+  std::array<hn::Mask<F>, 3> low, high;
+};
+
+// The faces and their planes; `grazing` is set where one looks at the eye, but not surely.
+HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t& grazing,
+                             ProjectedBoxes& out) {
   const F f;
   const PixelRays& rays = tiles.rays;
   const bool orthographic = tiles.projection.orthographic;
   const VF zero = hn::Zero(f);
-  out.grazing = 0;
+  Facing facing;
+  grazing = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const VF low = hn::Load(f, out.sides[a].data()), high = hn::Load(f, out.sides[a + 3].data());
     const VF margin =
         hn::Add(hn::Set(f, 1e-6f), hn::Mul(hn::Set(f, 1e-5f), hn::Max(hn::Abs(low), hn::Abs(high))));
     const VF forward = hn::Set(f, rays.forward[a]);
-    const auto down = orthographic ? hn::Gt(forward, hn::Set(f, 1e-5f)) : hn::Gt(low, margin);
-    const auto up = orthographic ? hn::Lt(forward, hn::Set(f, -1e-5f)) : hn::Lt(high, hn::Neg(margin));
+    facing.low[a] = orthographic ? hn::Gt(forward, hn::Set(f, 1e-5f)) : hn::Gt(low, margin);
+    facing.high[a] = orthographic ? hn::Lt(forward, hn::Set(f, -1e-5f)) : hn::Lt(high, hn::Neg(margin));
     const auto any = orthographic ? hn::Ne(forward, zero) : hn::Or(hn::Gt(low, zero), hn::Lt(high, zero));
-    out.facing[2 * a] = bits_of(down), out.facing[2 * a + 1] = bits_of(up);
-    out.grazing |= bits_of(any) & ~(out.facing[2 * a] | out.facing[2 * a + 1]);
-    const VF at = hn::IfThenElse(down, low, high);
+    const auto sure = hn::Or(facing.low[a], facing.high[a]);
+    grazing |= bits_of(hn::AndNot(sure, any));
+    const VF at = hn::IfThenElse(facing.low[a], low, high);
     const VF scale = hn::Div(hn::Set(f, 1.0f), orthographic ? forward : at);
     const VF across = hn::Mul(hn::Set(f, rays.across[a]), scale),
              along = hn::Mul(hn::Set(f, rays.down[a]), scale);
     const VF start = orthographic ? hn::Sub(hn::Set(f, rays.at[a]), at) : hn::Set(f, rays.at[a]);
-    hn::Store(across, f, out.across[a].data());
-    hn::Store(along, f, out.down[a].data());
-    hn::Store(moved_back(hn::Mul(start, scale), across, along, nearest), f, out.at[a].data());
+    const VF moved = moved_back(hn::Mul(start, scale), across, along, nearest);
+    // A plane that does not look at the eye is in front of all others.
+    hn::Store(hn::IfThenElseZero(sure, across), f, out.across[a].data());
+    hn::Store(hn::IfThenElseZero(sure, along), f, out.down[a].data());
+    hn::Store(hn::IfThenElse(sure, moved, hn::Set(f, kInfinity)), f, out.at[a].data());
   }
+  return facing;
 }
 
-HWY_INLINE void find_edges(VF inset, ProjectedBoxes& out) {
+// The outline of a box by which faces look at the eye (after Schmalstieg & Tobler 1999): the edges between a
+// face that does and one that does not. Along an axis a there are two or none, and which ones, the faces of
+// the other axes b and c tell: edge (j, k) lies between the low or high face of b, as j says, and that of c.
+// Returns a bit a box: it has an edge on either side.
+HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF inset, ProjectedBoxes& out) {
   const F f;
-  for (std::size_t e = 0; e < 12; ++e) {
-    const std::size_t from = kEdges[e], to = from | std::size_t{1} << (e / 4);
-    const VF ax = hn::Load(f, out.x[from].data()), ay = hn::Load(f, out.y[from].data()),
-             bx = hn::Load(f, out.x[to].data()), by = hn::Load(f, out.y[to].data());
-    const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
-             at = hn::Sub(ax, hn::Mul(ay, slope));
-    const VF inwards = hn::Mul(inset, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
-    hn::Store(rise, f, out.rise[e].data());
-    hn::Store(slope, f, out.slope[e].data());
-    hn::Store(hn::Sub(at, inwards), f, out.right_at[e].data());
-    hn::Store(hn::Add(at, inwards), f, out.left_at[e].data());
+  std::uint32_t right = 0, left = 0;
+  const auto turns = hn::MaskFromVec(hn::BitCast(f, hn::Set(hn::RebindToSigned<F>(), turns_right ? -1 : 0)));
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    const auto looks_b = hn::Or(facing.low[b], facing.high[b]),
+               looks_c = hn::Or(facing.low[c], facing.high[c]), looks = hn::Or(looks_b, looks_c);
+    for (std::size_t e = 0; e < 2; ++e) {
+      // The first edge lies at the face of b that looks and away from that of c, the second the other way
+      // round; where only one of both looks, both edges lie at it.
+      const auto j = e == 0 ? facing.high[b] : hn::Xor(facing.high[b], looks_c);
+      const auto k = e == 0 ? hn::Or(hn::And(looks_b, facing.low[c]), hn::AndNot(looks_b, facing.high[c]))
+                            : hn::Or(facing.high[c], hn::Not(looks_c));
+      const auto corner = [&](const Vectors<8>& of, std::size_t along) HWY_ATTR {
+        const auto at = [&](std::size_t at_b, std::size_t at_c)
+                            HWY_ATTR { return hn::Load(f, of[along << a | at_b << b | at_c << c].data()); };
+        return hn::IfThenElse(j, hn::IfThenElse(k, at(1, 1), at(1, 0)),
+                              hn::IfThenElse(k, at(0, 1), at(0, 0)));
+      };
+      const VF ax = corner(out.x, 0), ay = corner(out.y, 0), bx = corner(out.x, 1), by = corner(out.y, 1);
+      const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
+               at = hn::Sub(ax, hn::Mul(ay, slope));
+      const VF inwards = hn::Mul(inset, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
+      // Counterclockwise round the face that looks, the outline runs up the axis at one side of it.
+      const auto by_b = e == 0 ? looks_b : hn::Not(looks_c);
+      const auto up = hn::Xor(by_b, hn::Xor(j, k));
+      const auto interior_left = hn::Xor(hn::Xor(hn::Gt(rise, hn::Zero(f)), up), turns);
+      const auto steep = hn::And(looks, hn::Ge(hn::Abs(rise), hn::Set(f, kFlat)));
+      const VF none = hn::Set(f, kInfinity);
+      const std::size_t edge = 2 * a + e;
+      hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[edge].data());
+      const auto on_right = hn::And(steep, interior_left), on_left = hn::AndNot(interior_left, steep);
+      hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), none), f, out.right_at[edge].data());
+      hn::Store(hn::IfThenElse(on_left, hn::Add(at, inwards), hn::Neg(none)), f, out.left_at[edge].data());
+      right |= bits_of(on_right), left |= bits_of(on_left);
+    }
   }
+  return right & left;
 }
 
 HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::size_t count,
@@ -139,6 +133,7 @@ HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::si
                       hn::Set(f, low[side % 3]));
     hn::Store(q[side], f, out.sides[side].data());
   }
+  const auto valid = hn::And(hn::And(hn::Le(q[0], q[3]), hn::Le(q[1], q[4])), hn::Le(q[2], q[5]));
   VF left = hn::Set(f, kInfinity), top = left, clear = left;
   VF right = hn::Set(f, -kInfinity), bottom = right, nearest = right;
   for (std::size_t c = 0; c < 8; ++c) {
@@ -155,84 +150,79 @@ HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::si
   const VF farthest_out =
       hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
   const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
-  hn::Store(inset, f, out.inset.data());
-  hn::Store(clear, f, out.clearance.data());
-  hn::Store(nearest, f, out.nearest.data());
+  std::uint32_t grazing = 0;
+  const Facing facing = find_faces(tiles, nearest, grazing, out);
+  const std::uint32_t bounded = find_edges(facing, tiles.rays.turns_right, inset, out);
+
+  left = hn::Add(left, inset), right = hn::Sub(right, inset);
+  top = hn::Add(top, inset), bottom = hn::Sub(bottom, inset);
   hn::Store(left, f, out.left.data());
   hn::Store(right, f, out.right.data());
   hn::Store(top, f, out.top.data());
   hn::Store(bottom, f, out.bottom.data());
-  find_faces(tiles, nearest, out);
-  find_edges(inset, out);
+  hn::Store(nearest, f, out.nearest.data());
+  // The tiles that hold the pixel centres between the sides.
+  const hn::RebindToSigned<F> i32;
+  const VF half = hn::Set(f, 0.5f);
+  const auto first = [&](VF at) HWY_ATTR { return hn::Ceil(hn::Sub(hn::Max(at, half), half)); };
+  const auto last = [&](VF at, std::uint32_t size) HWY_ATTR {
+    return hn::Floor(hn::Sub(hn::Min(at, hn::Set(f, static_cast<float>(size) - 0.5f)), half));
+  };
+  const VF x0 = first(left), x1 = last(right, tiles.width), y0 = first(top), y1 = last(bottom, tiles.height);
+  const auto tile = [&](VF pixel) HWY_ATTR { return hn::ShiftRight<3>(hn::ConvertTo(i32, pixel)); };
+  const auto one = hn::Set(i32, 1);
+  hn::Store(tile(x0), i32, out.begin_x.data());
+  hn::Store(tile(y0), i32, out.begin_y.data());
+  hn::Store(hn::Add(tile(x1), one), i32, out.end_x.data());
+  hn::Store(hn::Add(tile(y1), one), i32, out.end_y.data());
+  const std::uint32_t some = bits_of(valid) & ((1u << count) - 1);
+  const std::uint32_t before = bits_of(hn::Ge(clear, hn::Zero(f)));
+  const std::uint32_t holds_pixels = bits_of(hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
+  // Without numbers there is no saying where a box ends.
+  const std::uint32_t numbers = bits_of(hn::Lt(farthest_out, hn::Set(f, kInfinity)));
+  out.drawn = some & before & ~grazing & holds_pixels & numbers & bounded;
+  out.cut = some & ~(before & ~grazing);
 }
 
-// The outline of box i and the planes before it.
-HWY_INLINE void outline(const DepthTiles& tiles, const ProjectedBoxes& b, std::size_t i, Convex& polygon) {
-  std::uint32_t faces = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::uint32_t down = b.facing[2 * a] >> i & 1, up = b.facing[2 * a + 1] >> i & 1;
-    // Without branches: which faces look at the eye is anyone's guess.
-    faces |= (down | up << 1) << (2 * a);
-    const std::size_t p = polygon.planes;
-    polygon.across[p] = b.across[a][i], polygon.down[p] = b.down[a][i], polygon.at[p] = b.at[a][i];
-    polygon.planes += down | up;
-  }
-  polygon.left = b.left[i], polygon.right = b.right[i], polygon.top = b.top[i], polygon.bottom = b.bottom[i];
-  const bool grazed = b.grazing >> i & 1;
-  if (grazed) polygon.left = polygon.top = kInfinity, polygon.right = polygon.bottom = -kInfinity;
-  for (std::uint32_t k = 0; k < kOutlines.count[faces]; ++k) {
-    const std::uint8_t e = kOutlines.edge[faces][k];
-    const float rise = b.rise[e][i];
-    const bool steep = std::fabs(rise) >= kFlat;
-    const bool interior_left = ((rise > 0) != kOutlines.downwards[faces][k]) == tiles.rays.turns_right;
-    polygon.right_at[polygon.right_edges] = b.right_at[e][i];
-    polygon.left_at[polygon.left_edges] = b.left_at[e][i];
-    polygon.right_slope[polygon.right_edges] = polygon.left_slope[polygon.left_edges] = b.slope[e][i];
-    polygon.right_edges += steep && interior_left;
-    polygon.left_edges += steep && !interior_left;
-    if (!grazed) continue;  // else the outline is smaller than the box
-    for (const std::size_t c : {std::size_t{kEdges[e]}, kEdges[e] | std::size_t{1} << (e / 4)}) {
-      polygon.left = std::min(polygon.left, b.x[c][i]), polygon.right = std::max(polygon.right, b.x[c][i]);
-      polygon.top = std::min(polygon.top, b.y[c][i]), polygon.bottom = std::max(polygon.bottom, b.y[c][i]);
+HWY_INLINE Spans spans_of(const ProjectedBoxes& b, std::size_t i, float first_y, float width) {
+  const F f;
+  Spans out;
+  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
+    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
+    VF left = hn::Set(f, b.left[i]), right = hn::Set(f, b.right[i]);
+    for (std::size_t e = 0; e < 6; ++e) {
+      const VF along = hn::Mul(hn::Set(f, b.slope[e][i]), y);
+      left = hn::Max(left, hn::Add(hn::Set(f, b.left_at[e][i]), along));
+      right = hn::Min(right, hn::Add(hn::Set(f, b.right_at[e][i]), along));
     }
+    store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, b.top[i])), hn::Le(y, hn::Set(f, b.bottom[i]))),
+                width, line, out);
   }
-  // One length of lists for nearly all boxes: less to guess. A side has four edges or more only now and then.
-  for (; polygon.planes < 3; ++polygon.planes) {
-    const std::size_t p = polygon.planes;
-    polygon.across[p] = polygon.across[0], polygon.down[p] = polygon.down[0], polygon.at[p] = polygon.at[0];
-  }
-  for (; polygon.left_edges > 0 && polygon.left_edges < 3; ++polygon.left_edges)
-    polygon.left_at[polygon.left_edges] = -kInfinity, polygon.left_slope[polygon.left_edges] = 0;
-  for (; polygon.right_edges > 0 && polygon.right_edges < 3; ++polygon.right_edges)
-    polygon.right_at[polygon.right_edges] = kInfinity, polygon.right_slope[polygon.right_edges] = 0;
-  const float inset = b.inset[i];
-  polygon.left += inset, polygon.right -= inset, polygon.top += inset, polygon.bottom -= inset;
+  return out;
 }
 
 void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
   const F f;
-  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  const auto width = static_cast<float>(tiles.width);
   ProjectedBoxes b;
   for (std::size_t first = 0; first < boxes.size(); first += hn::Lanes(f)) {
-    const std::size_t count = std::min(hn::Lanes(f), boxes.size() - first);
-    project_boxes(tiles, &boxes[first], count, b);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(b.sides[0][i] <= b.sides[3][i] && b.sides[1][i] <= b.sides[4][i] &&
-            b.sides[2][i] <= b.sides[5][i])) {
-        continue;
-      }
-      if (!(b.clearance[i] >= 0)) {
-        draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
-                         {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
-        continue;
-      }
-      const float x0 = b.left[i], x1 = b.right[i], y0 = b.top[i], y1 = b.bottom[i];
-      if (!(x1 > 0 && x0 < width && y1 > 0 && y0 < height)) continue;
+    project_boxes(tiles, &boxes[first], std::min(hn::Lanes(f), boxes.size() - first), b);
+    for (std::uint32_t rest = b.cut; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
+                       {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
+    }
+    for (std::uint32_t rest = b.drawn; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const TileRange range{static_cast<std::uint32_t>(b.begin_x[i]), static_cast<std::uint32_t>(b.end_x[i]),
+                            static_cast<std::uint32_t>(b.begin_y[i]), static_cast<std::uint32_t>(b.end_y[i])};
       // A box behind what is drawn already changes nothing.
-      if (hidden_rect(tiles, x0, y0, x1, y1, b.nearest[i])) continue;
-      Convex polygon;
-      outline(tiles, b, i, polygon);
-      draw_polygon(tiles, polygon);
+      if (hidden_tiles(tiles, range, b.nearest[i])) continue;
+      draw_spans<3>(tiles,
+                    {{b.at[0][i], b.at[1][i], b.at[2][i]},
+                     {b.across[0][i], b.across[1][i], b.across[2][i]},
+                     {b.down[0][i], b.down[1][i], b.down[2][i]}},
+                    range, [&](float first_y) HWY_ATTR { return spans_of(b, i, first_y, width); });
     }
   }
 }

@@ -173,6 +173,28 @@ std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
   return jobs;
 }
 
+// Views that are the same are culled once.
+struct DifferentViews {
+  std::size_t count = 0;
+  std::array<std::uint8_t, kMaxViews> first{};  // which of the caller's views
+  std::array<std::uint8_t, kMaxViews> bits{};   // of all that are the same
+};
+
+DifferentViews different_views(std::span<const WorldView> views, const CullOptions& options) noexcept {
+  DifferentViews out;
+  const auto same = [&](std::size_t a, std::size_t b) {
+    return views[a] == views[b] &&
+           (options.occlusion.empty() || options.occlusion[a] == options.occlusion[b]);
+  };
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::size_t d = 0;
+    while (d < out.count && !same(out.first[d], v)) ++d;
+    if (d == out.count) out.first[out.count++] = static_cast<std::uint8_t>(v);
+    out.bits[d] |= static_cast<std::uint8_t>(1u << v);
+  }
+  return out;
+}
+
 CullError check_call(const World& world, std::span<const WorldView> views, const CullOptions& options,
                      std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
   if (views.empty() || views.size() > kMaxViews) return CullError::views;
@@ -215,22 +237,23 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   const auto& sectors = world.state().sectors;
   state.maps.clear(), state.views.clear(), state.entries.clear();
   if (state.failed.size() < sectors.size()) state.failed.resize(sectors.size());
+  const culling::DifferentViews different = culling::different_views(views, options);
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
     state.maps.push_back(sectors[s].map.get());
     if (!sectors[s].map) {
-      state.views.resize(state.views.size() + views.size());
+      state.views.resize(state.views.size() + different.count);
       continue;
     }
     const partition::ChunkMap& map = *sectors[s].map;
-    for (std::size_t v = 0; v < views.size(); ++v) {
+    for (const std::uint8_t v : std::span(different.first).first(different.count)) {
       const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
       state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
     }
     state.failed[s].resize(map.nodes().size() * kMaxViews, 0);
-    if (map.size() > 0) result.nodes_visited += culling::RegionWalk(state, s, views.size()).run();
+    if (map.size() > 0) result.nodes_visited += culling::RegionWalk(state, s, different.count).run();
   }
 
-  state.input = {state.maps, state.views, views.size(), !masks.empty()};
+  state.input = {state.maps, state.views, different.count, different.bits};
   state.out = visible.data();
   state.masks = masks.empty() ? nullptr : masks.data();
   const std::uint32_t threads = options.jobs.run ? options.jobs.threads : 1;

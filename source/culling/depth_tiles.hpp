@@ -54,24 +54,25 @@ struct DepthTiles {
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
   partition::AlignedVector<float> farthest;
-  /// One a tile: no pixel of it is nearer.
+  /// One a tile: no pixel of it is nearer; -infinity where nothing was drawn.
   partition::AlignedVector<float> nearest;
-  /// 64 a tile, row by row; undefined where `covered` is 0. Pixels beyond the image hold +infinity.
+  /// 64 a tile, row by row; undefined where `nearest` is -infinity. Pixels without an occluder hold
+  /// -infinity, those beyond the image +infinity.
   partition::AlignedVector<float> nearness;
-  /// One a tile: the pixels that have an occluder, and those beyond the image, once it was touched.
-  std::vector<std::uint64_t> covered;
+  /// What an untouched tile holds: one within the image, in the last column, in the last row, in both.
+  partition::AlignedVector<float> untouched;
 
   MeshScratch mesh;
 };
 
-/// A convex polygon of the image and the planes in front of it: nearness there is the least of the planes'.
+/// A convex polygon of the image, and its plane's nearness: at + x·across + y·down.
 struct Convex {
   static constexpr std::size_t kMaxEdges = 10;
-  std::size_t left_edges = 0, right_edges = 0, planes = 0;
+  std::size_t left_edges = 0, right_edges = 0;
   std::array<float, kMaxEdges + 1> left_at, left_slope, right_at, right_slope;  // x = at + slope·y
   float top = 0, bottom = 0;  // pixel centres y with top <= y <= bottom
   float left = 0, right = 0;  // bounds of the same kind
-  std::array<float, 3> at{}, across{}, down{};
+  float at = 0, across = 0, down = 0;
 };
 
 // How far inside its outline, in pixels, an occluder must hold a pixel centre; and how much the rounding of
@@ -97,11 +98,10 @@ inline void add_edge(Convex& polygon, float ax, float ay, float bx, float by, bo
   polygon.left_edges += steep && !interior_left;
 }
 
-/// Moves plane p away by what rounding can have brought it nearer: of the numbers, and of the pixel's place
+/// Moves the plane away by what rounding can have brought it nearer: of the numbers, and of the pixel's place
 /// on a surface seen edge on.
-inline void move_back(Convex& polygon, std::size_t p, float nearest) noexcept {
-  polygon.at[p] -=
-      2e-5f * std::fabs(nearest) + (std::fabs(polygon.across[p]) + std::fabs(polygon.down[p])) / 64;
+inline void move_back(Convex& polygon, float nearest) noexcept {
+  polygon.at -= 2e-5f * std::fabs(nearest) + (std::fabs(polygon.across) + std::fabs(polygon.down)) / 64;
 }
 
 struct OccluderTopology {
@@ -117,7 +117,7 @@ struct OccluderTopology {
   std::array<partition::AlignedVector<std::int32_t>, 3> corner, neighbour;
 
   /// Runs of triangles with the ball that holds them: what is out of view or hidden as a whole is not set up.
-  static constexpr std::uint32_t kGroup = 64;
+  static constexpr std::uint32_t kGroup = 16;
   struct Group {
     Sphere ball;
     std::uint32_t first = 0, end = 0;  ///< triangles; first is a multiple of 16
@@ -141,5 +141,7 @@ void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const
                  std::uint8_t* visible) noexcept;
 void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
                    std::uint8_t* visible) noexcept;
+/// Three corners a triangle.
+bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept;
 
 }  // namespace sightline::culling

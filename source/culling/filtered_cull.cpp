@@ -15,21 +15,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::culling::HWY_NAMESPACE {
 
-// A bit an object of a chunk.
-struct alignas(16) ObjectBits {
-  std::array<std::uint8_t, ChunkMap::kCapacity / 8 + 4> bytes{};
-
-  [[nodiscard]] std::uint8_t at(std::size_t i) const {
-    return static_cast<std::uint8_t>(bytes[i / 8] >> (i % 8));
-  }
-};
-
-HWY_INLINE hn::Mask<F> mask_at(const ObjectBits& bits, std::size_t i) {
-  std::uint8_t from[8] = {bits.at(i), bits.bytes[i / 8 + 1]};
-  if (hn::Lanes(F()) < 8) from[0] &= (1u << hn::Lanes(F())) - 1;
-  return hn::LoadMaskBits(F(), from);
-}
-
 // The objects of a chunk that a view sees, by frustum and contribution.
 HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
                              ObjectBits& out) {
@@ -38,8 +23,7 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
   Corner corners[Frustum::sides];
   const std::size_t count = corners_of(chunk, view, planes, corners);
   out = {};
-  for (std::size_t i = 0; i < chunk.count; i += lanes) {
-    auto mask = inside(corners, count, i);
+  test_planes(corners, count, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
     if (view.area_scale > 0) {
       // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
       const VF half = hn::Set(f, 0.5f);
@@ -59,15 +43,14 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
       mask = hn::And(mask, hn::Or(large, hn::Le(distance, radius)));
     }
     if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
-    const std::uint32_t bits = bits_of(mask) << (i % 8);
-    out.bytes[i / 8] |= static_cast<std::uint8_t>(bits);
-    out.bytes[i / 8 + 1] |= static_cast<std::uint8_t>(bits >> 8);
-  }
+    add_bits(mask, i, out);
+  });
 }
 
-// Takes out the chunks whose bounds the occluders hide.
-void drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const SectorView& view,
-                        ChunkBits& bits, PassCounts& counts) {
+// Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold.
+std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const SectorView& view,
+                                 ChunkBits& bits) {
+  std::uint64_t dropped = 0;
   const auto& b = block.bounds;
   std::array<std::uint8_t, kBlock> visible;
   query_boxes(*view.occluders, view.projection,
@@ -77,13 +60,15 @@ void drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    counts.occluded += map.chunk(block.chunks[i]).count;
+    dropped += map.chunk(block.chunks[i]).count;
   }
+  return dropped;
 }
 
-// Takes out the objects that the occluders hide, of those that the view sees otherwise.
-void drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, ObjectBits& seen,
-                         PassCounts& counts) {
+// Takes out the objects that the occluders hide, of those that the view sees otherwise. Returns how many.
+std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view,
+                                  ObjectBits& seen) {
+  std::uint64_t dropped = 0;
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
   query_boxes(*view.occluders, view.projection,
               {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
@@ -91,8 +76,9 @@ void drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& vie
   for (std::uint32_t i = 0; i < chunk.count; ++i) {
     if (visible[i] || (seen.at(i) & 1) == 0) continue;
     seen.bytes[i / 8] &= static_cast<std::uint8_t>(~(1u << (i % 8)));
-    ++counts.occluded;
+    ++dropped;
   }
+  return dropped;
 }
 
 // Any views, any tests.
@@ -106,6 +92,9 @@ PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> en
   std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
   std::array<ObjectBits, kMaxViews> seen;
+  std::array<std::uint64_t, kMaxViews> times;  // that the caller asks for the view
+  for (std::size_t v = 0; v < kMaxViews; ++v)
+    times[v] = static_cast<std::uint64_t>(std::popcount(input.bits[v]));
   std::array<ChunkMap::ChunkView, kBlock> chunks;
   for (const BlockEntry& entry : entries) {
     const ChunkMap& map = *input.maps[entry.sector];
@@ -115,30 +104,25 @@ PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> en
     for (std::size_t v = 0; v < input.view_count; ++v) {
       bits[v] = {};
       if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
-      if (views[v].occluders && bits[v].kept != 0) drop_hidden_chunks(map, block, views[v], bits[v], counts);
+      if (views[v].occluders && bits[v].kept != 0)
+        counts.occluded += times[v] * drop_hidden_chunks(map, block, views[v], bits[v]);
       any |= bits[v].kept;
     }
     counts.chunks += block.count;
     for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       chunks[i] = map.chunk(block, static_cast<std::uint32_t>(i));
-      PlaneSet planes = 0;
-      std::size_t crossed_by = 0;
-      for (std::size_t v = 0; v < input.view_count; ++v) {
-        if ((bits[v].crossing >> i & 1) == 0) continue;
-        planes = planes_of(bits[v], static_cast<std::uint32_t>(i));
-        crossed_by = v;
-      }
-      prefetch(chunks[i], views[crossed_by], planes);
+      prefetch_ids(chunks[i]);
     }
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
-      std::uint8_t whole = 0, part = 0;  // views
+      std::uint8_t whole = 0, part = 0;  // bits of the caller's views; views
       for (std::size_t v = 0; v < input.view_count; ++v) {
         if ((bits[v].kept >> i & 1) == 0) continue;
         const bool all = (bits[v].crossing >> i & 1) == 0 && views[v].area_scale == 0 && !views[v].occluders;
-        (all ? whole : part) |= static_cast<std::uint8_t>(1u << v);
+        if (all) whole |= input.bits[v];
+        if (!all) part |= static_cast<std::uint8_t>(1u << v);
       }
       if (part == 0 || (whole != 0 && masks == nullptr)) {
         copy_ids(chunk.objects, chunk.count, out + kept);
@@ -150,14 +134,14 @@ PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> en
         const int v = std::countr_zero(rest);
         counts.tested += chunk.count;
         view_objects(chunk, views[v], planes_of(bits[v], i), seen[v]);
-        if (views[v].occluders) drop_hidden_objects(chunk, views[v], seen[v], counts);
+        if (views[v].occluders) counts.occluded += times[v] * drop_hidden_objects(chunk, views[v], seen[v]);
       }
       for (std::size_t k = 0; k < chunk.count; k += lanes) {
         auto mask = hn::Set(u, whole);
         for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
           const int v = std::countr_zero(rest);
-          const auto in_view = hn::RebindMask(u, mask_at(seen[v], k));
-          mask = hn::Or(mask, hn::IfThenElseZero(in_view, hn::Set(u, 1u << v)));
+          const auto in_view = mask_at(u, seen[v], k);
+          mask = hn::Or(mask, hn::IfThenElseZero(in_view, hn::Set(u, input.bits[v])));
         }
         auto keep = hn::Ne(mask, hn::Zero(u));
         if (k + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - k));

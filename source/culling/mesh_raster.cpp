@@ -23,7 +23,7 @@ using I = hn::RebindToSigned<F>;
 using VI = hn::Vec<I>;
 
 void draw_one(DepthTiles& tiles, const Convex& polygon) {
-  draw_polygon(tiles, polygon);
+  draw_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom));
 }
 
 struct V3 {
@@ -263,13 +263,12 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
     if (!set_up(tiles, mesh, first, ready)) continue;
     for (std::uint32_t rest = ready.drawn; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      if (hidden_rect(tiles, ready.left[i], ready.top[i], ready.right[i], ready.bottom[i], ready.nearest[i]))
-        continue;
+      const TileRange range = tiles_of(tiles, ready.left[i], ready.right[i], ready.top[i], ready.bottom[i]);
+      if (hidden_tiles(tiles, range, ready.nearest[i])) continue;
       Convex out;
-      out.planes = 1;
       out.left = ready.left[i], out.right = ready.right[i];
       out.top = ready.top[i], out.bottom = ready.bottom[i];
-      out.at[0] = ready.at[i], out.across[0] = ready.across[i], out.down[0] = ready.down[i];
+      out.at = ready.at[i], out.across = ready.across[i], out.down = ready.down[i];
       for (std::size_t k = 0; k < 3; ++k) {
         // Written to both lists and counted in one: no branch to guess.
         const std::size_t l = out.left_edges, r = out.right_edges;
@@ -279,7 +278,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
         out.right_edges += steep & on_right;
         out.left_edges += steep & ~on_right & 1;
       }
-      draw_polygon(tiles, out);
+      draw_polygon(tiles, out, range);
     }
     for (std::uint32_t rest = ready.cut; rest != 0; rest &= rest - 1) {
       const auto& corner = mesh.triangles[first + static_cast<std::size_t>(std::countr_zero(rest))];
@@ -302,7 +301,8 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affin
     find_facing(s, mesh, mesh.groups[seen.group].first, mesh.groups[seen.group].end);
   for (const auto& seen : s.seen) {
     if (seen.nearest < kInfinity &&
-        hidden_rect(tiles, seen.left, seen.top, seen.right, seen.bottom, seen.nearest * (1 + 1e-5f)))
+        hidden_tiles(tiles, tiles_of(tiles, seen.left, seen.right, seen.top, seen.bottom),
+                     seen.nearest * (1 + 1e-5f)))
       continue;
     draw_group(tiles, mesh, mesh.groups[seen.group]);
   }

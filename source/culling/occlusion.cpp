@@ -119,10 +119,9 @@ bool set_plane(Convex& out, const DepthTiles& tiles, const glm::vec3& normal, fl
   };
   const float scale = tiles.projection.orthographic ? along(rays.forward) : at;
   if (!(std::fabs(scale) > (tiles.projection.orthographic ? 1e-4f : 1e-5f * reach + 1e-6f))) return false;
-  out.planes = 1;
-  out.across[0] = along(rays.across) / scale;
-  out.down[0] = along(rays.down) / scale;
-  out.at[0] = (tiles.projection.orthographic ? along(rays.at) - at : along(rays.at)) / scale;
+  out.across = along(rays.across) / scale;
+  out.down = along(rays.down) / scale;
+  out.at = (tiles.projection.orthographic ? along(rays.at) - at : along(rays.at)) / scale;
   return true;
 }
 
@@ -134,12 +133,12 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::vec3& normal, f
     return Vec4{scale * row.x + shift * e.w.x, scale * row.y + shift * e.w.y, scale * row.z + shift * e.w.z,
                 scale * row.w + shift * e.w.w};
   };
-  polygon = clip(polygon, tiles.rays.near_plane);
-  for (const Vec4& plane :
-       {beyond(e.x, 1, w), beyond(e.x, -1, 2 * w), beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
+  for (const Vec4& plane : {tiles.rays.near_plane, beyond(e.x, 1, w), beyond(e.x, -1, 2 * w),
+                            beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
     polygon = clip(polygon, plane);
+    if (polygon.count < 3) return;
   }
-  if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
+  if (polygon.count > Convex::kMaxEdges) return;
   std::array<float, Polygon::kMost> x, y;
   Convex out;
   float nearest = -kInfinity, reach = 0, area = 0;
@@ -157,7 +156,7 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::vec3& normal, f
     area += (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
   }
   if (!(std::fabs(area) > 0.5f) || !set_plane(out, tiles, normal, at, reach)) return;
-  move_back(out, 0, nearest);
+  move_back(out, nearest);
   const float inset = kInset + kInsetGrowth * 2 * std::max(w, h);
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const std::size_t j = (i + 1) % polygon.count;
@@ -298,14 +297,20 @@ Check OcclusionBuffer::begin(const WorldView& view) {
   t.stride = (t.columns + 15) / 16 * 16 + 16;
   t.projection = culling::eye_projection(view, view.origin);
   t.rays = culling::pixel_rays(view.view, culling::rows_of(view.view));
-  const std::size_t tiles = std::size_t{t.columns} * t.rows;
   t.farthest.assign(std::size_t{t.stride} * t.rows, culling::kInfinity);
   for (std::uint32_t row = 0; row < t.rows; ++row) {
     std::fill_n(t.farthest.begin() + std::size_t{row} * t.stride, t.columns, -culling::kInfinity);
   }
   t.nearest.assign(t.farthest.size(), -culling::kInfinity);
-  if (t.nearness.size() < 64 * tiles) t.nearness.resize(64 * tiles);
-  t.covered.assign(tiles, 0);
+  if (t.nearness.size() < 64 * t.farthest.size()) t.nearness.resize(64 * t.farthest.size());
+  t.untouched.resize(4 * 64);
+  for (std::uint32_t kind = 0; kind < 4; ++kind) {
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      const bool beyond = (kind & 1 && (t.columns - 1) * kTile + i % kTile >= t.width) ||
+                          (kind & 2 && (t.rows - 1) * kTile + i / kTile >= t.height);
+      t.untouched[kind * 64 + i] = beyond ? culling::kInfinity : -culling::kInfinity;
+    }
+  }
   return {};
 }
 
@@ -361,6 +366,10 @@ void OcclusionBuffer::may_see(const SphereSpan& spheres, std::span<std::uint8_t>
   culling::query_spheres(*tiles_, tiles_->projection, spheres, visible.data());
 }
 
+bool OcclusionBuffer::may_see(std::span<const Vec3> triangles) const noexcept {
+  return culling::query_triangles(*tiles_, triangles);
+}
+
 std::uint32_t OcclusionBuffer::width() const noexcept {
   return tiles_->width;
 }
@@ -372,9 +381,10 @@ void OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
   const DepthTiles& t = *tiles_;
   for (std::uint32_t y = 0; y < t.height; ++y) {
     for (std::uint32_t x = 0; x < t.width; ++x) {
-      const std::size_t tile = std::size_t{y / kTile} * t.columns + x / kTile;
-      pixels[std::size_t{y} * t.width + x] =
-          t.covered[tile] != 0 ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile] : -culling::kInfinity;
+      const std::size_t tile = std::size_t{y / kTile} * t.stride + x / kTile;
+      pixels[std::size_t{y} * t.width + x] = t.nearest[tile] > -culling::kInfinity
+                                                 ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile]
+                                                 : -culling::kInfinity;
     }
   }
 }

@@ -52,10 +52,7 @@ HWY_INLINE void image_of(const Vec4& row, const Vec4& w, const Balls& b, bool or
 void query_all_spheres(const DepthTiles& tiles, const EyeProjection& e, const SphereSpan& spheres,
                        std::uint8_t* visible) {
   const F f;
-  const hn::RebindToSigned<F> i32;
   const std::size_t lanes = hn::Lanes(f);
-  alignas(64) std::array<std::int32_t, 16> x0, y0, x1, y1;
-  alignas(64) std::array<float, 16> near;
   const float w_length = std::sqrt(e.w.x * e.w.x + e.w.y * e.w.y + e.w.z * e.w.z);
   for (std::size_t first = 0; first < spheres.count; first += lanes) {
     const std::size_t count = std::min(lanes, spheres.count - first);
@@ -92,33 +89,10 @@ void query_all_spheres(const DepthTiles& tiles, const EyeProjection& e, const Sp
     }
     const VF widest = hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
     const VF slack = hn::Add(hn::Set(f, 1.0f / 64), hn::Mul(widest, hn::Set(f, 2e-5f)));
-    const VF half = hn::Set(f, 0.5f), zero = hn::Zero(f);
-    const auto columns = hn::Set(f, static_cast<float>(tiles.width)),
-               lines = hn::Set(f, static_cast<float>(tiles.height));
-    const auto first_pixel = [&](VF low, VF limit) HWY_ATTR {
-      const VF at = hn::Ceil(hn::Sub(hn::Max(hn::Sub(low, slack), zero), half));
-      return hn::ConvertTo(i32, hn::Min(at, limit));
-    };
-    const auto last_pixel = [&](VF high, VF limit) HWY_ATTR {
-      const VF at = hn::Floor(hn::Sub(hn::Min(hn::Add(high, slack), limit), half));
-      return hn::ConvertTo(i32, hn::Max(at, hn::Set(f, -1.0f)));
-    };
-    hn::Store(first_pixel(left, columns), i32, x0.data());
-    hn::Store(first_pixel(top, lines), i32, y0.data());
-    hn::Store(last_pixel(right, columns), i32, x1.data());
-    hn::Store(last_pixel(bottom, lines), i32, y1.data());
-    hn::Store(hn::IfThenElse(before, nearest, hn::Set(f, kInfinity)), f, near.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(near[i] < kInfinity)) {  // about the eye's plane, or beyond numbers
-        visible[first + i] = 1;
-        continue;
-      }
-      const bool covers = x0[i] <= x1[i] && y0[i] <= y1[i];
-      visible[first + i] =
-          covers && !hidden(tiles, static_cast<std::uint32_t>(std::max(x0[i], 0)),
-                            static_cast<std::uint32_t>(std::max(y0[i], 0)), static_cast<std::uint32_t>(x1[i]),
-                            static_cast<std::uint32_t>(y1[i]), near[i]);
-    }
+    test_rectangles(tiles,
+                    {hn::Sub(left, slack), hn::Add(right, slack), hn::Sub(top, slack), hn::Add(bottom, slack),
+                     nearest, before},
+                    count, visible + first);
   }
 }
 

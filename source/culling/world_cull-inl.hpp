@@ -90,11 +90,13 @@ HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorV
   return classify_boxes(sides_of(block), block.count, view, planes);
 }
 
-// The planes among `from` that a chunk crosses.
-HWY_INLINE PlaneSet planes_of(const ChunkBits& bits, std::uint32_t chunk) {
+// Those of the planes `among` that a chunk crosses.
+HWY_INLINE PlaneSet planes_of(const ChunkBits& bits, std::uint32_t chunk, PlaneSet among = kAllPlanes) {
   PlaneSet planes = 0;
-  for (std::uint32_t p = 0; p < Frustum::sides; ++p)
+  for (std::uint32_t rest = among; rest != 0; rest &= rest - 1) {
+    const int p = std::countr_zero(rest);
     planes |= static_cast<PlaneSet>((bits.planes[p] >> chunk & 1) << p);
+  }
   return planes;
 }
 
@@ -104,6 +106,7 @@ HWY_INLINE void copy_ids(const ObjectId* HWY_RESTRICT from, std::size_t count, O
   for (std::size_t i = 0; i < count; i += hn::Lanes(u)) hn::StoreU(hn::Load(u, from + i), u, to + i);
 }
 
+// The sides of boxes that lie farthest along a plane's normal, and the plane.
 struct Corner {
   const float *x, *y, *z;
   const Plane* plane;
@@ -111,55 +114,87 @@ struct Corner {
 
 HWY_INLINE std::size_t corners_of(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
                                   Corner* out) {
-  const float* sides[6] = {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z};
+  const auto step = static_cast<std::size_t>(chunk.min_y - chunk.min_x);
   std::size_t count = 0;
   for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
     const int p = std::countr_zero(rest);
     const auto& near = view.near_side[p];
-    out[count++] = {sides[near[0]], sides[near[1]], sides[near[2]], &view.frustum.planes[p]};
+    out[count++] = {chunk.min_x + step * near[0], chunk.min_x + step * near[1], chunk.min_x + step * near[2],
+                    &view.frustum.planes[p]};
   }
   return count;
 }
 
-HWY_INLINE hn::Mask<F> inside(const Corner* corners, std::size_t count, std::size_t i) {
+// Calls use(first, mask) for each vector of `count` objects: which of them the planes leave. The planes are
+// held in registers where they are few, as they nearly always are.
+template <std::size_t kPlanes, class Use>
+HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count, const Use& use) {
   const F f;
-  VF worst = hn::Zero(f);
-  for (std::size_t c = 0; c < count; ++c) {
-    worst = hn::Min(worst, distance(*corners[c].plane, hn::Load(f, corners[c].x + i),
-                                    hn::Load(f, corners[c].y + i), hn::Load(f, corners[c].z + i)));
+  std::array<Plane, kPlanes> plane;
+  for (std::size_t c = 0; c < kPlanes; ++c) plane[c] = *corners[c].plane;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
+    const auto at = [&](std::size_t c, const Plane& p) HWY_ATTR {
+      return distance(p, hn::Load(f, corners[c].x + i), hn::Load(f, corners[c].y + i),
+                      hn::Load(f, corners[c].z + i));
+    };
+    VF worst = hn::Zero(f);
+    for (std::size_t c = 0; c < kPlanes; ++c) worst = hn::Min(worst, at(c, plane[c]));
+    for (std::size_t c = kPlanes; c < planes; ++c) worst = hn::Min(worst, at(c, *corners[c].plane));
+    use(i, hn::Ge(worst, hn::Zero(f)));
   }
-  return hn::Ge(worst, hn::Zero(f));
 }
 
-HWY_INLINE void prefetch(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes) {
-  for (std::uint32_t i = 0; i < chunk.count; i += 16) hwy::Prefetch(chunk.objects + i);
-  if (planes == 0) return;
-  Corner corners[Frustum::sides];
-  const std::size_t count = corners_of(chunk, view, planes, corners);
-  for (std::size_t c = 0; c < count; ++c) {
-    for (std::uint32_t i = 0; i < chunk.count; i += 16) {
-      hwy::Prefetch(corners[c].x + i), hwy::Prefetch(corners[c].y + i), hwy::Prefetch(corners[c].z + i);
-    }
+template <class Use>
+HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count, const Use& use) {
+  if (planes == 1) return test_planes<1>(corners, 1, count, use);
+  if (planes == 2) return test_planes<2>(corners, 2, count, use);
+  test_planes<0>(corners, planes, count, use);
+}
+
+// A bit an object of a chunk.
+struct alignas(16) ObjectBits {
+  std::array<std::uint8_t, ChunkMap::kCapacity / 8 + 4> bytes{};
+
+  [[nodiscard]] std::uint8_t at(std::size_t i) const {
+    return static_cast<std::uint8_t>(bytes[i / 8] >> (i % 8));
   }
+};
+
+// Of objects i …; `to` holds none of them yet.
+HWY_INLINE void add_bits(hn::Mask<F> mask, std::size_t i, ObjectBits& to) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(F(), mask, bits);
+  if (hn::Lanes(F()) < 8) {
+    to.bytes[i / 8] |= static_cast<std::uint8_t>(bits[0] << (i % 8));
+  } else {
+    std::memcpy(&to.bytes[i / 8], bits, hn::Lanes(F()) / 8);
+  }
+}
+
+template <class D>
+HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
+  std::uint8_t from[8] = {bits.at(i), bits.bytes[i / 8 + 1]};
+  if (hn::Lanes(d) < 8) from[0] &= (1u << hn::Lanes(d)) - 1;
+  return hn::LoadMaskBits(d, from);
+}
+
+HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
+  // Boxes are read along their rows, which processors find out by themselves.
+  for (std::uint32_t i = 0; i < chunk.count; i += 16) hwy::Prefetch(chunk.objects + i);
 }
 
 // One view, frustum only: ids straight into `out`.
-HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
+HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const Corner* corners, std::size_t planes,
                                   ObjectId* HWY_RESTRICT out) {
-  const F f;
   const U u;
-  const std::size_t lanes = hn::Lanes(f);
-  Corner corners[Frustum::sides];
-  const std::size_t count = corners_of(chunk, view, planes, corners);
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < chunk.count; i += lanes) {
-    auto mask = inside(corners, count, i);
-    if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
-    const auto keep = hn::RebindMask(u, mask);
+  test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    auto keep = hn::RebindMask(u, mask);
+    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
     // Packed in a register and stored whole: the packing store is microcoded on some processors.
     hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + i), keep), u, out + kept);
     kept += hn::CountTrue(u, keep);
-  }
+  });
   return kept;
 }
 

@@ -70,8 +70,8 @@ PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries,
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       chunks[kept] = map.chunk(block, i);
-      planes[kept] = planes_of(bits, i);
-      prefetch(chunks[kept], view, planes[kept]);
+      planes[kept] = planes_of(bits, i, entry.planes[0]);
+      prefetch_ids(chunks[kept]);
       ++kept;
     }
     for (std::size_t k = 0; k < kept; ++k) {
@@ -81,7 +81,8 @@ PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries,
         at += chunk.count;
       } else {
         counts.tested += chunk.count;
-        at += cull_chunk(chunk, view, planes[k], at);
+        Corner corners[Frustum::sides];
+        at += cull_chunk(chunk, corners, corners_of(chunk, view, planes[k], corners), at);
       }
     }
   }
@@ -95,38 +96,76 @@ HWY_INLINE void fill_masks(std::uint8_t mask, std::size_t count, std::uint8_t* H
   for (std::size_t i = 0; i < count; i += hn::Lanes(u8)) hn::StoreU(hn::Set(u8, mask), u8, to + i);
 }
 
-// What the frustums of some views say of one chunk.
+// Views that may see a part of a chunk, and which of its objects they do see.
 struct ChunkViews {
-  std::uint8_t whole = 0;  // views that see all of it
-  std::size_t crossed = 0;
-  std::array<std::uint8_t, kMaxViews> view{};  // of those that may see a part
-  std::array<std::size_t, kMaxViews> corners{};
-  std::array<std::array<Corner, Frustum::sides>, kMaxViews> corner;
+  std::size_t count = 0;
+  std::array<std::uint8_t, kMaxViews> bits{};  // of a mask
+  std::array<ObjectBits, kMaxViews> seen;
 };
 
-// The objects of a chunk that views cross: ids and masks, behind one another.
-HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const ChunkViews& seen,
-                                  ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
-  const F f;
-  const U u;
+HWY_INLINE void test_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
+                             ObjectBits& out) {
+  Corner corners[Frustum::sides];
+  const std::size_t count = corners_of(chunk, view, planes, corners);
+  if (hn::Lanes(F()) < 8) out = {};
+  test_planes(corners, count, chunk.count,
+              [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR { add_bits(mask, i, out); });
+}
+
+HWY_INLINE void store_masks(hn::Vec<U> masks, std::uint8_t* HWY_RESTRICT to) {
   const hn::Rebind<std::uint8_t, U> bytes;
-  const std::size_t lanes = hn::Lanes(f);
+  hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), masks)), bytes, to);
+}
+
+// The objects of a chunk that views see: ids and masks, behind one another.
+HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, const ChunkViews& views,
+                                  ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
+  const U u;
+  const std::size_t lanes = hn::Lanes(u);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < chunk.count; i += lanes) {
-    auto mask = hn::Set(u, seen.whole);
-    for (std::size_t k = 0; k < seen.crossed; ++k) {
-      const auto in_view = hn::RebindMask(u, inside(seen.corner[k].data(), seen.corners[k], i));
-      mask = hn::Or(mask, hn::IfThenElseZero(in_view, hn::Set(u, 1u << seen.view[k])));
-    }
+    auto mask = hn::Zero(u);
+    for (std::size_t k = 0; k < views.count; ++k)
+      mask = hn::Or(mask, hn::IfThenElseZero(mask_at(u, views.seen[k], i), hn::Set(u, views.bits[k])));
     auto keep = hn::Ne(mask, hn::Zero(u));
     if (i + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
     hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + i), keep), u, out + kept);
-    if (masks)
-      hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), hn::Compress(mask, keep))), bytes,
-                 masks + kept);
+    if (masks) store_masks(hn::Compress(mask, keep), masks + kept);
     kept += hn::CountTrue(u, keep);
   }
   return kept;
+}
+
+// The masks of a chunk that the views of `whole` see all of: nothing to leave out. Writes up to 15 more.
+HWY_INLINE void write_masks(const ChunkMap::ChunkView& chunk, std::uint8_t whole, const ChunkViews& views,
+                            std::uint8_t* HWY_RESTRICT masks) {
+  const hn::CappedTag<std::uint8_t, 16> bytes;
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(bytes)) {
+    auto mask = hn::Set(bytes, whole);
+    for (std::size_t k = 0; k < views.count; ++k) {
+      const auto seen = mask_at(bytes, views.seen[k], i);
+      mask = hn::Or(mask, hn::IfThenElseZero(seen, hn::Set(bytes, views.bits[k])));
+    }
+    hn::StoreU(mask, bytes, masks + i);
+  }
+}
+
+// A byte a chunk of a block: the views in whose words the chunk's bit is set.
+using ViewsOfChunk = std::array<std::uint8_t, kBlock>;
+
+HWY_INLINE ViewsOfChunk turn(const std::array<std::uint32_t, kMaxViews>& words, std::size_t views) {
+  const U u;
+  alignas(64) ViewsOfChunk out;
+  for (std::uint32_t i = 0; i < kBlock; i += static_cast<std::uint32_t>(hn::Lanes(u))) {
+    const auto chunk = hn::Shl(hn::Set(u, 1), hn::Iota(u, i));
+    auto of_chunk = hn::Zero(u);
+    for (std::size_t v = 0; v < views; ++v) {
+      const auto set = hn::TestBit(hn::Set(u, words[v]), chunk);
+      of_chunk = hn::Or(of_chunk, hn::IfThenElseZero(set, hn::Set(u, 1u << v)));
+    }
+    store_masks(of_chunk, &out[i]);
+  }
+  return out;
 }
 
 // Several views, frustum only.
@@ -135,60 +174,72 @@ PassCounts frustum_views(const PassInput& input, std::span<const BlockEntry> ent
   PassCounts counts;
   std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
+  std::array<std::uint32_t, kMaxViews> whole{}, crossing{};
   std::array<ChunkMap::ChunkView, kBlock> chunks;
-  ChunkViews seen;
+  ChunkViews crossed;
+  std::array<std::uint8_t, 1 << kMaxViews> bits_of_views;  // of a mask
+  for (std::size_t set = 0; set < bits_of_views.size(); ++set) {
+    bits_of_views[set] = 0;
+    for (std::size_t v = 0; v < input.view_count; ++v) bits_of_views[set] |= set >> v & 1 ? input.bits[v] : 0;
+  }
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const BlockEntry& entry = entries[e];
     prefetch_block(input, entries, e);
     const ChunkMap& map = *input.maps[entry.sector];
     const ChunkMap::Block& block = map.blocks()[entry.block];
     const SectorView* views = &input.views[entry.sector * input.view_count];
-    std::uint32_t any = 0, crossed = 0;
+    std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
-      bits[v] = {};
-      if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
-      any |= bits[v].kept, crossed |= bits[v].crossing;
+      whole[v] = crossing[v] = 0;
+      if (entry.planes[v] == kOutside) continue;
+      bits[v] = classify_chunks(block, views[v], entry.planes[v]);
+      any |= bits[v].kept;
+      crossing[v] = bits[v].crossing, whole[v] = bits[v].kept & ~bits[v].crossing;
     }
     counts.chunks += block.count;
+    const ViewsOfChunk seen_by = turn(whole, input.view_count), crossed_by = turn(crossing, input.view_count);
+    // Memory is what this waits for: the whole block's is asked for before any of it is used.
     for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       chunks[i] = map.chunk(block, i);
-      prefetch(chunks[i], views[0], 0);
-      if ((crossed >> i & 1) == 0) continue;
-      for (std::size_t v = 0; v < input.view_count; ++v) {
-        if (bits[v].crossing >> i & 1) prefetch(chunks[i], views[v], planes_of(bits[v], i));
-      }
+      prefetch_ids(chunks[i]);
     }
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
-      seen.whole = 0, seen.crossed = 0;
-      for (std::size_t v = 0; v < input.view_count; ++v) {
-        const std::uint32_t in = bits[v].kept >> i & 1, crosses = bits[v].crossing >> i & 1;
-        seen.whole |= static_cast<std::uint8_t>((in & ~crosses) << v);
-        seen.view[seen.crossed] = static_cast<std::uint8_t>(v);
-        seen.crossed += crosses;
-      }
-      if (seen.crossed == 0 || (seen.whole != 0 && masks == nullptr)) {
+      const std::uint8_t whole = bits_of_views[seen_by[i]];
+      if (crossed_by[i] == 0 || (whole != 0 && masks == nullptr)) {
         copy_ids(chunk.objects, chunk.count, out + kept);
-        if (masks) fill_masks(seen.whole, chunk.count, masks + kept);
+        if (masks) fill_masks(whole, chunk.count, masks + kept);
         kept += chunk.count;
         continue;
       }
-      counts.tested += seen.crossed * chunk.count;
-      for (std::size_t k = 0; k < seen.crossed; ++k) {
-        const std::size_t v = seen.view[k];
-        seen.corners[k] = corners_of(chunk, views[v], planes_of(bits[v], i), seen.corner[k].data());
-      }
-      if (seen.whole == 0 && seen.crossed == 1) {
+      if (whole == 0 && std::has_single_bit(crossed_by[i])) {
         // One view alone: its mask is the same for all.
-        const std::size_t v = seen.view[0];
-        const std::size_t count = cull_chunk(chunk, views[v], planes_of(bits[v], i), out + kept);
-        if (masks) fill_masks(static_cast<std::uint8_t>(1u << v), count, masks + kept);
+        const int v = std::countr_zero(crossed_by[i]);
+        Corner corners[Frustum::sides];
+        const std::size_t planes =
+            corners_of(chunk, views[v], planes_of(bits[v], i, entry.planes[v]), corners);
+        const std::size_t count = cull_chunk(chunk, corners, planes, out + kept);
+        if (masks) fill_masks(input.bits[v], count, masks + kept);
+        counts.tested += chunk.count;
         kept += count;
         continue;
       }
-      kept += cull_chunk(chunk, seen, out + kept, masks ? masks + kept : nullptr);
+      crossed.count = 0;
+      for (std::uint32_t by = crossed_by[i]; by != 0; by &= by - 1) {
+        const int v = std::countr_zero(by);
+        crossed.bits[crossed.count] = input.bits[v];
+        test_objects(chunk, views[v], planes_of(bits[v], i, entry.planes[v]), crossed.seen[crossed.count++]);
+      }
+      counts.tested += crossed.count * chunk.count;
+      if (whole != 0) {
+        copy_ids(chunk.objects, chunk.count, out + kept);
+        write_masks(chunk, whole, crossed, masks + kept);
+        kept += chunk.count;
+      } else {
+        kept += write_seen(chunk, crossed, out + kept, masks ? masks + kept : nullptr);
+      }
     }
   }
   counts.written = kept;

@@ -47,7 +47,8 @@ struct PassInput {
   std::span<const partition::ChunkMap* const> maps;  ///< one a sector
   std::span<const SectorView> views;                 ///< sectors × view_count
   std::size_t view_count = 1;
-  bool masks = false;
+  /// Of each view, the bits of a mask: several where the caller's views are the same.
+  std::array<std::uint8_t, kMaxViews> bits{};
 };
 
 /// Sorts the blocks of a node: adds those that some view may see to `entries`. `views` are the sector's,

@@ -19,6 +19,8 @@
 #include <sightline/frustum.hpp>
 #include <sightline/scene.hpp>
 
+#include "partition/large_pages.hpp"
+
 namespace sightline::partition {
 
 /// Rows and columns of leaf regions, last ones included, that a box touches.
@@ -56,6 +58,9 @@ struct CacheAligned {
 };
 template <class T>
 using AlignedVector = std::vector<T, CacheAligned<T>>;
+/// The same where culling several views jumps through it.
+template <class T>
+using LargeVector = std::vector<T, LargePages<T>>;
 
 class ChunkMap {
 public:
@@ -247,13 +252,13 @@ private:
   float columns_per_metre_ = 0, rows_per_metre_ = 0;
   std::uint32_t last_region_ = 0;  // of a row or column
 
-  AlignedVector<float> lanes_;
-  AlignedVector<ObjectId> ids_;
+  LargeVector<float> lanes_;
+  LargeVector<ObjectId> ids_;
   std::vector<Chunk> chunks_;
   std::vector<Split> splits_;
   std::vector<Key> keys_;
   std::unordered_map<std::uint32_t, std::uint32_t> key_of_regions_;
-  AlignedVector<Block> blocks_;
+  LargeVector<Block> blocks_;
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;

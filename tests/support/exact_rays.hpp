@@ -2,6 +2,7 @@
 // occlusion is tested against.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -59,6 +60,22 @@ public:
                  r = static_cast<double>(ball.radius), under = b * b - a * (glm::dot(to, to) - r * r);
     const double at = (b - std::sqrt(std::max(under, 0.0))) / a;
     if (under < 0 || (!orthographic_ && at <= 0)) return kMiss;
+    return orthographic_ ? -at : 1 / at;
+  }
+
+  /// Where the pixel's ray meets a triangle in front of the near plane, either face.
+  [[nodiscard]] double hit(double x, double y, const std::array<Vec3, 3>& triangle) const {
+    const auto [origin, direction] = ray(x, y);
+    const glm::dvec3 p = geometry::to_double(triangle[0]), a = geometry::to_double(triangle[1]) - p,
+                     b = geometry::to_double(triangle[2]) - p;
+    const glm::dvec3 normal = glm::cross(a, b), to = p - origin;
+    const double slope = glm::dot(normal, direction);
+    if (slope == 0) return kMiss;
+    const double at = glm::dot(normal, to) / slope;
+    const glm::dvec3 from = direction * at - to;  // p -> hit
+    const double u = glm::dot(glm::cross(from, b), normal), v = glm::dot(glm::cross(a, from), normal);
+    if (u < 0 || v < 0 || u + v > glm::dot(normal, normal)) return kMiss;
+    if (glm::dot(glm::dvec3(near_), origin + direction * at) + near_.w < 0) return kMiss;
     return orthographic_ ? -at : 1 / at;
   }
 

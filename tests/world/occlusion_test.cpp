@@ -264,6 +264,130 @@ TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
   EXPECT_GT(dropped_by_sphere, 5u);
 }
 
+// Thick, thin, near and far, some across the near plane.
+std::array<Vec3, 3> triangle_of(Random& random) {
+  const Vec3 at = random.inside(kAround);
+  const float size = random.below(4) == 0 ? 30.0f : 3.0f, thin = random.below(4) == 0 ? 0.003f : 1.0f;
+  std::array<Vec3, 3> out{at, at, at};
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Vec3 d = random.direction();
+    const float by = k == 1 ? size : size * thin;
+    out[k] = {at.x + d.x * by, at.y + d.y * by, at.z + d.z * by};
+  }
+  return out;
+}
+
+TEST(Occlusion, NeverHidesATriangleThatAPixelCentreSees) {
+  Random random(15);
+  std::size_t hidden = 0, could_be = 0, seen_by_box = 0;
+  for (int round = 0; round < 250; ++round) {
+    const View view = small_view(random);
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 8));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    const ExactRays rays(view);
+    const std::vector<double> exact = exact_depths(rays, view, occluders);
+    const std::vector<double> front = exact_depths(rays, view, occluders, true);
+    std::vector<Vec3> all;
+    bool any_seen = false;
+    for (int i = 0; i < 21; ++i) {
+      const std::array<Vec3, 3> triangle = triangle_of(random);
+      all.insert(all.end(), triangle.begin(), triangle.end());
+      bool seen = false, seen_without_insides = false;
+      for (std::uint32_t p = 0; p < exact.size() && !seen; ++p) {
+        const double at = rays.hit(p % view.width + 0.5, p / view.width + 0.5, triangle);
+        seen = at > exact[p];
+        seen_without_insides = seen_without_insides || at > front[p];
+      }
+      const bool may_see = buffer.may_see(std::span<const Vec3>(triangle));
+      if (seen) ASSERT_TRUE(may_see) << "round " << round << " triangle " << i;
+      any_seen = any_seen || may_see;
+      hidden += !may_see;
+      could_be += !seen_without_insides;
+      Box box{triangle[0], triangle[0]};
+      for (const Vec3& c : triangle) {
+        box.min = {std::min(box.min.x, c.x), std::min(box.min.y, c.y), std::min(box.min.z, c.z)};
+        box.max = {std::max(box.max.x, c.x), std::max(box.max.y, c.y), std::max(box.max.z, c.z)};
+      }
+      seen_by_box += !may_see && buffer.may_see(box);
+      if (may_see) EXPECT_TRUE(buffer.may_see(box));
+    }
+    ASSERT_EQ(buffer.may_see(std::span<const Vec3>(all)), any_seen);
+  }
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_GT(static_cast<double>(hidden), 0.9 * static_cast<double>(could_be));
+  EXPECT_GT(seen_by_box, 50u);
+}
+
+TEST(Occlusion, RectanglesOfAnySizeAreTestedByEachOfTheirPixels) {
+  Random random(16);
+  std::size_t one = 0, few = 0, many = 0, hidden = 0;
+  for (int round = 0; round < 60; ++round) {
+    const View view = *make_view(Camera{.eye = {0, 0, 60}}, 203, 117);
+    std::vector<Box> occluders;
+    for (int i = 0; i < 60; ++i) occluders.push_back(box_of(random, 12));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    std::vector<float> drawn(203 * 117);
+    buffer.read_nearness(drawn);
+    for (int i = 0; i < 200; ++i) {
+      // A box so thin that its rectangle is the image of one face.
+      const Vec3 at = random.inside({{-60, -30, -60}, {60, 30, 10}});
+      const float half = i % 3 == 0 ? 12.0f : i % 3 == 1 ? 2.0f : 0.2f;
+      const Box box{{at.x - half, at.y - half, at.z - 0.001f}, {at.x + half, at.y + half, at.z}};
+      const double scale = 117 / 2.0 / std::tan(0.5 * 1.04719755) / (60 - at.z);
+      const auto pixels = [&](double grow, int& x0, int& y0, int& x1, int& y1) {
+        x0 = std::max(0, static_cast<int>(std::ceil(101.5 + (at.x - half) * scale - grow - 0.5)));
+        x1 = std::min(202, static_cast<int>(std::floor(101.5 + (at.x + half) * scale + grow - 0.5)));
+        y0 = std::max(0, static_cast<int>(std::ceil(58.5 - (at.y + half) * scale - grow - 0.5)));
+        y1 = std::min(116, static_cast<int>(std::floor(58.5 - (at.y - half) * scale + grow - 0.5)));
+      };
+      const auto least = [&](double grow) {
+        int x0, y0, x1, y1;
+        pixels(grow, x0, y0, x1, y1);
+        double nearness = INFINITY;
+        for (int y = y0; y <= y1; ++y) {
+          for (int x = x0; x <= x1; ++x)
+            nearness = std::min(nearness, static_cast<double>(drawn[static_cast<std::size_t>(y * 203 + x)]));
+        }
+        return nearness;
+      };
+      const bool may_see = buffer.may_see(box);
+      const double nearness = 1 / (60.0 - at.z);
+      if (least(-0.05) < nearness * (1 - 1e-4)) ASSERT_TRUE(may_see) << "round " << round << " box " << i;
+      if (least(0.05) > nearness * (1 + 1e-3)) ASSERT_FALSE(may_see) << "round " << round << " box " << i;
+      hidden += !may_see;
+      int x0, y0, x1, y1;
+      pixels(0, x0, y0, x1, y1);
+      if (x0 > x1 || y0 > y1) continue;
+      const int across = x1 / 8 - x0 / 8, down = y1 / 8 - y0 / 8;
+      ++(across + down == 0 ? one : across <= 1 && down <= 1 ? few : many);
+    }
+  }
+  EXPECT_GT(one, 1000u);
+  EXPECT_GT(few, 1000u);
+  EXPECT_GT(many, 1000u);
+  EXPECT_GT(hidden, 1000u);
+}
+
+TEST(Occlusion, CallsVisibleWhatIsNoNumber) {
+  OcclusionBuffer buffer;
+  ASSERT_FALSE(buffer.begin({*make_view(Camera{}, 64, 48), {}}));
+  buffer.draw_boxes(std::array{Box{{-50, -50, -9}, {50, 50, -8}}});
+  ASSERT_FALSE(buffer.may_see(Box{{-1, -1, -20}, {1, 1, -19}}));
+  for (const float bad : {std::nanf(""), INFINITY}) {
+    EXPECT_TRUE(buffer.may_see(Box{{-1, -1, -bad}, {1, 1, bad}}));
+    EXPECT_TRUE(buffer.may_see(std::array{Vec3{-1, -1, -20}, Vec3{1, bad, -20}, Vec3{0, 1, bad}}));
+    const float x = bad, y = 0, z = -20, radius = 1;
+    std::uint8_t visible = 0;
+    buffer.may_see(SphereSpan{&x, &y, &z, &radius, 1}, {&visible, 1});
+    EXPECT_EQ(visible, 1);
+  }
+}
+
 TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   Random random(6);
   const View view = *make_view(Camera{.eye = {0, 2, 60}}, 333, 217);
@@ -274,6 +398,8 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   for (int i = 0; i < 100; ++i) balls.push_back(ball_of(random, 4));
   Boxes queries;
   for (int i = 0; i < 1000; ++i) queries.push_back(box_of(random, 1));
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (int i = 0; i < 1000; ++i) triangles.push_back(triangle_of(random));
   const auto run = [&] {
     OcclusionBuffer buffer;
     EXPECT_FALSE(buffer.begin({view, {}}));
@@ -290,6 +416,7 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
                               queries.size()},
                    by_sphere);
     visible.insert(visible.end(), by_sphere.begin(), by_sphere.end());
+    for (const auto& triangle : triangles) visible.push_back(buffer.may_see(std::span<const Vec3>(triangle)));
     return std::pair(drawn, visible);
   };
   const auto expected = run();

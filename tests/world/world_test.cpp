@@ -1,3 +1,4 @@
+#include <sightline/occlusion.hpp>
 #include <sightline/world.hpp>
 
 #include <gtest/gtest.h>
@@ -248,6 +249,66 @@ TEST(World, DropsWhatCoversLessThanTheAreaAsked) {
     EXPECT_EQ(cull(world, {&at, 1}, {.min_area = area}, visible).count, expected(area));
   }
   EXPECT_EQ(cull(world, {&at, 1}, {}, visible).count, 200u);
+}
+
+// Masks of many views against each view culled alone.
+void expect_each_alone(const World& world, std::span<const WorldView> views,
+                       std::span<const OcclusionBuffer* const> occlusion) {
+  Culler culler;
+  std::vector<ObjectId> visible(cull_capacity(world)), single(visible.size());
+  std::vector<std::uint8_t> masks(visible.size()), seen(world.id_limit(), 0);
+  const CullResult all = culler.cull(world, views, {.occlusion = occlusion}, visible, masks);
+  ASSERT_EQ(all.error, CullError::none);
+  for (std::size_t i = 0; i < all.count; ++i) seen[visible[i]] = masks[i];
+  std::uint64_t occluded = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const auto its = occlusion.empty() ? occlusion : occlusion.subspan(v, 1);
+    const CullResult one = culler.cull(world, views.subspan(v, 1), {.occlusion = its}, single);
+    occluded += one.culled_occlusion;
+    std::size_t expected = 0;
+    for (const std::uint8_t mask : seen) expected += mask >> v & 1;
+    EXPECT_EQ(one.count, expected) << "view " << v;
+    EXPECT_GT(one.count, 100u);
+    for (std::size_t i = 0; i < one.count; ++i) ASSERT_TRUE(seen[single[i]] >> v & 1) << "view " << v;
+  }
+  EXPECT_EQ(all.culled_occlusion, occluded);
+}
+
+TEST(World, CullsViewsThatAreTheSameForEachOfThem) {
+  Random random(21);
+  World world;
+  std::vector<WorldBox> boxes(20000);
+  std::vector<Box> occluders;
+  for (WorldBox& b : boxes) {
+    const Vec3 at = random.inside({{-300, 0, -300}, {300, 20, 300}});
+    b = {{at.x - 1.0, at.y - 1.0, at.z - 1.0}, {at.x + 1.0, at.y + 1.0, at.z + 1.0}};
+    if (occluders.size() < 100) occluders.push_back({{at.x - 9, 0, at.z - 9}, {at.x + 9, 30, at.z + 9}});
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_FALSE(world.insert(boxes, handles));
+  const auto view = [](float heading) {
+    Camera camera{.eye = {0, 8, 0}, .forward = {std::sin(heading), 0, std::cos(heading)}};
+    return WorldView{*make_view(camera, 320, 180), {}};
+  };
+  const WorldView a = view(0), b = view(0.5f), c = view(2);
+  OcclusionBuffer of_a, of_b;
+  ASSERT_FALSE(of_a.begin(a));
+  ASSERT_FALSE(of_b.begin(b));
+  of_a.draw_boxes(occluders), of_b.draw_boxes(occluders);
+  const std::array pairs{a, b, a, b};
+  const std::array five{a, b, a, c, b};
+  const std::array same{c, c, c, c, c, c, c, c};
+  expect_each_alone(world, pairs, {});
+  expect_each_alone(world, five, {});
+  expect_each_alone(world, same, {});
+  // One view with its occluders and one without are two.
+  const std::array<const OcclusionBuffer*, 5> occlusion{&of_a, &of_b, nullptr, nullptr, &of_b};
+  expect_each_alone(world, five, occlusion);
+  std::vector<ObjectId> visible(cull_capacity(world));
+  std::vector<std::uint8_t> masks(visible.size());
+  const CullResult result = cull(world, five, {.occlusion = occlusion}, visible, masks);
+  EXPECT_TRUE(std::any_of(masks.begin(), masks.begin() + static_cast<std::ptrdiff_t>(result.count),
+                          [](std::uint8_t mask) { return (mask & 5) == 4; }));
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 // Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
 // 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles
 // (round ones as balls, which are cheap, so nearly all of them), then all against the tiles by box and
-// sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes.
+// sphere. Where a scene is one built thing of few triangles, like a game level, nearly all of it occludes,
+// and what its box leaves of an object is tested triangle by triangle.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include <sightline/occlusion.hpp>
@@ -14,6 +17,7 @@
 #include <sightline/world.hpp>
 
 #include "culling/draw_list.hpp"
+#include "geometry/linear.hpp"
 #include "methods/methods.hpp"
 #include "methods/raster_occlusion/inner_shell.hpp"
 #include "scene/scale_bounds.hpp"
@@ -30,6 +34,8 @@ constexpr std::array kParameters{
                   1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
 };
+
+constexpr double kSurface = 0.99;  // share of it that occludes where a scene occludes as one
 
 WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
@@ -52,6 +58,7 @@ public:
     // Objects that share few meshes are instances, whose triangles would be too many in one.
     const bool one_thing = 2 * scene.meshes.size() >= scene.size();
     if (one_thing && triangle_count(scene) <= parameters.count("whole")) {
+      find_corners();
       build_whole();
     } else {
       find_balls();
@@ -68,7 +75,9 @@ public:
       first_time = first_time || !moved_[o];
       moved_[o] = 1;
     }
-    if (whole_ && first_time) build_whole();
+    if (!whole_) return;
+    for (const ObjectId o : objects) place_corners(o);
+    if (first_time) build_whole();
   }
 
   void cull(const View& view, Frame& frame) noexcept override {
@@ -77,13 +86,19 @@ public:
     stats.objects = scene_.size();
     frame.visible.resize(cull_capacity(world_));
     const WorldView at{view, {}};
-    CullResult result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+    CullResult result;
+    // What is in view at all, from which occluders are picked.
+    if (!whole_) result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+    const bool worth_it = whole_ || (result.error == CullError::none && result.count > 1);
     // A world or view beyond what the tiles hold is culled by frustum alone, or not at all.
-    if (usable_ && result.error == CullError::none && result.count > 1 && !buffer_.begin(at)) {
+    if (usable_ && worth_it && !buffer_.begin(at)) {
       draw_occluders(view, std::span(frame.visible).first(result.count));
       const OcclusionBuffer* buffer = &buffer_;
       result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
-      drop_hidden_spheres(std::span(frame.visible).first(result.count), result);
+      const auto left = std::span(frame.visible).first(result.count);
+      whole_ ? drop_hidden_triangles(left, result) : drop_hidden_spheres(left, result);
+    } else if (whole_) {
+      result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
     }
     if (!usable_ || result.error != CullError::none) {
       frame.visible.resize(scene_.size());
@@ -105,22 +120,69 @@ private:
     bool cut;  // by the near plane
   };
 
+  // The corners of every object's triangles, in world space.
+  void place_corners(ObjectId o) {
+    const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
+    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+      corners_[first_corner_[o] + i] = transform_point(
+          scene_.transform[o], scene_.positions[mesh.first_vertex + scene_.indices[mesh.first_index + i]]);
+    }
+  }
+
+  void find_corners() {
+    first_corner_.assign(1, 0);
+    for (ObjectId o = 0; o < scene_.size(); ++o)
+      first_corner_.push_back(first_corner_.back() + scene_.meshes[scene_.mesh[o]].index_count);
+    corners_.resize(first_corner_.back());
+    for (ObjectId o = 0; o < scene_.size(); ++o) place_corners(o);
+  }
+
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
   void build_whole() {
     std::vector<Vec3> positions;
-    std::vector<std::uint32_t> indices;
     for (ObjectId o = 0; o < scene_.size(); ++o) {
       if (moved_[o] || scene_.surface[o] != Surface::opaque) continue;
-      const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
-      const auto first = static_cast<std::uint32_t>(positions.size());
-      for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
-        positions.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + v]));
-      }
-      for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-        indices.push_back(first + scene_.indices[mesh.first_index + i]);
-      }
+      positions.insert(positions.end(), corners_.begin() + first_corner_[o],
+                       corners_.begin() + first_corner_[o + 1]);
     }
-    whole_ = std::make_unique<OccluderMesh>(positions, indices);
+    std::vector<std::uint32_t> indices(positions.size());
+    std::iota(indices.begin(), indices.end(), 0u);
+    whole_ = std::make_unique<OccluderMesh>(positions, large_triangles(positions, indices));
+  }
+
+  // Triangles that together hold nearly all of the surface: details hide little and cost as much as walls.
+  std::vector<std::uint32_t> large_triangles(std::span<const Vec3> positions,
+                                             std::span<const std::uint32_t> indices) const {
+    std::vector<std::pair<double, std::uint32_t>> by_area;
+    double total = 0;
+    for (std::uint32_t i = 0; i + 3 <= indices.size(); i += 3) {
+      const glm::dvec3 a = geometry::to_double(positions[indices[i]]),
+                       b = geometry::to_double(positions[indices[i + 1]]),
+                       c = geometry::to_double(positions[indices[i + 2]]);
+      by_area.emplace_back(glm::length(glm::cross(b - a, c - a)), i);
+      total += by_area.back().first;
+    }
+    std::sort(by_area.begin(), by_area.end(), std::greater());
+    std::vector<std::uint32_t> kept;
+    double sum = 0;
+    for (const auto& [area, i] : by_area) {
+      if (sum > kSurface * total) break;
+      sum += area;
+      kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
+    }
+    return kept;
+  }
+
+  // Of what its box leaves, an object's triangles may drop some more. Keeps the rest in front, in order.
+  void drop_hidden_triangles(std::span<ObjectId> visible, CullResult& result) {
+    std::size_t kept = 0;
+    for (const ObjectId o : visible) {
+      const auto its = std::span(corners_).subspan(first_corner_[o], first_corner_[o + 1] - first_corner_[o]);
+      visible[kept] = o;
+      kept += buffer_.may_see(its);
+    }
+    result.culled_occlusion += visible.size() - kept;
+    result.count = kept;
   }
 
   void find_balls() {
@@ -233,6 +295,8 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::uint8_t> moved_;
   std::unique_ptr<OccluderMesh> whole_;
+  std::vector<Vec3> corners_;  // of all triangles, object by object, in world space; for `whole_`
+  std::vector<std::uint32_t> first_corner_;  // one an object, and the end
   std::vector<std::unique_ptr<OccluderMesh>> meshes_, cut_meshes_;
   std::vector<std::optional<Sphere>> balls_;  // one a mesh, in its own space
   std::vector<Occluder> picked_;
