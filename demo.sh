@@ -2,10 +2,11 @@
 # The first command: installs what is missing, builds, compares the methods on a real game level, and says where the
 # report lies. An argument names another scene.
 set -euo pipefail
+scene=${1:-pak1-maps.pk3:maps/oasago2.bsp}
+if [ -e "$scene" ]; then scene=$(realpath "$scene"); fi
 cd "$(dirname "$0")"
 . scripts/packages.sh
 start=$(date +%s)
-scene=${1:-pak1-maps.pk3:maps/oasago2.bsp}
 
 ensure_packages $run_packages
 cmake --preset release -DSIGHTLINE_TESTS=OFF -DSIGHTLINE_BENCHMARKS=OFF >/dev/null

@@ -72,6 +72,10 @@ refused "no such method" "$sightline" compare "$world" --methods nonesuch
 refused "lacks a level's PVS" "$sightline" verify "$world" --methods level-pvs
 refused "no parameter" "$sightline" verify "$world" --methods none?x=1
 refused "--size" "$sightline" compare "$world" --size 0x0
+refused "no share" "$sightline" verify "$world" --device any --moving nan
+refused "/proc/page" "$sightline" compare "$world" --report /proc/page
+refused "/proc/page" "$sightline" reproduce ray-pvs --report /proc/page
+refused "--device" "$sightline" compare "$world" --device ""
 refused "--size" "$sightline" compare "$world" --size 99999x1
 refused "--views" "$sightline" verify "$world" --views 0
 refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch

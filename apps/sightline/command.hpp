@@ -43,6 +43,10 @@ void attach_pvs(Scene& scene, const std::string& file);
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
+/// Option values: a share from 0 to 1; a folder for a page, made and tried before any work is done.
+CLI::Validator share();
+CLI::Validator page_folder();
+
 /// "A,B,C" as a list; parameters of a method may hold no comma.
 std::vector<std::string> split(const std::string& list);
 

@@ -78,12 +78,13 @@ void add_compare(CLI::App& app, int& exit) {
       ->capture_default_str();
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(share());
   command.add_flag("--limit", options->limit,
                    "also draw just what the item buffer sees, which no culling of whole objects can beat");
   command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
       ->type_name("FILE");
   command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
+      ->check(page_folder())
       ->type_name("DIR");
   on_run(command, exit, [options] { return run(*options); });
 }

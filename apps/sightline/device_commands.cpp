@@ -35,6 +35,8 @@ std::vector<std::string> methods_or(const DeviceCall& call, std::vector<std::str
 }  // namespace
 
 std::unique_ptr<vulkan::Device> open_device(const std::string& name) {
+  if (name.empty())
+    throw Error("--device: it is empty, expected a device's index or part of its name, or any");
   vulkan::DeviceOptions options;
   options.choice = name == "any" ? "" : name;
   options.validation = std::getenv("SIGHTLINE_VALIDATION") != nullptr;
@@ -65,10 +67,8 @@ int compare_on_device(const DeviceCall& call) {
              triangle_count(scene), path.name, path.cameras.size(), call.width, call.height,
              comparison.device);
   fmt::print("{}\n{}\n", lab::render(lab::device_table(comparison)), lab::device_verdict(comparison));
-  if (comparison.methods.size() > 1) {
-    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}",
-               lab::render(lab::device_ratios(comparison)));
-  }
+  if (const lab::Table ratios = lab::device_ratios(comparison); !ratios.rows.empty())
+    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}", lab::render(ratios));
   if (!call.json.empty()) lab::write_json(call.json, comparison);
   return Exit::done;
 }

@@ -1,7 +1,10 @@
 // The command line: a thin face on the lab. Results go to stdout, complaints to stderr.
+#include <unistd.h>
+
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include <sightline/error.hpp>
@@ -10,6 +13,25 @@
 #include "command.hpp"
 
 namespace sightline::app {
+
+CLI::Validator share() {
+  const auto refuse = [](const std::string& text) -> std::string {
+    double value = -1;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    return number && value >= 0 && value <= 1 ? "" : "'" + text + "' is no share, expected 0 to 1";
+  };
+  return {refuse, "0 to 1"};
+}
+
+CLI::Validator page_folder() {
+  const auto refuse = [](const std::string& folder) -> std::string {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!failed && access(folder.c_str(), W_OK | X_OK) == 0) return "";
+    return "'" + folder + "' cannot be written, expected a folder or a place for one";
+  };
+  return {refuse, ""};
+}
 
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
   std::uint32_t width = 0, height = 0;

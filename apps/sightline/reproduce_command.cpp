@@ -93,6 +93,7 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   paper.add_flag("--quick", *quick, "fewer repeats");
   paper.add_option("--device", *device, "the Vulkan device")->capture_default_str();
   paper.add_option("--report", *report, "also write an HTML page with figure 12's pictures to DIR")
+      ->check(page_folder())
       ->type_name("DIR");
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
@@ -140,7 +141,9 @@ void add_reproduce(CLI::App& app, int& exit) {
       *command.add_subcommand("object-frustum", "Le Hoang Minh et al. 2022: grid-cell and object-frustum");
   auto options = std::make_shared<Options>();
   paper.add_flag("--quick", options->quick, "fewer repeats");
-  paper.add_option("--report", options->report, "also write an HTML page to DIR")->type_name("DIR");
+  paper.add_option("--report", options->report, "also write an HTML page to DIR")
+      ->check(page_folder())
+      ->type_name("DIR");
   paper.add_option("--device", options->device, "where frames are drawn; cpu draws none (default: any)")
       ->type_name("cpu|NAME");
   on_run(paper, exit, [options] { return run_object_frustum(*options); });
@@ -149,6 +152,7 @@ void add_reproduce(CLI::App& app, int& exit) {
       *command.add_subcommand("vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion");
   chunks.add_flag("--quick", options->quick, "smaller pictures, fewer triangles, fewer repeats");
   chunks.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
+      ->check(page_folder())
       ->type_name("DIR");
   chunks
       .add_option("--device", options->device, "a Vulkan device by index or part of its name (default: any)")
@@ -158,7 +162,9 @@ void add_reproduce(CLI::App& app, int& exit) {
   CLI::App& calls = *command.add_subcommand(
       "draw-calls", "Serpa, Serpa & Rodrigues: triangles x draw calls, and walks through three game levels");
   calls.add_flag("--quick", options->quick, "fewer views and repeats");
-  calls.add_option("--report", options->report, "also write an HTML page to DIR")->type_name("DIR");
+  calls.add_option("--report", options->report, "also write an HTML page to DIR")
+      ->check(page_folder())
+      ->type_name("DIR");
   calls.add_option("--device", options->device, "Vulkan device: its number or part of its name")
       ->type_name("NAME");
   on_run(calls, exit, [options] { return run_draw_calls(*options); });

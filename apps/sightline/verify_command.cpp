@@ -91,7 +91,7 @@ void add_verify(CLI::App& app, int& exit) {
       ->capture_default_str();
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(share());
   on_run(command, exit, [options] { return run(*options); });
 }
 

@@ -75,8 +75,8 @@ public:
   /// box and sphere are both known, both must say so.
   void may_see(const SphereSpan& spheres, std::span<std::uint8_t> visible) const noexcept;
 
-  /// Whether some pixel centre may see one of the triangles, three corners each, relative to the view's origin:
-  /// pixel by pixel, so closer to the truth than a box, and dearer. False is certain.
+  /// Whether some pixel centre may see one of the triangles, three corners each, relative to the view's
+  /// origin: pixel by pixel, so closer to the truth than a box, and dearer. False is certain.
   [[nodiscard]] bool may_see(std::span<const Vec3> triangles) const noexcept;
 
   [[nodiscard]] std::uint32_t width() const noexcept;

@@ -1,5 +1,6 @@
 // Any CPU method, drawn by the renderer.
 #include <algorithm>
+#include <ranges>
 
 #include "culling/draw_list.hpp"
 #include "methods/device_method.hpp"
@@ -100,7 +101,17 @@ private:
     }
   }
 
-  /// Every triangle once: opaque objects in that order, then transparent ones far to near.
+  /// The same triangles, each in a draw of its own, the last first.
+  static std::vector<DrawCommand> turned_round(std::span<const DrawCommand> draws) {
+    std::vector<DrawCommand> out;
+    for (const DrawCommand& draw : std::views::reverse(draws)) {
+      for (std::uint32_t t = draw.index_count / 3; t-- > 0;)
+        out.push_back({3, 1, draw.first_index + 3 * t, draw.vertex_offset, draw.first_instance + t});
+    }
+    return out;
+  }
+
+  /// Every triangle once: opaque ones in that order, then transparent ones far to near.
   std::vector<DrawCommand> everything(const View& view, Order order) {
     const Scene& scene = renderer_.scene();
     const auto blended = [&](ObjectId object) { return scene.surface[object] == Surface::transparent; };
@@ -113,10 +124,10 @@ private:
     const auto draw = [&](ObjectId object) {
       draws.insert(draws.end(), ranges_[object].begin(), ranges_[object].end());
     };
-    for (ObjectId i = 0; i < scene.size(); ++i) {
-      const ObjectId object = order == Order::rising ? i : static_cast<ObjectId>(scene.size() - 1 - i);
+    for (ObjectId object = 0; object < scene.size(); ++object) {
       if (!blended(object)) draw(object);
     }
+    if (order == Order::falling) draws = turned_round(draws);
     std::ranges::for_each(all.visible, draw);
     return draws;
   }

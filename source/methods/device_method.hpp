@@ -34,9 +34,9 @@ public:
   /// Told what the last frame took, as Method::took is.
   virtual void took([[maybe_unused]] double milliseconds) noexcept {}
   /// For a method that draws triangles of its own, in their own shading and perhaps their front faces alone:
-  /// records all of them, the picture that its frames are to be compared with. Of opaque objects at one depth
-  /// the first drawn shows: the lowest number in one order, the highest in the other. False, and nothing
-  /// recorded, for the rest, whose picture is the scene's.
+  /// records all of them, the picture that its frames are to be compared with. Of opaque triangles at one
+  /// depth the first drawn shows, which is another in the other order. False, and nothing recorded, for the
+  /// rest, whose picture is the scene's.
   enum class Order : std::uint8_t { rising, falling };
   virtual bool record_everything([[maybe_unused]] vulkan::Recorder& frame, [[maybe_unused]] Order order) {
     return false;

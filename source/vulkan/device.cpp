@@ -87,12 +87,12 @@ const vk::raii::PhysicalDevice& choose(const std::vector<vk::raii::PhysicalDevic
   }
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
-  if (error == std::errc() && end == choice.data() + choice.size() && index < devices.size())
-    return devices[index];
+  const bool is_index = error == std::errc() && end == choice.data() + choice.size();
+  if (is_index && index < devices.size()) return devices[index];
   std::string names;
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const DeviceInfo info = describe(devices[i]);
-    if (lower(info.name).find(lower(choice)) != std::string::npos) return devices[i];
+    if (!is_index && lower(info.name).find(lower(choice)) != std::string::npos) return devices[i];
     names += fmt::format("{}{} '{}'", names.empty() ? "" : ", ", i, info.name);
   }
   throw Error(

@@ -37,6 +37,12 @@ TEST(DeviceChoice, SaysWhichDevicesThereAreWhenTheNameFitsNone) {
   EXPECT_NE(text.find(vulkan::list_devices()[0].name), std::string::npos) << text;
 }
 
+TEST(DeviceChoice, ANumberIsAnIndexAndNoPartOfAName) {
+  vulkan::DeviceOptions options;
+  options.choice = "15";  // of "LLVM 15.0.6", say
+  EXPECT_NE(complaint(options).find("'15'"), std::string::npos);
+}
+
 TEST(DeviceChoice, SaysWhenThereIsNone) {
   setenv("VK_DRIVER_FILES", "/nowhere/no_driver.json", 1);
   setenv("VK_ICD_FILENAMES", "/nowhere/no_driver.json", 1);

@@ -88,6 +88,7 @@ Table device_ratios(const Comparison& comparison, double share) {
       if (few && first.frame && row.frame && row.frame->median > 0)
         ratios.push_back(first.frame->median / row.frame->median);
     }
+    if (ratios.empty()) continue;
     const Timing t = timing_of(ratios);
     table.rows.push_back({comparison.methods[m], fmt::format("{}", ratios.size()),
                           fmt::format("{:.2f}", t.median), fmt::format("{:.2f}", t.min),

@@ -12,13 +12,22 @@ namespace {
 
 constexpr std::size_t kExamples = 10;
 
-// Pixels that are neither as in one reference nor as in the other: where opaque surfaces lie at one depth,
-// either may show.
-std::uint64_t count_different(const vulkan::Picture& picture, const vulkan::Picture& one,
-                              const vulkan::Picture& other) {
+// A picture with its depths, and the pictures that it may equal: all triangles drawn in one order and in the
+// other.
+struct Reference {
+  vulkan::Picture picture, other;
+  std::vector<float> depth;
+};
+
+// Where opaque surfaces lie at one depth the two orders differ, and any of those surfaces may show.
+std::uint64_t count_different(const vulkan::Picture& picture, const std::vector<float>& depth,
+                              const Reference& reference) {
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-    count += picture.pixels[i] != one.pixels[i] && picture.pixels[i] != other.pixels[i];
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const bool tie =
+        reference.picture.pixels[i] != reference.other.pixels[i] && depth[i] == reference.depth[i];
+    count += picture.pixels[i] != reference.picture.pixels[i] && !tie;
+  }
   return count;
 }
 
@@ -51,19 +60,21 @@ DeviceVerification verify_on_device(Workbench& bench, std::span<const Camera> ca
       if (moving > 0) bench.update(mover.move());
       const ItemBuffer scene_truth = bench.judge(view);
       bench.draw(bench.reference(), view);
-      const vulkan::Picture scene_picture = bench.renderer().picture();
+      Reference scene_reference{bench.renderer().picture(), {}, bench.renderer().depth()};
+      scene_reference.other = scene_reference.picture;
       for (std::size_t m = 0; m < contestants.size(); ++m) {
         const std::optional<ItemBuffer> own = bench.judge_own(*contestants[m].method, view);
         const ItemBuffer& truth = own ? *own : scene_truth;
-        std::array references{scene_picture, scene_picture};
+        Reference reference = scene_reference;
         if (own) {
           using Order = methods::DeviceMethod::Order;
-          references[0] = bench.own_picture(*contestants[m].method, view, Order::rising);
-          references[1] = bench.own_picture(*contestants[m].method, view, Order::falling);
+          reference.other = bench.own_picture(*contestants[m].method, view, Order::falling);
+          reference.picture = bench.own_picture(*contestants[m].method, view, Order::rising);
+          reference.depth = bench.renderer().depth();
         }
         bench.draw(*contestants[m].method, view);
         const std::uint64_t different =
-            count_different(bench.renderer().picture(), references[0], references[1]);
+            count_different(bench.renderer().picture(), bench.renderer().depth(), reference);
         contestants[m].method->read_back(frame);
         const Loss loss = compare_to_truth(truth, frame.visible);
         MethodVerdict& verdict = result.methods[m];

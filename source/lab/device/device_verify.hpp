@@ -9,7 +9,7 @@ namespace sightline::lab {
 
 struct DeviceVerification : Verification {
   std::vector<std::uint64_t>
-      different_pixels;  ///< one a method: pixels that differ from the picture of `none`
+      different_pixels;  ///< one a method: pixels that differ from the picture of all it could draw
   [[nodiscard]] bool passed() const noexcept;
 };
 

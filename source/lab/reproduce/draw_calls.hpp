@@ -30,7 +30,7 @@ struct CallGrid {
 
 CallGrid measure_call_grid(vulkan::Device& device, const DrawCallOptions& options,
                            const Progress& progress = {});
-/// Ours beside the paper's, both as shares of their first cell. Of the paper's cells METHODS.md gives two.
+/// Ours beside the paper's, both as shares of their first cell. Of the paper's cells two are known here.
 Table table_of(const CallGrid& grid);
 /// Whether frame rates fall along both axes, in sentences.
 std::string findings(const CallGrid& grid);

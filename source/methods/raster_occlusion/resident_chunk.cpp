@@ -173,7 +173,7 @@ private:
 const DeviceMethodInfo kResidentChunk{
     "resident-chunk",
     "beyond A",
-    "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice",
+    "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
     Guarantee::exact,
     "",
     kParameters,

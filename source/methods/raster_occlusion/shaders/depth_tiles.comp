@@ -3,7 +3,7 @@
 
 layout(local_size_x = 64) in;
 
-// The farthest depth of each tile of 8 x 8 pixels.
+// The farthest depth of each tile of 4 x 4 pixels.
 layout(buffer_reference, scalar) buffer FloatBuffer { float at[]; };
 
 layout(push_constant, scalar) uniform Push {

@@ -7,8 +7,8 @@
 #include "state.h"
 layout(local_size_x = 256) in;
 
-// Frustum and contribution; then the nearest depth of a box against the farthest depths over its rectangle (Greene et al. 1993), in the level
-// where the rectangle is at most three texels wide.
+// Frustum and contribution; then the nearest depth of a box against the farthest depths over its rectangle
+// (Greene et al. 1993), in the level where the rectangle is at most three texels wide.
 layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };
 
 layout(push_constant, scalar) uniform Push {
