@@ -109,6 +109,25 @@ TEST(TriangleRays, SeeAllThatLiesOnTheSameSpot) {
   EXPECT_EQ(seen, (std::vector<std::uint8_t>{1, 1, 1, 0}));
 }
 
+TEST(TriangleRays, ARayOfNoNumbersMeetsNothing) {
+  const Scene scene = *generate_world("soup?triangles=50&per-object=5&size=10");
+  const TriangleRays rays(scene);
+  const float infinite = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  for (const Vec3 bad : {Vec3{nan, 0, 0}, Vec3{infinite, infinite, infinite}, Vec3{0, -infinite, nan}}) {
+    const std::vector<Ray> cast{{bad, {0.6f, 0, 0.8f}}, {{0, 0, 0}, bad}};
+    std::vector<ObjectId> nearest(cast.size());
+    std::vector<std::uint8_t> seen(scene.size());
+    TriangleRays::Stack stack;
+    RayStats stats;
+    rays.cast(cast, nearest, seen, stack, stats);
+    EXPECT_EQ(nearest, std::vector<ObjectId>(cast.size(), kNoObject));
+    EXPECT_EQ(seen, std::vector<std::uint8_t>(scene.size()));
+    for (ObjectId object = 0; object < scene.size(); ++object) {
+      for (const Ray& ray : cast) EXPECT_LT(intersect(ray, scene.bounds[object]), 0);
+    }
+  }
+}
+
 TEST(TriangleRays, FollowMovedObjects) {
   Scene scene = *generate_world("regular?columns=2&rows=1&detail=2");
   TriangleRays rays(scene);
