@@ -184,23 +184,6 @@ HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::si
   out.cut = some & ~(before & ~grazing);
 }
 
-HWY_INLINE Spans spans_of(const ProjectedBoxes& b, std::size_t i, float first_y, float width) {
-  const F f;
-  Spans out;
-  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
-    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
-    VF left = hn::Set(f, b.left[i]), right = hn::Set(f, b.right[i]);
-    for (std::size_t e = 0; e < 6; ++e) {
-      const VF along = hn::Mul(hn::Set(f, b.slope[e][i]), y);
-      left = hn::Max(left, hn::Add(hn::Set(f, b.left_at[e][i]), along));
-      right = hn::Min(right, hn::Add(hn::Set(f, b.right_at[e][i]), along));
-    }
-    store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, b.top[i])), hn::Le(y, hn::Set(f, b.bottom[i]))),
-                width, line, out);
-  }
-  return out;
-}
-
 void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
   const F f;
   const auto width = static_cast<float>(tiles.width);
@@ -222,7 +205,7 @@ void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
                     {{b.at[0][i], b.at[1][i], b.at[2][i]},
                      {b.across[0][i], b.across[1][i], b.across[2][i]},
                      {b.down[0][i], b.down[1][i], b.down[2][i]}},
-                    range, [&](float first_y) HWY_ATTR { return spans_of(b, i, first_y, width); });
+                    range, [&](float first_y) HWY_ATTR { return spans_of<6>(b, i, first_y, width); });
     }
   }
 }

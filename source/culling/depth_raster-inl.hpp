@@ -116,6 +116,25 @@ HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   return out;
 }
 
+// The same of outline i among many, a lane each, whose every edge bounds it on either side.
+template <std::size_t kEdges, class Outlines>
+HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, float width) {
+  const F f;
+  Spans out;
+  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
+    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
+    VF left = hn::Set(f, of.left[i]), right = hn::Set(f, of.right[i]);
+    for (std::size_t e = 0; e < kEdges; ++e) {
+      const VF along = hn::Mul(hn::Set(f, of.slope[e][i]), y);
+      left = hn::Max(left, hn::Add(hn::Set(f, of.left_at[e][i]), along));
+      right = hn::Min(right, hn::Add(hn::Set(f, of.right_at[e][i]), along));
+    }
+    store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, of.top[i])), hn::Le(y, hn::Set(f, of.bottom[i]))),
+                width, line, out);
+  }
+  return out;
+}
+
 // The columns that the spans of a tile's scanlines hold; and of the tile that starts at column x the pixels,
 // a byte a scanline, a bit a pixel.
 #if HWY_TARGET == HWY_SCALAR

@@ -78,23 +78,6 @@ HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach,
   hn::Store(flat ? none : hn::IfThenElseZero(sure, down), f, out.down.data());
 }
 
-HWY_INLINE Spans spans_of(const GrownTriangles& t, std::size_t i, float first_y, float width) {
-  const F f;
-  Spans out;
-  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
-    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
-    VF left = hn::Set(f, t.left[i]), right = hn::Set(f, t.right[i]);
-    for (std::size_t e = 0; e < 3; ++e) {
-      const VF along = hn::Mul(hn::Set(f, t.slope[e][i]), y);
-      left = hn::Max(left, hn::Add(hn::Set(f, t.left_at[e][i]), along));
-      right = hn::Min(right, hn::Add(hn::Set(f, t.right_at[e][i]), along));
-    }
-    store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, t.top[i])), hn::Le(y, hn::Set(f, t.bottom[i]))),
-                width, line, out);
-  }
-  return out;
-}
-
 // Whether some pixel of triangle i lies nearer than the occluders.
 HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i) {
   const F f;
@@ -104,7 +87,7 @@ HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
     const std::size_t line = (ty - range.begin_y) % 2 * kTile;
     if (line == 0)
-      spans = spans_of(t, i, static_cast<float>(ty * kTile) + 0.5f, static_cast<float>(tiles.width));
+      spans = spans_of<3>(t, i, static_cast<float>(ty * kTile) + 0.5f, static_cast<float>(tiles.width));
     for (std::uint32_t tx = range.begin_x; tx < range.end_x; ++tx) {
       const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
       if (t.nearest[i] < tiles.farthest[tile]) continue;

@@ -1,5 +1,6 @@
 // One word an object in two-phase methods: the frame that wrote it, and below it these bits. A word of
-// another frame counts as 0, so that nothing need be cleared. Tiles after the first word hold the frame alone.
+// another frame counts as 0, so that nothing need be cleared. Tiles after the first word hold the frame
+// alone.
 const uint kInView = 1;      // passed the frustum and contribution tests
 const uint kDrawnEarly = 2;  // was seen last frame: drawn before the occlusion test, unless transparent
 const uint kSeen = 4;        // passed the occlusion test
