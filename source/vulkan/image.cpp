@@ -66,9 +66,9 @@ void Image::move_to(const vk::raii::CommandBuffer& commands, vk::ImageLayout fro
   commands.pipelineBarrier2(vk::DependencyInfo{{}, {}, {}, barrier});
 }
 
-void Image::copy_to(const vk::raii::CommandBuffer& commands, const Buffer& buffer) const {
+void Image::copy_to(const vk::raii::CommandBuffer& commands, const Buffer& buffer, std::uint32_t row) const {
   move_to(commands, layout_, vk::ImageLayout::eTransferSrcOptimal);
-  const vk::BufferImageCopy region{0, 0, 0, {aspect_, 0, 0, 1}, {}, {width_, height_, 1}};
+  const vk::BufferImageCopy region{0, row, 0, {aspect_, 0, 0, 1}, {}, {width_, height_, 1}};
   commands.copyImageToBuffer(**image_, vk::ImageLayout::eTransferSrcOptimal, buffer.handle(), region);
   move_to(commands, vk::ImageLayout::eTransferSrcOptimal, layout_);
   full_barrier(commands);

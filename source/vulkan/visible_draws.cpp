@@ -1,6 +1,5 @@
 #include "vulkan/visible_draws.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace sightline::vulkan {
@@ -22,15 +21,15 @@ struct Push {
   std::array<vk::DeviceAddress, 2> lists, commands;
   std::array<VisibleDraws::Condition, 2> conditions;
   VisibleDraws::Condition transparent_condition;
-  std::uint32_t opaque, mesh_count, transparent;
+  std::uint32_t opaque, mesh_count, transparent, list_count;
 };
 
 std::uint32_t block_count(const SceneBuffers& scene) {
-  return (scene.opaque + kBlockSlots - 1) / kBlockSlots;
+  return scene.opaque / kBlockSlots + 1;
 }
 
-std::uint64_t listed_at(const SceneBuffers& scene) {
-  return 2 * (std::uint64_t{scene.opaque} + block_count(scene) + 2);
+std::uint64_t done_at(const SceneBuffers& scene) {
+  return 2 * (2 * (std::uint64_t{scene.opaque} / 32 + 1) + block_count(scene));
 }
 
 }  // namespace
@@ -39,7 +38,12 @@ VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
     : scene_(scene),
       scan_blocks_(device, kScanBlocks),
       scan_write_(device, kScanWrite),
-      scan_(device, (listed_at(scene) + 4) * 4, Memory::device, "prefix sums") {}
+      scan_(device, (done_at(scene) + 5) * 4, Memory::device, "prefix sums") {
+  device.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.fillBuffer(scan_.handle(), 0, VK_WHOLE_SIZE, 0);
+    full_barrier(commands);
+  });
+}
 
 DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
@@ -55,11 +59,11 @@ DrawBuffers VisibleDraws::make_buffers(Device& device) const {
 }
 
 std::uint32_t VisibleDraws::groups() const noexcept {
-  return std::max(1u, block_count(scene_));
+  return block_count(scene_);
 }
 
 Recorder::Groups VisibleDraws::listed() const noexcept {
-  return {scan_, listed_at(scene_) * 4};
+  return {scan_, (done_at(scene_) + 1) * 4};
 }
 
 void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
@@ -79,13 +83,14 @@ void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const L
                   first.transparent,
                   scene_.opaque,
                   scene_.meshes,
-                  transparent_order ? first.out->transparent_commands : 0};
-  for (const ComputePipeline* step : {&scan_blocks_, &scan_write_}) {
-    if (groups) {
-      frame.dispatch(*step, push, *groups);
-    } else {
-      frame.dispatch(*step, push, this->groups() * kLanes, kLanes, second ? 2 : 1);
-    }
+                  transparent_order ? first.out->transparent_commands : 0,
+                  second ? 2u : 1u};
+  if (groups) {
+    frame.dispatch(scan_blocks_, push, *groups);
+    frame.dispatch(scan_write_, push, *groups);
+  } else {
+    frame.dispatch(scan_blocks_, push, this->groups() * kLanes, kLanes);
+    frame.dispatch(scan_write_, push, this->groups() * kLanes, kLanes, push.list_count);
   }
 }
 

@@ -36,7 +36,7 @@ public:
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
     build(frame, flags, List{condition, condition, &out}, transparent_order);
   }
-  /// How many groups build() takes for one list.
+  /// How many groups each step of build() takes for one list.
   [[nodiscard]] std::uint32_t groups() const noexcept;
   /// Of the first list built last: groups of 64 over its opaque objects; then in a word how many they are.
   [[nodiscard]] Recorder::Groups listed() const noexcept;

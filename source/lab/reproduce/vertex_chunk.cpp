@@ -208,13 +208,13 @@ VertexChunkWorld reproduce_vertex_chunk(vulkan::Device& device, const std::strin
   DeviceMeasureOptions measure;
   measure.measure.width = options.quick ? 640 : 1280;
   measure.measure.height = options.quick ? 360 : 720;
-  measure.measure.repeats = options.quick ? 9 : 15;
+  measure.measure.repeats = 15;
   VertexChunkWorld world;
   world.name = name;
   world.near = compare_on_device(bench, {"near", {vertex_chunk_near(scene)}}, measure);
   // After a change of view it takes two frames until what was marked in vain is gone.
   measure.measure.warm_up = 2;
-  measure.measure.repeats = options.quick ? 3 : 5;
+  measure.measure.repeats = options.quick ? 7 : 5;
   world.far = compare_on_device(bench, {"far", {vertex_chunk_far(scene)}}, measure);
   measure.measure.repeats = options.quick ? 1 : 3;
   world.rising = compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);

@@ -25,6 +25,8 @@ constexpr std::uint32_t kSeenBox[] =
 
 constexpr std::uint32_t kDepthTile = 4, kFaceVertices = 18;           // as in the shaders
 constexpr std::uint32_t kWords = partition::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
+constexpr std::uint32_t kPart = 32;                                   ///< objects that a workgroup takes
+constexpr std::uint32_t kParts = (partition::ChunkMap::kCapacity + kPart - 1) / kPart;
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
@@ -74,8 +76,8 @@ private:
     if (limit > room_) {
       room_ = limit + limit / 2;
       resident_ = vulkan::Buffer(device, std::uint64_t{room_} * kWords * 4, vulkan::Memory::device, "chunks");
-      chunks_in_ =
-          vulkan::Buffer(device, std::uint64_t{room_} * 4, vulkan::Memory::upload, "which chunks are in");
+      chunks_in_ = vulkan::Buffer(device, std::uint64_t{room_} * kParts * 4, vulkan::Memory::upload,
+                                  "which chunks are in");
       changed_.resize(limit);
       for (std::uint32_t chunk = 0; chunk < limit; ++chunk) changed_[chunk] = chunk;
     } else {
@@ -107,17 +109,22 @@ private:
 
   void test(vulkan::Recorder& frame) override {
     chunks_.select(frame.view, contribution_);
-    auto* entry = chunks_in_.mapped<std::uint32_t>();
-    for (const std::uint32_t chunk : chunks_.inside()) *entry++ = chunk | kWhollyIn;
-    for (const std::uint32_t chunk : chunks_.crossing()) *entry++ = chunk;
-    const auto count = static_cast<std::uint32_t>(chunks_.inside().size() + chunks_.crossing().size());
+    auto* const first = chunks_in_.mapped<std::uint32_t>();
+    auto* entry = first;
+    const auto enter = [&](std::uint32_t chunk, std::uint32_t mark) {
+      const std::uint32_t parts = (chunks_.map().chunk(chunk).count + kPart - 1) / kPart;
+      for (std::uint32_t part = 0; part < parts; ++part) *entry++ = (chunk * kParts + part) | mark;
+    };
+    for (const std::uint32_t chunk : chunks_.inside()) enter(chunk, kWhollyIn);
+    for (const std::uint32_t chunk : chunks_.crossing()) enter(chunk, 0);
+    const auto count = static_cast<std::uint32_t>(entry - first);
     if (count == 0) return;
     const std::array<std::uint32_t, 8> draws{0, 1, 0, 0, 0, 1, kFaceVertices * renderer_.buffers().objects,
                                              0};
     frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, draws);
-    frame.targets.depth.copy_to(frame.commands, depth_for(frame));
-    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
     const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
+    frame.targets.depth.copy_to(frame.commands, depth_for(frame), kDepthTile * tiles_across(width));
+    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
     frame.dispatch(depth_tiles_,
                    TilesPush{depth_.address(), farthest_.address(), width, height, frame.reversed()},
                    tiles_across(width) * tiles_across(height), 64);
@@ -139,11 +146,11 @@ private:
     return (pixels + kDepthTile - 1) / kDepthTile;
   }
 
-  /// Room for the frame's depth and its tiles.
+  /// Room for the frame's depth, rows padded to whole tiles, and for its tiles.
   const vulkan::Buffer& depth_for(const vulkan::Recorder& frame) {
-    const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
-    const std::uint64_t bytes = std::uint64_t{4} * width * height,
-                        tile_bytes = std::uint64_t{4} * tiles_across(width) * tiles_across(height);
+    const std::uint64_t across = tiles_across(frame.targets.depth.width()),
+                        tile_bytes = 4 * across * tiles_across(frame.targets.depth.height()),
+                        bytes = kDepthTile * kDepthTile * tile_bytes;
     vulkan::Device& device = renderer_.device();
     if (depth_.size() < bytes) depth_ = vulkan::Buffer(device, bytes, vulkan::Memory::device, "depth");
     if (farthest_.size() < tile_bytes) {
@@ -175,7 +182,7 @@ const DeviceMethodInfo kResidentChunk{
     "beyond A",
     "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
     Guarantee::exact,
-    "",
+    "shaderInt64",
     kParameters,
     make_on_device<ResidentChunk>};
 

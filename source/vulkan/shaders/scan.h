@@ -1,6 +1,6 @@
 // Push constants of the two steps from flags to draw commands, and what they share. Up to two lists are built
-// at once, one a row of workgroups; the first holds transparent objects too.
-const uint kLanes = 64, kEach = 32;       // slots a lane takes one after the other
+// at once; the first holds transparent objects too.
+const uint kLanes = 64, kEach = 32;       // a lane takes as many slots as a word has bits
 const uint kBlockSlots = kLanes * kEach;  // slots a workgroup takes
 
 layout(buffer_reference, scalar) coherent buffer SharedWords {
@@ -9,8 +9,9 @@ layout(buffer_reference, scalar) coherent buffer SharedWords {
 
 layout(push_constant, scalar) uniform Push {
   WordBuffer flags, slot_objects;
-  // A list: one a slot and one more, what stands before it; one a block, its sum; groups done. After both: a
-  // VkDispatchIndirectCommand over the first list, and how long it is.
+  // A list: two a word of 32 slots, which of them are listed and how many before it in its block; one a block,
+  // how many before it. After both: groups done, 0 between dispatches; a VkDispatchIndirectCommand over the
+  // first list, and how long it is.
   SharedWords scan;
   MeshBuffer meshes;
   ObjectBuffer objects;
@@ -18,26 +19,28 @@ layout(push_constant, scalar) uniform Push {
   WordBuffer list_of[2];
   CommandBuffer commands_of[2];
   uvec2 condition_of[2], transparent_condition;  // mask, value
-  uint opaque, mesh_count, transparent;
+  uint opaque, mesh_count, transparent, list_count;
 };
 
+// The slot after the last has its place in a word, too.
+uint word_count() {
+  return opaque / kEach + 1;
+}
 uint block_count() {
-  return (opaque + kBlockSlots - 1) / kBlockSlots;
+  return opaque / kBlockSlots + 1;
 }
 
-// Where a list's prefix sums, its blocks' sums and its count of groups begin.
-uint prefix_at(uint job) {
-  return job * (opaque + block_count() + 2);
+uint word_at(uint list, uint word) {
+  return list * (2 * word_count() + block_count()) + 2 * word;
 }
-uint sums_at(uint job) {
-  return prefix_at(job) + opaque + 1;
+uint block_at(uint list, uint block) {
+  return word_at(list, word_count()) + block;
 }
-uint done_at(uint job) {
-  return sums_at(job) + block_count();
+uint done_at() {
+  return word_at(2, 0);
 }
-
 uint listed_at() {
-  return prefix_at(2);
+  return done_at() + 1;
 }
 
 uint meets(uint object, uvec2 condition) {

@@ -4,31 +4,100 @@
 #include "scan.h"
 layout(local_size_x = 64) in;
 
-// Exclusive prefix sums within blocks of slots, and each block's sum. Lanes meet at two barriers and no more,
-// which are what costs on llvmpipe.
+// Which slots are listed, and how many before each word of them in its block; the block that ends last adds up
+// the blocks and writes the commands: one a mesh for the opaque objects, then one a transparent object. What costs
+// on llvmpipe is a workgroup with barriers, whatever their number, so all that needs them is done here.
 const uint kRow = 8;  // lanes, and rows of lanes
-shared uint of_lane[kLanes], of_row[kRow];
+shared uvec2 of_lane[kLanes], of_row[kRow];
+shared uint rank;
 
-void main() {
-  const uint lane = gl_LocalInvocationID.x, job = gl_WorkGroupID.y, row = lane / kRow;
-  const uint first = gl_WorkGroupID.x * kBlockSlots + lane * kEach, last = min(first + kEach, opaque);
-  const uvec2 condition = job == 0 ? condition_of[0] : condition_of[1];
-  uint met = 0;  // a bit a slot
-  for (uint slot = first; slot < last; ++slot) met |= meets(slot_objects.at[slot], condition) << slot - first;
-  of_lane[lane] = bitCount(met);
+// What stands before this lane, and in all; one value a list.
+void add_up(uvec2 own, out uvec2 before, out uvec2 total) {
+  const uint lane = gl_LocalInvocationID.x, row = lane / kRow;
+  of_lane[lane] = own;
   barrier();
   if (lane < kRow) {
-    uint sum = 0;
+    uvec2 sum = uvec2(0);
     for (uint i = 0; i < kRow; ++i) sum += of_lane[lane * kRow + i];
     of_row[lane] = sum;
   }
   barrier();
-  uint before = 0;
+  before = total = uvec2(0);
   for (uint i = 0; i < row; ++i) before += of_row[i];
   for (uint i = row * kRow; i < lane; ++i) before += of_lane[i];
-  for (uint slot = first; slot < last; ++slot) {
-    scan.at[prefix_at(job) + slot] = before + bitCount(met & (1u << slot - first) - 1);
+  for (uint i = 0; i < kRow; ++i) total += of_row[i];
+}
+
+// The place in the list of the object at a slot, were it listed.
+uint place_of(uint list, uint slot) {
+  const uint at = word_at(list, slot / kEach);
+  return scan.at[block_at(list, slot / kBlockSlots)] + scan.at[at + 1] +
+         bitCount(scan.at[at] & (1u << slot % kEach) - 1);
+}
+
+void write_command(uint list, CommandBuffer commands, WordBuffer objects_of, uint i) {
+  if (i < mesh_count) {
+    const MeshData mesh = meshes.at[i];
+    const uint first = place_of(list, mesh.first_slot), next = place_of(list, meshes.at[i + 1].first_slot);
+    commands.at[i] = CommandData(mesh.index_count, next - first, mesh.first_index, mesh.first_vertex, first);
+    return;
   }
-  if (lane == kLanes - 1) scan.at[sums_at(job) + gl_WorkGroupID.x] = before + bitCount(met);
-  if (lane == 0 && gl_WorkGroupID.x == 0) scan.at[done_at(job)] = 0;
+  i -= mesh_count;
+  const uint object = transparent_order.at[i];
+  const MeshData mesh = meshes.at[objects.at[object].mesh];
+  commands.at[mesh_count + i] = CommandData(mesh.index_count, meets(object, transparent_condition),
+                                            mesh.first_index, mesh.first_vertex, opaque + i);
+  objects_of.at[opaque + i] = object;
+}
+
+void main() {
+  const uint lane = gl_LocalInvocationID.x, block = gl_WorkGroupID.x;
+  const uint word = block * kLanes + lane, first = word * kEach, last = min(first + kEach, opaque);
+  uvec2 met = uvec2(0);  // a bit a slot
+  for (uint slot = first; slot < last; ++slot) {
+    const uint flag = flags.at[slot_objects.at[slot]], bit = 1u << slot - first;
+    if ((flag & condition_of[0].x) == condition_of[0].y) met.x |= bit;
+    if ((flag & condition_of[1].x) == condition_of[1].y) met.y |= bit;
+  }
+  uvec2 before, total;
+  add_up(uvec2(bitCount(met.x), bitCount(met.y)), before, total);
+  for (uint list = 0; list < list_count; ++list) {
+    if (word < word_count()) {
+      scan.at[word_at(list, word)] = met[list];
+      scan.at[word_at(list, word) + 1] = before[list];
+    }
+    if (lane == 0) scan.at[block_at(list, block)] = total[list];
+  }
+  memoryBarrierBuffer();
+  barrier();
+  if (lane == 0) rank = atomicAdd(scan.at[done_at()], 1);
+  barrier();
+  if (rank + 1 < block_count()) return;
+  memoryBarrierBuffer();
+  // The last block: a lane adds up blocks side by side.
+  const uint each = (block_count() + kLanes - 1) / kLanes, start = lane * each;
+  const uint end = min(start + each, block_count());
+  uvec2 sum = uvec2(0);
+  for (uint i = start; i < end; ++i) {
+    for (uint list = 0; list < list_count; ++list) sum[list] += scan.at[block_at(list, i)];
+  }
+  add_up(sum, before, total);
+  for (uint i = start; i < end; ++i) {
+    for (uint list = 0; list < list_count; ++list) {
+      const uint here = scan.at[block_at(list, i)];
+      scan.at[block_at(list, i)] = before[list];
+      before[list] += here;
+    }
+  }
+  if (lane == 0) {
+    scan.at[done_at()] = 0;
+    const uint words[4] = uint[](total.x / 64 + uint(total.x % 64 != 0), 1, 1, total.x);
+    for (uint i = 0; i < 4; ++i) scan.at[listed_at() + i] = words[i];
+  }
+  memoryBarrierBuffer();
+  barrier();
+  for (uint i = lane; i < mesh_count + transparent; i += kLanes) {
+    write_command(0, commands_of[0], list_of[0], i);
+    if (list_count > 1 && i < mesh_count) write_command(1, commands_of[1], list_of[1], i);
+  }
 }

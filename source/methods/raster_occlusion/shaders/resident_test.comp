@@ -5,9 +5,9 @@
 
 #include "boxes.h"
 #include "state.h"
-layout(local_size_x = 96) in;
+layout(local_size_x = 32) in;
 
-// One group a chunk that is in, one invocation an object: frustum and contribution; boxes at the near plane
+// One group a part of a chunk that is in, one invocation an object: frustum and contribution; boxes at the near plane
 // are seen untested; then what spares a box the raster test: it is dropped if it lies behind the farthest
 // depth of every tile it touches (Greene et al. 1993), unless it touches many, and seen if a point of it is.
 layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };
@@ -20,14 +20,16 @@ layout(buffer_reference, scalar) buffer DrawBuffer { Draw at[2]; };
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer state;
-  WordBuffer chunks_in;      // number of the chunk, bit 31: wholly in the frustum
+  WordBuffer chunks_in;      // three times the chunk's number and the part's, bit 31: wholly in the frustum
   WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
-  FloatBuffer depth, tiles;
+  FloatBuffer depth;  // rows padded to whole tiles
+  FloatBuffer tiles;
   WordBuffer list;
   DrawBuffer test;
   uint frame;
 };
 
+const uint kParts = 3, kWords = 97;
 const uint kFaceVertices = 18;
 const uint kDepthTile = 4;  // pixels, the side of a tile of depth
 const uint kMostTiles = 1024;
@@ -44,7 +46,8 @@ bool shows(vec3 at, float slack) {
   if (any(greaterThanEqual(abs(clip.xy), vec2(clip.w)))) return false;
   const vec2 size = vec2(view.width, view.height);
   const uvec2 pixel = min(uvec2((vec2(clip.x, -clip.y) / clip.w + 1) * 0.5 * size), uvec2(size) - 1);
-  return !hides(depth.at[pixel.y * uint(size.x) + pixel.x], clip.z / clip.w);
+  const uint row = (uint(size.x) + kDepthTile - 1) / kDepthTile * kDepthTile;
+  return !hides(depth.at[pixel.y * row + pixel.x], clip.z / clip.w);
 }
 
 // Where the line from the box's middle to the eye leaves it, and just within the corners, which stick out of
@@ -74,10 +77,10 @@ bool tiles_leave_open(Footprint print) {
 }
 
 void main() {
-  const uint entry = chunks_in.at[gl_WorkGroupID.x];
-  const uint chunk = 97 * (entry & 0x7fffffff);
-  if (gl_LocalInvocationID.x >= chunk_objects.at[chunk]) return;
-  const uint object = chunk_objects.at[chunk + 1 + gl_LocalInvocationID.x];
+  const uint entry = chunks_in.at[gl_WorkGroupID.x], part = entry & 0x7fffffff;
+  const uint chunk = kWords * (part / kParts), i = 32 * (part % kParts) + gl_LocalInvocationID.x;
+  if (i >= chunk_objects.at[chunk]) return;
+  const uint object = chunk_objects.at[chunk + 1 + i];
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
