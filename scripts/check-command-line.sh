@@ -78,6 +78,9 @@ refused "/proc/page" "$sightline" reproduce ray-pvs --report /proc/page
 refused "--device" "$sightline" compare "$world" --device ""
 refused "--size" "$sightline" compare "$world" --size 99999x1
 refused "--views" "$sightline" verify "$world" --views 0
+refused "less than nothing" "$sightline" verify "$world" --seed -1
+refused "'nonesuch': no such command" "$sightline" reproduce nonesuch
+refused "an entry is empty" "$sightline" compare "$world" --methods none,,vfc-vc
 refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch
 refused "nonesuch" "$sightline" compare "$world" --path nonesuch
 

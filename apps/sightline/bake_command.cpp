@@ -74,7 +74,7 @@ int run_bake(const Options& options) {
 }
 
 Vec3 parse_point(const std::string& text) {
-  const std::vector<std::string> parts = split(text);
+  const std::vector<std::string> parts = split("--at", text);
   float v[3];
   bool good = parts.size() == 3;
   for (std::size_t i = 0; good && i < 3; ++i) {
@@ -122,7 +122,9 @@ void add_bake(CLI::App& app, int& exit) {
   command.add_option("--target", options->bake.target, "share of a view that a cell's set may lack")
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
-  command.add_option("--seed", options->bake.seed, "of the viewpoints")->capture_default_str();
+  command.add_option("--seed", options->bake.seed, "of the viewpoints")
+      ->check(not_negative())
+      ->capture_default_str();
   command.add_option("--rays", options->bake.rays, "from each viewpoint")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
@@ -133,8 +135,11 @@ void add_bake(CLI::App& app, int& exit) {
       .add_option("--threads", options->threads, "of each process; default: all cores, and under mpirun one")
       ->check(CLI::Range(1, 1024));
   command.add_option("--check", options->check, "afterwards hold N random views against the item buffer")
+      ->check(CLI::Range(0, 1000000))
       ->type_name("N");
-  command.add_option("--check-seed", options->check_seed, "of those views")->capture_default_str();
+  command.add_option("--check-seed", options->check_seed, "of those views")
+      ->check(not_negative())
+      ->capture_default_str();
   command
       .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")
       ->type_name("FILE.csv");

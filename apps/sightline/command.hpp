@@ -43,12 +43,15 @@ void attach_pvs(Scene& scene, const std::string& file);
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
-/// Option values: a share from 0 to 1; a folder for a page, made and tried before any work is done.
+/// Option values: a share from 0 to 1; a number that is not negative; a folder for a page, made and tried
+/// before any work is done.
 CLI::Validator share();
+CLI::Validator not_negative();
 CLI::Validator page_folder();
 
-/// "A,B,C" as a list; parameters of a method may hold no comma.
-std::vector<std::string> split(const std::string& list);
+/// "A,B,C", the value of an option, as a list; refuses empty entries. Parameters of a method may hold no
+/// comma.
+std::vector<std::string> split(const std::string& option, const std::string& list);
 
 /// Told how much is done; draws one line on stderr when it is a terminal.
 std::function<void(std::size_t done, std::size_t all)> progress(std::string what);

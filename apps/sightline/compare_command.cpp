@@ -36,8 +36,7 @@ int run(const Options& options) {
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
-      options.methods.empty() ? lab::fitting_methods(scene) : split(options.methods);
-  if (names.empty()) throw Error("--methods: expected at least one method");
+      options.methods.empty() ? lab::fitting_methods(scene) : split("--methods", options.methods);
   const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
   const std::string path_name = options.path.empty() ? std::string(lab::default_path(scene)) : options.path;
   const lab::CameraPath path = lab::make_path(scene, path_name, options.frames);

@@ -27,9 +27,7 @@ std::vector<std::string> methods_to_verify() {
 }
 
 std::vector<std::string> methods_or(const DeviceCall& call, std::vector<std::string> defaults) {
-  std::vector<std::string> names = call.methods.empty() ? std::move(defaults) : split(call.methods);
-  if (names.empty()) throw Error("--methods: expected at least one method");
-  return names;
+  return call.methods.empty() ? std::move(defaults) : split("--methods", call.methods);
 }
 
 }  // namespace

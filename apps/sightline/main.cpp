@@ -1,11 +1,13 @@
 // The command line: a thin face on the lab. Results go to stdout, complaints to stderr.
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <span>
 
 #include <sightline/error.hpp>
 #include <sightline/version.hpp>
@@ -21,6 +23,16 @@ CLI::Validator share() {
     return number && value >= 0 && value <= 1 ? "" : "'" + text + "' is no share, expected 0 to 1";
   };
   return {refuse, "0 to 1"};
+}
+
+CLI::Validator not_negative() {
+  // CLI11 lets a minus wrap round to the largest numbers.
+  const auto refuse = [](const std::string& text) -> std::string {
+    return text.find('-') == std::string::npos
+               ? ""
+               : "'" + text + "' is less than nothing, expected a number from 0";
+  };
+  return {refuse, ""};
 }
 
 CLI::Validator page_folder() {
@@ -47,11 +59,13 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
   throw Error("--size '" + text + "': expected WIDTHxHEIGHT in pixels, 1 to 4096 each, such as 1280x720");
 }
 
-std::vector<std::string> split(const std::string& list) {
+std::vector<std::string> split(const std::string& option, const std::string& list) {
   std::vector<std::string> out;
   for (std::size_t start = 0; start <= list.size();) {
     const std::size_t comma = std::min(list.find(',', start), list.size());
-    if (comma > start) out.push_back(list.substr(start, comma - start));
+    if (comma == start)
+      throw Error(option + " '" + list + "': an entry is empty, expected values with single commas between");
+    out.push_back(list.substr(start, comma - start));
     start = comma + 1;
   }
   return out;
@@ -59,16 +73,21 @@ std::vector<std::string> split(const std::string& list) {
 
 namespace {
 
-// CLI11's own words, but for the one case in which they hide what was typed.
-std::string complaint(const CLI::App& app, const CLI::ParseError& error, const std::string& first) {
-  std::string known;
-  bool is_known = first.empty() || first.starts_with('-');
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    known.append(known.empty() ? "" : ", ").append(command->get_name());
-    is_known = is_known || command->get_name() == first;
+// CLI11's own words, but for the one case in which they hide what was typed: an unknown command.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error, std::span<char*> words) {
+  const CLI::App* at = &app;
+  for (const std::string word : words) {
+    const auto commands = at->get_subcommands([](const CLI::App*) { return true; });
+    if (commands.empty() || word.starts_with('-')) break;
+    const auto found = std::ranges::find(commands, word, [](const CLI::App* of) { return of->get_name(); });
+    if (found == commands.end()) {
+      std::string known;
+      for (const CLI::App* command : commands) known += (known.empty() ? "" : ", ") + command->get_name();
+      return "'" + word + "': no such command, expected one of " + known;
+    }
+    at = *found;
   }
-  if (is_known) return std::string(error.what()) + "; see sightline --help";
-  return "'" + first + "': no such command, expected one of " + known;
+  return std::string(error.what()) + "; see sightline --help";
 }
 
 int run(int argc, char** argv) {
@@ -88,7 +107,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // prints help or version
-    throw Error(complaint(app, error, argc > 1 ? argv[1] : ""));
+    throw Error(complaint(app, error, std::span(argv, argv + argc).subspan(argc > 0)));
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw Error("standard output: cannot be written to");
   return exit;

@@ -43,8 +43,7 @@ int run(const Options& options) {
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
-      options.methods.empty() ? lab::promising_methods(scene) : split(options.methods);
-  if (names.empty()) throw Error("--methods: expected at least one method");
+      options.methods.empty() ? lab::promising_methods(scene) : split("--methods", options.methods);
   const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
   const std::vector<Camera> cameras = lab::random_cameras(scene, options.views, options.seed);
   const lab::Verification result =
@@ -85,7 +84,9 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("--views", options->views, "random views")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command.add_option("--seed", options->seed, "of the random views")->capture_default_str();
+  command.add_option("--seed", options->seed, "of the random views")
+      ->check(not_negative())
+      ->capture_default_str();
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
