@@ -9,7 +9,7 @@
 #include <sightline/error.hpp>
 #include <sightline/worlds.hpp>
 
-#include "partition/chunk_map.hpp"
+#include "lab/reproduce/vertex_chunk_pictures.hpp"
 
 namespace sightline::lab {
 
@@ -116,52 +116,6 @@ CameraPath rising_path(const Scene& scene, std::size_t views) {
   return path;
 }
 
-// The world from the side and above, with what vertex-chunk kept of the near view alone, and the chunks.
-void take_pictures(Workbench& bench, VertexChunkWorld& world, std::uint32_t width, std::uint32_t height) {
-  const Scene& scene = bench.scene();
-  const View near = or_throw(make_view(world.near.cameras.front(), width, height));
-  methods::DeviceMethod& method = *bench.contestants()[kChunk].method;
-  for (int settle = 0; settle < 2; ++settle) bench.draw(method, near);
-  world.pictures.push_back({world.name + "-near.png", "the near view", bench.renderer().picture()});
-  Frame kept;
-  method.read_back(kept);
-  const Box all = extent(scene);
-  Camera side = vertex_chunk_far(scene);
-  const float reach = std::max(all.max.x - all.min.x, all.max.z - all.min.z);
-  side.eye = {side.eye.x + 0.9f * reach, 0.45f * reach, 0.5f * (all.min.z + all.max.z)};
-  side.forward = {-0.9f, -0.45f, 0};
-  const View aside = or_throw(make_view(side, width, height));
-  const auto draw = [&](std::span<const ObjectId> objects) {
-    std::vector<DrawCommand> commands;
-    for (std::uint32_t i = 0; i < objects.size(); ++i) {
-      const Mesh& mesh = scene.meshes[scene.mesh[objects[i]]];
-      commands.push_back(
-          {mesh.index_count, 1, mesh.first_index, static_cast<std::int32_t>(mesh.first_vertex), i});
-    }
-    bench.renderer().frame(aside,
-                           [&](vulkan::Recorder& frame) { bench.renderer().draw(frame, objects, commands); });
-    return bench.renderer().picture();
-  };
-  bench.draw(bench.reference(), aside);
-  world.pictures.push_back(
-      {world.name + "-side-all.png", "seen from the side: every object", bench.renderer().picture()});
-  world.pictures.push_back({world.name + "-side-kept.png",
-                            "seen from the side: what vertex-chunk keeps of the near view",
-                            draw(kept.visible)});
-  // Own chunks alone: what crosses a border between regions leaves a gap.
-  partition::ChunkMap map({all, 3});
-  map.insert_all(scene.bounds);
-  std::vector<ObjectId> own;
-  for (std::uint32_t chunk = 0; chunk < map.chunk_limit(); ++chunk) {
-    const auto objects = map.chunk(chunk);
-    if (objects.count == 0 || map.chunk_regions(chunk).shared()) continue;
-    own.insert(own.end(), objects.objects, objects.objects + objects.count);
-  }
-  world.pictures.push_back({world.name + "-own-chunks.png",
-                            "the objects of own chunks; the gaps between them are the shared chunks'",
-                            draw(own)});
-}
-
 }  // namespace
 
 Scene vertex_chunk_scene(const std::string& world, bool quick) {
@@ -220,7 +174,12 @@ VertexChunkWorld reproduce_vertex_chunk(vulkan::Device& device, const std::strin
   world.rising = compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
   world.tables = make_tables(world, name == "regular" ? kRegular : kIrregular);
   world.rising_fps = rising_table(world.rising);
-  if (options.pictures) take_pictures(bench, world, measure.measure.width, measure.measure.height);
+  if (options.pictures) {
+    world.pictures = take_vertex_chunk_pictures(
+        bench, name,
+        or_throw(make_view(world.near.cameras.front(), measure.measure.width, measure.measure.height)),
+        *bench.contestants()[kChunk].method);
+  }
   return world;
 }
 
