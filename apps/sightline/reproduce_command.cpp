@@ -1,10 +1,6 @@
 // sightline reproduce: a paper's tables, ours beside the published.
 #include <fmt/format.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
-#include <limits>
 #include <memory>
 
 #include "command.hpp"
@@ -98,17 +94,7 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 
-// A software rasteriser allocates and frees megabytes a frame. Given back to the system each time, they would
-// be faulted in again: a fifth of a frame, and noise.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-#endif
-}
-
 int run_draw_calls(const Options& options) {
-  keep_freed_memory();
   const auto opened = open_device(options.device.empty() ? "any" : options.device);
   vulkan::Device& device = *opened;
   const lab::DrawCallOptions how{.quick = options.quick};
