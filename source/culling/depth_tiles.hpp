@@ -34,15 +34,16 @@ struct PixelRays {
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
-/// A mesh as a view sees it, one value a vertex; facing one a triangle. Reused from mesh to mesh.
+/// What a view has found out about a mesh. Reused from mesh to mesh.
 struct MeshScratch {
-  partition::AlignedVector<float> x, y, near, clearance, eye_x, eye_y, eye_z, facing;
-  /// The groups in view, by the nearness of what they hold and the pixels that bound it.
-  struct SeenGroup {
-    float depth, nearest, left, right, top, bottom;
-    std::uint32_t group;
-  };
-  std::vector<SeenGroup> seen;
+  /// The groups in view, and their boxes about the view's origin: min x, y, z, max x, y, z.
+  std::vector<std::uint32_t> group;
+  std::array<partition::AlignedVector<float>, 6> box;
+  std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
+  /// Which way a triangle turns, in groups whose `known` says `turn`.
+  partition::AlignedVector<float> facing;
+  std::vector<std::uint32_t> known;
+  std::uint32_t turn = 0;
 };
 
 struct DepthTiles {
@@ -111,18 +112,21 @@ struct OccluderTopology {
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// The same in structure of arrays, padded to a multiple of 16 by repetition of vertex 0 and triangles of
-  /// it alone; no neighbour: -1.
-  partition::AlignedVector<float> x, y, z;
-  std::array<partition::AlignedVector<std::int32_t>, 3> corner, neighbour;
-
-  /// Runs of triangles with the ball that holds them: what is out of view or hidden as a whole is not set up.
+  /// Runs of triangles with a box that holds them: what is out of view or hidden as a whole is not set up.
   static constexpr std::uint32_t kGroup = 16;
   struct Group {
-    Sphere ball;
-    std::uint32_t first = 0, end = 0;  ///< triangles; first is a multiple of 16
+    /// A bit a triangle and edge: its second corner has the lower number.
+    std::array<std::uint32_t, 3> turned{};
+    std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
   };
-  std::vector<Group> groups;
+  std::vector<Group> groups;          ///< group g holds triangles 16·g …
+  std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
+  /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
+  partition::AlignedVector<float> box;
+  /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last
+  /// triangle its first corner three times, no neighbours.
+  partition::AlignedVector<float> corners;
+  partition::AlignedVector<std::int32_t> neighbour;
   void lay_out();
 };
 
@@ -143,5 +147,16 @@ void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, con
                    std::uint8_t* visible) noexcept;
 /// Three corners a triangle.
 bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept;
+
+/// Sixteen triangles ready to be asked for: a value a triangle, by corner and axis. Of fewer the last again.
+struct TriangleBlock {
+  static constexpr std::size_t kSize = 16;
+  alignas(64) std::array<std::array<std::array<float, kSize>, 3>, 3> corners;
+  /// Up to 16 of the triangles from `first` on, three corners each.
+  void take(std::span<const Vec3> triangles, std::size_t first) noexcept;
+};
+/// The same of the first `count` triangles of whole blocks.
+bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
+                     std::size_t count) noexcept;
 
 }  // namespace sightline::culling

@@ -4,9 +4,32 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "culling/depth_tiles.hpp"
-#include "scene/scale_bounds.hpp"
+#include "culling/view_depth.hpp"
+
+#ifndef SIGHTLINE_CULLING_MESH_RASTER_ONCE
+#define SIGHTLINE_CULLING_MESH_RASTER_ONCE
+namespace sightline::culling {
+namespace {
+
+// By the upper half of the keys' high words, near enough for an order that only saves time.
+void sort_roughly(std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& other) {
+  other.resize(keys.size());
+  for (int shift = 48; shift < 64; shift += 8) {
+    std::array<std::uint32_t, 256> start{};
+    for (const std::uint64_t key : keys) ++start[key >> shift & 255];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& bucket : start) sum += std::exchange(bucket, sum);
+    for (const std::uint64_t key : keys) other[start[key >> shift & 255]++] = key;
+    keys.swap(other);
+  }
+}
+
+}  // namespace
+}  // namespace sightline::culling
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "culling/mesh_raster.cpp"
@@ -45,59 +68,74 @@ HWY_INLINE V3 cross(const V3& a, const V3& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-// Moves the vertices to the world and the eye, and projects them.
-void project_vertices(DepthTiles& out, const OccluderTopology& mesh, const Affine& transform) {
+// A vector of triangles' corners about the eye, from triangle 16·group + lane on.
+HWY_INLINE std::array<V3, 3> corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh,
+                                               const Affine& transform, std::size_t group, std::size_t lane) {
   const F f;
-  const EyeProjection& e = out.projection;
-  MeshScratch& s = out.mesh;
-  const std::size_t n = mesh.x.size();  // padded
-  for (auto* v : {&s.x, &s.y, &s.near, &s.clearance, &s.eye_x, &s.eye_y, &s.eye_z}) {
-    if (v->size() < n) v->resize(n);
-  }
-  for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
-    const V3 p{hn::Load(f, &mesh.x[i]), hn::Load(f, &mesh.y[i]), hn::Load(f, &mesh.z[i])};
+  std::array<V3, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* from = &mesh.corners[(group * 9 + 3 * k) * OccluderTopology::kGroup + lane];
+    const V3 p{hn::Load(f, from), hn::Load(f, from + OccluderTopology::kGroup),
+               hn::Load(f, from + 2 * OccluderTopology::kGroup)};
     const auto about_eye = [&](const Vec4& row, float high, float low) HWY_ATTR {
       return hn::Sub(hn::Sub(dot_row(row, p.x, p.y, p.z), hn::Set(f, high)), hn::Set(f, low));
     };
-    const VF x = about_eye(transform.rows[0], e.eye_high.x, e.eye_low.x),
-             y = about_eye(transform.rows[1], e.eye_high.y, e.eye_low.y),
-             z = about_eye(transform.rows[2], e.eye_high.z, e.eye_low.z);
-    const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, x, y, z));
-    hn::Store(x, f, &s.eye_x[i]);
-    hn::Store(y, f, &s.eye_y[i]);
-    hn::Store(z, f, &s.eye_z[i]);
-    hn::Store(hn::Mul(dot_row(e.x, x, y, z), over_w), f, &s.x[i]);
-    hn::Store(hn::Mul(dot_row(e.y, x, y, z), over_w), f, &s.y[i]);
-    hn::Store(e.orthographic ? dot_row(e.nearness, x, y, z) : over_w, f, &s.near[i]);
-    hn::Store(dot_row(out.rays.near_plane, x, y, z), f, &s.clearance[i]);
+    out[k] = {about_eye(transform.rows[0], e.eye_high.x, e.eye_low.x),
+              about_eye(transform.rows[1], e.eye_high.y, e.eye_low.y),
+              about_eye(transform.rows[2], e.eye_high.z, e.eye_low.z)};
   }
+  return out;
+}
+
+// Corners on the image. Equal corners of different triangles give equal bits.
+struct OnImage {
+  VF x[3], y[3], over_w[3];
+};
+
+HWY_INLINE OnImage on_image(const EyeProjection& e, const std::array<V3, 3>& corners) {
+  const F f;
+  OnImage out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto dot = [&](const Vec4& row)
+                         HWY_ATTR { return dot_row(row, corners[k].x, corners[k].y, corners[k].z); };
+    out.over_w[k] = hn::Div(hn::Set(f, 1.0f), dot(e.w));
+    out.x[k] = hn::Mul(dot(e.x), out.over_w[k]), out.y[k] = hn::Mul(dot(e.y), out.over_w[k]);
+  }
+  return out;
 }
 
 // Which way a triangle turns on the image: 1 or -1; 0: too small; kCut: the near plane cuts it.
 constexpr float kCut = 2;
 
-HWY_INLINE void find_facing(MeshScratch& s, const OccluderTopology& mesh, std::size_t first,
-                            std::size_t end) {
+HWY_INLINE VF facing_of(const DepthTiles& tiles, const std::array<V3, 3>& corners, const OnImage& image) {
   const F f;
-  const I i32;
-  for (std::size_t t = first; t < end; t += hn::Lanes(f)) {
-    const VI a = hn::Load(i32, &mesh.corner[0][t]), b = hn::Load(i32, &mesh.corner[1][t]),
-             c = hn::Load(i32, &mesh.corner[2][t]);
-    const auto at = [&](const partition::AlignedVector<float>& from, VI index)
-                        HWY_ATTR { return hn::GatherIndex(f, from.data(), index); };
-    const VF ca = at(s.clearance, a), cb = at(s.clearance, b), cc = at(s.clearance, c);
-    const VF ax = at(s.x, a), ay = at(s.y, a);
-    const VF area = hn::Sub(hn::Mul(hn::Sub(at(s.x, b), ax), hn::Sub(at(s.y, c), ay)),
-                            hn::Mul(hn::Sub(at(s.x, c), ax), hn::Sub(at(s.y, b), ay)));
-    const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, 0.02f);
-    VF facing = hn::IfThenElse(hn::Gt(area, least), one,
-                               hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
-    // Not a number counts as behind, too.
-    const auto before = [&](VF v) HWY_ATTR { return hn::Ge(v, zero); };
-    const auto all = hn::And(hn::And(before(ca), before(cb)), before(cc)),
-               some = hn::Or(hn::Or(before(ca), before(cb)), before(cc));
-    facing = hn::IfThenElse(all, facing, hn::IfThenElse(some, hn::Set(f, kCut), zero));
-    hn::Store(facing, f, &s.facing[t]);
+  const auto clearance = [&](std::size_t k) HWY_ATTR {
+    return dot_row(tiles.rays.near_plane, corners[k].x, corners[k].y, corners[k].z);
+  };
+  const VF ax = image.x[0], ay = image.y[0];
+  const VF area = hn::Sub(hn::Mul(hn::Sub(image.x[1], ax), hn::Sub(image.y[2], ay)),
+                          hn::Mul(hn::Sub(image.x[2], ax), hn::Sub(image.y[1], ay)));
+  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, 0.02f);
+  const VF facing = hn::IfThenElse(hn::Gt(area, least), one,
+                                   hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
+  // Not a number counts as behind, too.
+  const auto before = [&](std::size_t k) HWY_ATTR { return hn::Ge(clearance(k), zero); };
+  const auto a = before(0), b = before(1), c = before(2);
+  return hn::IfThenElse(hn::And(hn::And(a, b), c), facing,
+                        hn::IfThenElseZero(hn::Or(hn::Or(a, b), c), hn::Set(f, kCut)));
+}
+
+// Found when first asked for.
+void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                 std::size_t group) {
+  const F f;
+  MeshScratch& s = tiles.mesh;
+  if (s.known[group] == s.turn) return;
+  s.known[group] = s.turn;
+  for (std::size_t lane = 0; lane < OccluderTopology::kGroup; lane += hn::Lanes(f)) {
+    const auto corners = corners_about_eye(tiles.projection, mesh, transform, group, lane);
+    hn::Store(facing_of(tiles, corners, on_image(tiles.projection, corners)), f,
+              &s.facing[group * OccluderTopology::kGroup + lane]);
   }
 }
 
@@ -105,54 +143,94 @@ HWY_INLINE void find_facing(MeshScratch& s, const OccluderTopology& mesh, std::s
 struct Triangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
   alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
+  alignas(64) std::array<std::array<float, 16>, 9> corners;  // of those to be cut
   std::array<std::uint32_t, 3> on_right, steep;  // a bit a triangle: the edge bounds it to the right
   std::uint32_t drawn = 0, cut = 0;
 };
 
-// Triangles t … of the mesh; false where there is nothing to draw.
-HWY_INLINE bool set_up(const DepthTiles& tiles, const OccluderTopology& mesh, std::size_t t, Triangles& out) {
+// Those that lie wholly to one side of what is in view.
+HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const std::array<V3, 3>& corners) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  const VF width = hn::Set(f, static_cast<float>(tiles.width)),
+           height = hn::Set(f, static_cast<float>(tiles.height)), zero = hn::Zero(f);
+  auto left = hn::FirstN(f, hn::Lanes(f)), right = left, above = left, below = left;
+  for (const V3& c : corners) {
+    const VF x = dot_row(e.x, c.x, c.y, c.z), y = dot_row(e.y, c.x, c.y, c.z),
+             w = dot_row(e.w, c.x, c.y, c.z);
+    left = hn::And(left, hn::Lt(x, zero)), right = hn::And(right, hn::Gt(x, hn::Mul(width, w)));
+    above = hn::And(above, hn::Lt(y, zero)), below = hn::And(below, hn::Gt(y, hn::Mul(height, w)));
+  }
+  return bits_of(hn::Or(hn::Or(left, right), hn::Or(above, below)));
+}
+
+// Triangles 16·group + lane … of the mesh; false where there is nothing to draw.
+HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                       std::size_t group, std::size_t lane, Triangles& out) {
   const F f;
   const I i32;
-  const MeshScratch& s = tiles.mesh;
-  const auto at = [&](const partition::AlignedVector<float>& from, VI index)
-                      HWY_ATTR { return hn::GatherIndex(f, from.data(), index); };
-  const VF facing = hn::Load(f, &s.facing[t]), zero = hn::Zero(f), one = hn::Set(f, 1.0f);
+  const EyeProjection& e = tiles.projection;
+  const auto corners = corners_about_eye(e, mesh, transform, group, lane);
+  const OnImage image = on_image(e, corners);
+  const VF facing = facing_of(tiles, corners, image);
+  if (hn::Lanes(f) == OccluderTopology::kGroup) {
+    hn::Store(facing, f, &tiles.mesh.facing[group * OccluderTopology::kGroup]);
+    tiles.mesh.known[group] = tiles.mesh.turn;
+  }
+  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f);
   out.cut = bits_of(hn::Eq(facing, hn::Set(f, kCut)));
+  if (out.cut != 0) out.cut &= ~beyond_a_side(tiles, corners);
+  if (out.cut != 0) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      hn::Store(corners[k].x, f, out.corners[3 * k].data());
+      hn::Store(corners[k].y, f, out.corners[3 * k + 1].data());
+      hn::Store(corners[k].z, f, out.corners[3 * k + 2].data());
+    }
+  }
   auto drawn = hn::Eq(hn::Abs(facing), one);
   out.drawn = 0;
-  if (hn::AllFalse(f, drawn)) return out.cut != 0;
-  VI corner[3];
-  VF x[3], y[3];
-  for (int k = 0; k < 3; ++k) {
-    corner[k] = hn::Load(i32, &mesh.corner[k][t]);
-    x[k] = at(s.x, corner[k]), y[k] = at(s.y, corner[k]);
-  }
+  const VF *x = image.x, *y = image.y;
   const VF left = hn::Min(hn::Min(x[0], x[1]), x[2]), right = hn::Max(hn::Max(x[0], x[1]), x[2]);
   VF top = hn::Min(hn::Min(y[0], y[1]), y[2]), bottom = hn::Max(hn::Max(y[0], y[1]), y[2]);
   // Nothing where no pixel centre lies between the sides, nor beyond the image.
   const VF half = hn::Set(f, 0.5f);
-  const auto holds_centre = [&](VF low, VF high, float size) HWY_ATTR {
-    const VF first = hn::Max(hn::Ceil(hn::Sub(low, half)), zero),
-             last = hn::Min(hn::Floor(hn::Sub(high, half)), hn::Set(f, size - 1));
-    return hn::Le(first, last);
+  const auto first = [&](VF low) HWY_ATTR { return hn::Max(hn::Ceil(hn::Sub(low, half)), zero); };
+  const auto last = [&](VF high, std::uint32_t size) HWY_ATTR {
+    return hn::Min(hn::Floor(hn::Sub(high, half)), hn::Set(f, static_cast<float>(size) - 1));
   };
-  drawn = hn::And(drawn, hn::And(holds_centre(left, right, static_cast<float>(tiles.width)),
-                                 holds_centre(top, bottom, static_cast<float>(tiles.height))));
+  const VF x0 = first(left), x1 = last(right, tiles.width), y0 = first(top), y1 = last(bottom, tiles.height);
+  drawn = hn::And(drawn, hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
   if (hn::AllFalse(f, drawn)) return out.cut != 0;
 
-  const auto eye = [&](int k) HWY_ATTR {
-    return V3{at(s.eye_x, corner[k]), at(s.eye_y, corner[k]), at(s.eye_z, corner[k])};
+  // Nor behind the tiles of the corners, where those are all.
+  const auto nearness = [&](std::size_t k) HWY_ATTR {
+    const V3& c = corners[k];
+    return e.orthographic ? dot_row(e.nearness, c.x, c.y, c.z) : image.over_w[k];
   };
-  const V3 p = eye(0), q = eye(1), r = eye(2);
+  const VF nearest = hn::Max(hn::Max(nearness(0), nearness(1)), nearness(2));
+  const auto tile = [&](VF at) HWY_ATTR {
+    return hn::ShiftRight<3>(hn::ConvertTo(i32, hn::IfThenElseZero(drawn, at)));
+  };
+  const VI tx0 = tile(x0), tx1 = tile(x1), ty0 = tile(y0), ty1 = tile(y1), next = hn::Set(i32, 1),
+           stride = hn::Set(i32, static_cast<std::int32_t>(tiles.stride));
+  const auto many = hn::Or(hn::Gt(hn::Sub(tx1, tx0), next), hn::Gt(hn::Sub(ty1, ty0), next));
+  const auto farthest = [&](VI ty, VI tx) HWY_ATTR {
+    return hn::GatherIndex(f, tiles.farthest.data(), hn::Add(hn::Mul(ty, stride), tx));
+  };
+  const VF least_of_all = hn::Min(hn::Min(farthest(ty0, tx0), farthest(ty0, tx1)),
+                                  hn::Min(farthest(ty1, tx0), farthest(ty1, tx1)));
+  drawn = hn::And(drawn, hn::Or(hn::RebindMask(f, many), hn::Lt(least_of_all, nearest)));
+  if (hn::AllFalse(f, drawn)) return out.cut != 0;
+
+  const V3 &p = corners[0], &q = corners[1], &r = corners[2];
   const V3 normal = cross(minus(q, p), minus(r, p));
   const VF length = hn::Sqrt(dot(normal, normal));
   const V3 unit{hn::Div(normal.x, length), hn::Div(normal.y, length), hn::Div(normal.z, length)};
-  const VF nearest = hn::Max(hn::Max(at(s.near, corner[0]), at(s.near, corner[1])), at(s.near, corner[2]));
   const auto most = [&](const V3& v)
                         HWY_ATTR { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); };
   const VF reach = hn::Max(hn::Max(most(p), most(q)), most(r));
   const PixelRays& rays = tiles.rays;
-  const bool orthographic = tiles.projection.orthographic;
+  const bool orthographic = e.orthographic;
   const VF plane_at = dot(unit, p);
   const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
   // Seen too much edge on, the plane says nothing.
@@ -171,17 +249,21 @@ HWY_INLINE bool set_up(const DepthTiles& tiles, const OccluderTopology& mesh, st
       hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
   const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
   const auto to_right = hn::Gt(facing, zero);
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    const VI other = hn::Load(i32, &mesh.neighbour[k][t]);
+  const OccluderTopology::Group& its = mesh.groups[group];
+  know_facing(tiles, mesh, transform, group);
+  for (std::uint32_t i = its.first_beside; i < its.end_beside; ++i)
+    know_facing(tiles, mesh, transform, mesh.beside[i]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const VI other = hn::Load(i32, &mesh.neighbour[(group * 3 + k) * OccluderTopology::kGroup + lane]);
     const auto has_other = hn::Gt(other, hn::Set(i32, -1));
-    const VF others = at(s.facing, hn::Max(other, hn::Zero(i32)));
+    const VF others = hn::GatherIndex(f, tiles.mesh.facing.data(), hn::Max(other, hn::Zero(i32)));
     const auto seam = hn::And(hn::RebindMask(f, has_other), hn::Eq(others, facing));
     const VF by_seam = hn::IfThenZeroElse(seam, inset);
     const auto falls = hn::Gt(y[next], y[k]);
     const auto on_right = hn::Not(hn::Xor(falls, to_right));
     // From the vertex of lower number, so that both sides of a seam compute the same bits.
-    const auto turned = hn::RebindMask(f, hn::Gt(corner[k], corner[next]));
+    const auto turned = pixels_at(its.turned[k], lane);
     const VF ax = hn::IfThenElse(turned, x[next], x[k]), ay = hn::IfThenElse(turned, y[next], y[k]),
              bx = hn::IfThenElse(turned, x[k], x[next]), by = hn::IfThenElse(turned, y[k], y[next]);
     const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
@@ -208,59 +290,64 @@ HWY_INLINE bool set_up(const DepthTiles& tiles, const OccluderTopology& mesh, st
   return (out.drawn | out.cut) != 0;
 }
 
-float length_of(const Vec4& row) {
-  return std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-}
-
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
 void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+  const F f;
   const EyeProjection& e = tiles.projection;
   const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
   const auto minus = [](float scale, const Vec4& a, const Vec4& b) {
     return Vec4{scale * a.x - b.x, scale * a.y - b.y, scale * a.z - b.z, scale * a.w - b.w};
   };
   const Vec4 sides[5] = {e.x, minus(width, e.w, e.x), e.y, minus(height, e.w, e.y), tiles.rays.near_plane};
-  float lengths[5];
-  for (int k = 0; k < 5; ++k) lengths[k] = length_of(sides[k]);
-  const float scale = scene::scale_bounds(transform).most, w_length = length_of(e.w);
-  tiles.mesh.seen.clear();
-  for (std::uint32_t g = 0; g < mesh.groups.size(); ++g) {
-    const Sphere& ball = mesh.groups[g].ball;
-    const Vec3 c = transform_point(transform, ball.centre);
-    const float x = (c.x - e.eye_high.x) - e.eye_low.x, y = (c.y - e.eye_high.y) - e.eye_low.y,
-                z = (c.z - e.eye_high.z) - e.eye_low.z, r = ball.radius * scale;
-    const auto at = [&](const Vec4& row) { return ((row.x * x + row.y * y) + row.z * z) + row.w; };
-    bool out = false;
-    for (int k = 0; k < 5; ++k) out = out || at(sides[k]) < -r * lengths[k];
-    if (out) continue;
-    // Bounds of its image, where it lies before the eye: by its nearest depth, which is enough to skip by.
-    const float w = at(e.w), least = w - r * w_length;
-    if (!std::isfinite(w)) continue;
-    MeshScratch::SeenGroup seen{w, kInfinity, 0, width, 0, height, g};
-    if (e.orthographic) seen.depth = -at(e.nearness);
-    if (!std::isfinite(seen.depth)) continue;
-    if (!e.orthographic && least > 0.1f * w) {
-      const auto reach = [&](const Vec4& row) {
-        return (length_of(row) + std::fabs(at(row) / w) * w_length) * r / least;
-      };
-      const float px = at(e.x) / w, py = at(e.y) / w, rx = reach(e.x), ry = reach(e.y);
-      seen.nearest = 1 / least;
-      seen.left = px - rx, seen.right = px + rx, seen.top = py - ry, seen.bottom = py + ry;
+  const Vec4 depth = e.orthographic ? Vec4{-e.nearness.x, -e.nearness.y, -e.nearness.z, 0} : e.w;
+  MeshScratch& s = tiles.mesh;
+  s.group.clear(), s.near_first.clear();
+  for (std::size_t first = 0; first < mesh.groups.size(); first += hn::Lanes(f)) {
+    const float* box = &mesh.box[first / 16 * 96 + first % 16];
+    const V3 c{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
+        h{hn::Load(f, box + 48), hn::Load(f, box + 64), hn::Load(f, box + 80)};
+    // Of the box around the moved box.
+    const auto size = [&](const Vec4& row, const V3& half) HWY_ATTR {
+      return dot(half, std::array<float, 3>{std::fabs(row.x), std::fabs(row.y), std::fabs(row.z)});
+    };
+    const auto& rows = transform.rows;
+    const V3 middle{dot_row(rows[0], c.x, c.y, c.z), dot_row(rows[1], c.x, c.y, c.z),
+                    dot_row(rows[2], c.x, c.y, c.z)};
+    const V3 half{size(rows[0], h), size(rows[1], h), size(rows[2], h)};
+    const auto about_eye = [&](VF v, float high, float low)
+                               HWY_ATTR { return hn::Sub(hn::Sub(v, hn::Set(f, high)), hn::Set(f, low)); };
+    const V3 q{about_eye(middle.x, e.eye_high.x, e.eye_low.x), about_eye(middle.y, e.eye_high.y, e.eye_low.y),
+               about_eye(middle.z, e.eye_high.z, e.eye_low.z)};
+    auto in = hn::FirstN(f, mesh.groups.size() - first);
+    for (const Vec4& side : sides)
+      in = hn::And(in, hn::Ge(hn::Add(dot_row(side, q.x, q.y, q.z), size(side, half)), hn::Zero(f)));
+    const VF nearest = hn::Sub(dot_row(depth, q.x, q.y, q.z), size(depth, half));
+    std::uint32_t rest = bits_of(in);
+    if (rest == 0) continue;
+    alignas(64) std::array<std::array<float, 16>, 7> out;
+    hn::Store(hn::Sub(middle.x, half.x), f, out[0].data());
+    hn::Store(hn::Sub(middle.y, half.y), f, out[1].data());
+    hn::Store(hn::Sub(middle.z, half.z), f, out[2].data());
+    hn::Store(hn::Add(middle.x, half.x), f, out[3].data());
+    hn::Store(hn::Add(middle.y, half.y), f, out[4].data());
+    hn::Store(hn::Add(middle.z, half.z), f, out[5].data());
+    hn::Store(nearest, f, out[6].data());
+    for (; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t place = s.group.size();
+      s.near_first.push_back(std::uint64_t{sortable(out[6][i])} << 32 | place);
+      for (std::size_t side = 0; side < 6; ++side) s.box[side][place] = out[side][i];
+      s.group.push_back(static_cast<std::uint32_t>(first + i));
     }
-    tiles.mesh.seen.push_back(seen);
   }
-  std::sort(tiles.mesh.seen.begin(), tiles.mesh.seen.end(), [](const auto& a, const auto& b) {
-    return a.depth != b.depth ? a.depth < b.depth : a.group < b.group;
-  });
+  sort_roughly(s.near_first, s.other);
 }
 
-HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
-                           const OccluderTopology::Group& group) {
-  const F f;
-  const MeshScratch& s = tiles.mesh;
+HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                           std::size_t group) {
   Triangles ready;
-  for (std::size_t first = group.first; first < group.end; first += hn::Lanes(f)) {
-    if (!set_up(tiles, mesh, first, ready)) continue;
+  for (std::size_t lane = 0; lane < OccluderTopology::kGroup; lane += hn::Lanes(F())) {
+    if (!set_up(tiles, mesh, transform, group, lane, ready)) continue;
     for (std::uint32_t rest = ready.drawn; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const TileRange range = tiles_of(tiles, ready.left[i], ready.right[i], ready.top[i], ready.bottom[i]);
@@ -281,10 +368,10 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
       draw_polygon(tiles, out, range);
     }
     for (std::uint32_t rest = ready.cut; rest != 0; rest &= rest - 1) {
-      const auto& corner = mesh.triangles[first + static_cast<std::size_t>(std::countr_zero(rest))];
+      const int i = std::countr_zero(rest);
       std::array<Vec3, 3> points;
       for (std::size_t k = 0; k < 3; ++k)
-        points[k] = {s.eye_x[corner[k]], s.eye_y[corner[k]], s.eye_z[corner[k]]};
+        points[k] = {ready.corners[3 * k][i], ready.corners[3 * k + 1][i], ready.corners[3 * k + 2][i]};
       draw_clipped_triangle(tiles, points);
     }
   }
@@ -292,19 +379,23 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh,
 
 void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
   find_groups(tiles, mesh, transform);
-  MeshScratch& s = tiles.mesh;
-  if (s.seen.empty()) return;
-  project_vertices(tiles, mesh, transform);
-  // Those of groups out of view count as turned away: their neighbours' edges are then an outline.
-  s.facing.assign(mesh.corner[0].size(), 0);
-  for (const auto& seen : s.seen)
-    find_facing(s, mesh, mesh.groups[seen.group].first, mesh.groups[seen.group].end);
-  for (const auto& seen : s.seen) {
-    if (seen.nearest < kInfinity &&
-        hidden_tiles(tiles, tiles_of(tiles, seen.left, seen.right, seen.top, seen.bottom),
-                     seen.nearest * (1 + 1e-5f)))
-      continue;
-    draw_group(tiles, mesh, mesh.groups[seen.group]);
+  const MeshScratch& s = tiles.mesh;
+  constexpr std::size_t kSome = 16;
+  for (std::size_t first = 0; first < s.near_first.size(); first += kSome) {
+    const std::size_t count = std::min(kSome, s.near_first.size() - first);
+    const auto place = [&](std::size_t i) { return static_cast<std::uint32_t>(s.near_first[first + i]); };
+    std::array<std::array<float, kSome>, 6> box;
+    for (std::size_t side = 0; side < 6; ++side) {
+      for (std::size_t i = 0; i < count; ++i) box[side][i] = s.box[side][place(i)];
+    }
+    std::array<std::uint8_t, kSome> visible;
+    query_boxes(
+        tiles, tiles.projection,
+        {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
+        visible.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)]);
+    }
   }
 }
 
@@ -321,6 +412,15 @@ void draw_convex(DepthTiles& tiles, const Convex& polygon) noexcept {
 }
 
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+  MeshScratch& s = tiles.mesh;
+  const std::size_t groups = mesh.groups.size();
+  if (s.known.size() < groups) {
+    for (auto& side : s.box) side.resize(groups);
+    s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
+    s.facing.resize(groups * OccluderTopology::kGroup);
+    s.known.resize(groups, s.turn);
+  }
+  if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
   HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform);
 }
 

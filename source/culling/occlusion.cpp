@@ -214,36 +214,38 @@ void draw_clipped_triangle(DepthTiles& tiles, const std::array<Vec3, 3>& corners
 }
 
 void OccluderTopology::lay_out() {
-  const auto padded = [](std::size_t n) { return (n + 15) / 16 * 16; };
-  for (auto* v : {&x, &y, &z}) v->resize(padded(positions.size()), 0);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    x[i] = positions[i].x, y[i] = positions[i].y, z[i] = positions[i].z;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    corner[k].resize(padded(triangles.size()), 0);
-    neighbour[k].resize(padded(triangles.size()), -1);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      corner[k][t] = static_cast<std::int32_t>(triangles[t][k]);
-      neighbour[k][t] = static_cast<std::int32_t>(neighbours[t][k]);
-    }
-  }
-  for (std::uint32_t first = 0; first < triangles.size(); first += kGroup) {
-    Group group;
-    group.first = first, group.end = std::min(first + kGroup, static_cast<std::uint32_t>(triangles.size()));
+  const std::size_t count = (triangles.size() + kGroup - 1) / kGroup;
+  groups.resize(count);
+  corners.resize(count * 9 * kGroup);
+  neighbour.assign(count * 3 * kGroup, -1);
+  box.assign((count + 15) / 16 * 96, 0);
+  for (std::size_t g = 0; g < count; ++g) {
+    Group& group = groups[g];
+    const std::size_t first = g * kGroup, end = std::min(first + kGroup, triangles.size());
     glm::dvec3 low(1e300), high(-1e300);
-    const auto each = [&](const auto& visit) {
-      for (std::uint32_t t = group.first; t < group.end; ++t) {
-        for (const std::uint32_t v : triangles[t]) visit(to_double(positions[v]));
+    group.first_beside = static_cast<std::uint32_t>(beside.size());
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      const auto& triangle = triangles[std::min(first + i, end - 1)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = positions[first + i < end ? triangle[k] : triangle[0]];
+        float* out = &corners[(g * 9 + 3 * k) * kGroup + i];
+        out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
+        low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p));
+        if (first + i >= end) continue;
+        group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
+        const std::uint32_t other = neighbours[first + i][k];
+        neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
+        if (other != kNone && other / kGroup != g) beside.push_back(other / kGroup);
       }
-    };
-    each([&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
-    group.ball.centre = to_vec3(0.5 * low + 0.5 * high);
-    double radius = 0;
-    each([&](const glm::dvec3& p) {
-      radius = std::max(radius, glm::length(p - to_double(group.ball.centre)));
-    });
-    group.ball.radius = static_cast<float>(radius * (1 + 1e-6));
-    groups.push_back(group);
+    }
+    std::sort(beside.begin() + group.first_beside, beside.end());
+    beside.erase(std::unique(beside.begin() + group.first_beside, beside.end()), beside.end());
+    group.end_beside = static_cast<std::uint32_t>(beside.size());
+    const Vec3 middle = to_vec3(0.5 * low + 0.5 * high);
+    const glm::dvec3 half = glm::max(high - to_double(middle), to_double(middle) - low) * (1 + 1e-6);
+    float* out = &box[g / 16 * 96 + g % 16];
+    out[0] = middle.x, out[16] = middle.y, out[32] = middle.z;
+    for (int a = 0; a < 3; ++a) out[48 + 16 * a] = static_cast<float>(half[a]);
   }
 }
 

@@ -7,6 +7,64 @@
 
 #include "culling/depth_tiles.hpp"
 
+#ifndef SIGHTLINE_CULLING_TRIANGLE_QUERIES_ONCE
+#define SIGHTLINE_CULLING_TRIANGLE_QUERIES_ONCE
+namespace sightline::culling {
+namespace {
+
+// About the eye, in double precision.
+struct ClipPolygon {
+  std::array<std::array<double, 3>, 8> points;
+  std::size_t count = 0;
+};
+
+// Keeps what lies before the near plane and no farther beyond the image than it is wide: somewhat more than
+// that, so that rounding takes nothing away. False of what is no number, and in orthographic views.
+bool clip_to_view(const DepthTiles& tiles, ClipPolygon& polygon) {
+  const EyeProjection& e = tiles.projection;
+  if (e.orthographic) return false;
+  const double width = tiles.width, height = tiles.height;
+  const auto beyond = [&](const Vec4& row, double sign, double shift) {
+    return std::array<double, 3>{sign * row.x + shift * e.w.x, sign * row.y + shift * e.w.y,
+                                 sign * row.z + shift * e.w.z};
+  };
+  const Vec4& near = tiles.rays.near_plane;
+  // By a thousandth of its distance, and by what rounding may have moved the corners.
+  double slack = 1e-3 * std::fabs(double{near.w}), sum = 0;
+  for (const auto& point : std::span(polygon.points).first(polygon.count))
+    for (const double side : point) slack = std::max(slack, 1e-6 * std::fabs(side)), sum += side;
+  if (!std::isfinite(sum)) return false;
+  const std::array<std::array<double, 3>, 5> planes{{{near.x, near.y, near.z},
+                                                     beyond(e.x, 1, width),
+                                                     beyond(e.x, -1, 2 * width),
+                                                     beyond(e.y, 1, height),
+                                                     beyond(e.y, -1, 2 * height)}};
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const auto& plane = planes[p];
+    const auto at = [&](const std::array<double, 3>& point) {
+      const double sum = plane[0] * point[0] + plane[1] * point[1] + plane[2] * point[2];
+      return p == 0 ? sum + double{near.w} + slack : sum;
+    };
+    ClipPolygon out;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      const auto &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
+      const double from = at(a), to = at(b);
+      if (from >= 0) out.points[out.count++] = a;
+      if ((from >= 0) == (to >= 0)) continue;
+      const double part = from / (from - to);
+      auto& cut = out.points[out.count++];
+      for (std::size_t axis = 0; axis < 3; ++axis) cut[axis] = a[axis] + part * (b[axis] - a[axis]);
+    }
+    polygon = out;
+    if (polygon.count < 3) break;
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace sightline::culling
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "culling/triangle_queries.cpp"
 #include <hwy/foreach_target.h>
@@ -109,14 +167,44 @@ HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size
   return false;
 }
 
-// A vector of triangles; of those beyond `count` nothing is said.
-HWY_INLINE bool some_seen(const DepthTiles& tiles, const EyeProjection& e, const Corners& q,
-                          std::size_t count) {
-  const F f;
-  const VF zero = hn::Zero(f), infinity = hn::Set(f, kInfinity);
-  VF reach = zero;
+HWY_INLINE VF reach_of(const Corners& q) {
+  VF reach = hn::Zero(F());
   for (std::size_t k = 0; k < 3; ++k)
     reach = hn::Max(reach, hn::Max(hn::Max(hn::Abs(q.x[k]), hn::Abs(q.y[k])), hn::Abs(q.z[k])));
+  return reach;
+}
+
+// Those that lie wholly to one side of what is in view.
+HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const Corners& q, VF error_x, VF error_y,
+                                       VF error_w) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  const VF width = hn::Set(f, static_cast<float>(tiles.width)),
+           height = hn::Set(f, static_cast<float>(tiles.height));
+  auto left = hn::FirstN(f, hn::Lanes(f)), right = left, above = left, below = left;
+  const VF right_error = hn::Add(error_x, hn::Mul(width, error_w)),
+           below_error = hn::Add(error_y, hn::Mul(height, error_w));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto dot = [&](const Vec4& row) HWY_ATTR { return dot_row(row, q.x[k], q.y[k], q.z[k]); };
+    const VF x = dot(e.x), y = dot(e.y), w = dot(e.w);
+    left = hn::And(left, hn::Lt(x, hn::Neg(error_x)));
+    right = hn::And(right, hn::Gt(hn::Sub(x, hn::Mul(width, w)), right_error));
+    above = hn::And(above, hn::Lt(y, hn::Neg(error_y)));
+    below = hn::And(below, hn::Gt(hn::Sub(y, hn::Mul(height, w)), below_error));
+  }
+  return bits_of(hn::Or(hn::Or(left, right), hn::Or(above, below)));
+}
+
+bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i);
+
+// A vector of triangles, parts of the triangles `whole`; of those beyond `count` nothing is said.
+template <bool kMayClip>
+HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole,
+                          std::size_t count) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  const VF zero = hn::Zero(f), infinity = hn::Set(f, kInfinity);
+  const VF reach = reach_of(whole);
   const VF error_x = error_of(e.x, reach), error_y = error_of(e.y, reach), error_w = error_of(e.w, reach);
   VF x[3], y[3];
   VF left = infinity, top = infinity, least_w = infinity;
@@ -149,8 +237,13 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const EyeProjection& e, const
   for (std::size_t i = 0; i < count; ++i) rest |= std::uint32_t{visible[i]} << i;
   rest &= ~bits_of(behind);
   if (rest == 0) return false;
-  // What cannot be looked at closer may be seen.
-  if ((rest & ~bits_of(hn::And(before, hn::Lt(widest, hn::Set(f, kTooFarOut))))) != 0) return true;
+  // Parts behind the eye, or far out, have no place on the image.
+  std::uint32_t clipped = rest & ~bits_of(hn::And(before, hn::Lt(widest, hn::Set(f, kTooFarOut))));
+  if (clipped != 0) {
+    if (!kMayClip) return true;
+    rest &= ~clipped;
+    clipped &= ~beyond_a_side(tiles, q, error_x, error_y, error_w);
+  }
 
   GrownTriangles t;
   const VF area = hn::Sub(hn::Mul(hn::Sub(x[1], x[0]), hn::Sub(y[2], y[0])),
@@ -172,39 +265,77 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const EyeProjection& e, const
     hn::Store(hn::IfThenElse(hn::AndNot(on_right, bounds), hn::Sub(at, outwards), hn::Neg(infinity)), f,
               t.left_at[k].data());
   }
-  find_planes(tiles, q, reach, nearest, t);
+  find_planes(tiles, whole, reach, nearest, t);
   hn::Store(left, f, t.left.data()), hn::Store(right, f, t.right.data());
   hn::Store(top, f, t.top.data()), hn::Store(bottom, f, t.bottom.data());
   hn::Store(nearest, f, t.nearest.data());
   for (; rest != 0; rest &= rest - 1) {
     if (seen(tiles, t, static_cast<std::size_t>(std::countr_zero(rest)))) return true;
   }
+  if constexpr (kMayClip) {
+    for (; clipped != 0; clipped &= clipped - 1) {
+      if (clipped_seen(tiles, whole, static_cast<std::size_t>(std::countr_zero(clipped)))) return true;
+    }
+  }
   return false;
 }
 
-bool query_all_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) {
+// What of triangle i lies before the near plane, and not far beyond the image. False is certain.
+bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) {
   const F f;
-  const EyeProjection& e = tiles.projection;
-  const std::size_t triangles = corners.size() / 3;
   alignas(64) std::array<std::array<float, 16>, 9> in;
+  ClipPolygon polygon;
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::Store(whole.x[k], f, in[3 * k].data());
+    hn::Store(whole.y[k], f, in[3 * k + 1].data());
+    hn::Store(whole.z[k], f, in[3 * k + 2].data());
+    polygon.points[k] = {in[3 * k][i], in[3 * k + 1][i], in[3 * k + 2][i]};
+  }
+  polygon.count = 3;
+  if (!clip_to_view(tiles, polygon)) return true;
+  if (polygon.count < 3) return false;
+  // A fan of triangles, each on the plane of the whole.
+  Corners its;
+  for (std::size_t k = 0; k < 3; ++k) {
+    its.x[k] = hn::Set(f, in[3 * k][i]), its.y[k] = hn::Set(f, in[3 * k + 1][i]);
+    its.z[k] = hn::Set(f, in[3 * k + 2][i]);
+  }
+  const std::size_t triangles = polygon.count - 2;
   for (std::size_t first = 0; first < triangles; first += hn::Lanes(f)) {
-    const std::size_t count = std::min(hn::Lanes(f), triangles - first);
-    for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
+    for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {
+      const std::size_t t = std::min(first + lane, triangles - 1);
+      const std::size_t from[3] = {0, t + 1, t + 2};
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& c = corners[3 * (first + std::min(i, count - 1)) + k];
-        in[3 * k][i] = c.x, in[3 * k + 1][i] = c.y, in[3 * k + 2][i] = c.z;
+        for (std::size_t a = 0; a < 3; ++a)
+          in[3 * k + a][lane] = static_cast<float>(polygon.points[from[k]][a]);
       }
     }
-    const auto about_eye = [&](std::size_t side, float high, float low) HWY_ATTR {
-      return hn::Sub(hn::Sub(hn::Load(f, in[side].data()), hn::Set(f, high)), hn::Set(f, low));
+    Corners part;
+    for (std::size_t k = 0; k < 3; ++k) {
+      part.x[k] = hn::Load(f, in[3 * k].data()), part.y[k] = hn::Load(f, in[3 * k + 1].data());
+      part.z[k] = hn::Load(f, in[3 * k + 2].data());
+    }
+    if (some_seen<false>(tiles, part, its, std::min(hn::Lanes(f), triangles - first))) return true;
+  }
+  return false;
+}
+
+bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, std::size_t triangles) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  for (std::size_t first = 0; first < triangles; first += hn::Lanes(f)) {
+    const auto& from = blocks[first / TriangleBlock::kSize].corners;
+    const std::size_t lane = first % TriangleBlock::kSize;
+    const auto about_eye = [&](std::size_t k, std::size_t axis, float high, float low) HWY_ATTR {
+      return hn::Sub(hn::Sub(hn::Load(f, &from[k][axis][lane]), hn::Set(f, high)), hn::Set(f, low));
     };
     Corners q;
     for (std::size_t k = 0; k < 3; ++k) {
-      q.x[k] = about_eye(3 * k, e.eye_high.x, e.eye_low.x);
-      q.y[k] = about_eye(3 * k + 1, e.eye_high.y, e.eye_low.y);
-      q.z[k] = about_eye(3 * k + 2, e.eye_high.z, e.eye_low.z);
+      q.x[k] = about_eye(k, 0, e.eye_high.x, e.eye_low.x);
+      q.y[k] = about_eye(k, 1, e.eye_high.y, e.eye_low.y);
+      q.z[k] = about_eye(k, 2, e.eye_high.z, e.eye_low.z);
     }
-    if (some_seen(tiles, e, q, count)) return true;
+    if (some_seen<true>(tiles, q, q, std::min(hn::Lanes(f), triangles - first))) return true;
   }
   return false;
 }
@@ -216,8 +347,29 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::culling {
 HWY_EXPORT(query_all_triangles);
 
+void TriangleBlock::take(std::span<const Vec3> triangles, std::size_t first) noexcept {
+  const std::size_t last = triangles.size() / 3 - 1;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& c = triangles[3 * std::min(first + i, last) + k];
+      corners[k][0][i] = c.x, corners[k][1][i] = c.y, corners[k][2][i] = c.z;
+    }
+  }
+}
+
+bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
+                     std::size_t count) noexcept {
+  return HWY_DYNAMIC_DISPATCH(query_all_triangles)(tiles, blocks.data(), count);
+}
+
 bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept {
-  return HWY_DYNAMIC_DISPATCH(query_all_triangles)(tiles, corners);
+  const std::size_t triangles = corners.size() / 3;
+  TriangleBlock block;
+  for (std::size_t first = 0; first < triangles; first += TriangleBlock::kSize) {
+    block.take(corners, first);
+    if (query_triangles(tiles, {&block, 1}, std::min(TriangleBlock::kSize, triangles - first))) return true;
+  }
+  return false;
 }
 
 }  // namespace sightline::culling

@@ -118,7 +118,7 @@ FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)
   const auto start = std::chrono::steady_clock::now();
   auto& data = *view_buffer_.mapped<shared::ViewData>();
   data = vulkan::view_data(view, extent_);
-  sort_transparent(view);
+  unsorted_ = view;
   const vk::raii::CommandBuffer& commands = commands_[0];
   commands.begin(vk::CommandBufferBeginInfo{vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timer_.reset(commands);
@@ -134,7 +134,9 @@ FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)
   return times;
 }
 
-vk::DeviceAddress Renderer::transparent_order() const noexcept {
+vk::DeviceAddress Renderer::transparent_order() {
+  if (unsorted_) sort_transparent(*unsorted_);
+  unsorted_.reset();
   return buffers_.transparent_ids.empty() ? 0 : transparent_order_.address();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include <sightline/frame.hpp>
 
@@ -53,8 +54,9 @@ public:
                    vk::DeviceAddress extra, Recorder::Compare compare) const;
   /// Blends the transparent objects of `draws` over the picture.
   void draw_transparent(const Recorder& frame, const DrawBuffers& draws) const;
-  /// All transparent objects, farthest first for the frame's view; 0 where there are none.
-  [[nodiscard]] vk::DeviceAddress transparent_order() const noexcept;
+  /// All transparent objects, farthest first for the frame's view; 0 where there are none. Sorted when first
+  /// asked for in a frame.
+  [[nodiscard]] vk::DeviceAddress transparent_order();
 
   /// Draws what a CPU method hands over, in its order: a cleared picture, opaque commands, then blended ones.
   /// One multi-draw-indirect call each.
@@ -83,6 +85,7 @@ private:
   vk::raii::DescriptorPool descriptors_;
   vk::raii::DescriptorSets view_set_;
   std::vector<std::uint64_t> sort_keys_;
+  std::optional<View> unsorted_;  ///< the frame's view, until its transparent objects are sorted
   GraphicsPipeline depth_pipeline_, lit_pipeline_, blend_pipeline_;
 };
 

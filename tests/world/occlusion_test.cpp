@@ -321,6 +321,81 @@ TEST(Occlusion, NeverHidesATriangleThatAPixelCentreSees) {
   EXPECT_GT(seen_by_box, 50u);
 }
 
+TEST(Occlusion, LooksCloselyAtTrianglesThatBeginBehindTheEye) {
+  Random random(17);
+  std::size_t hidden = 0, seen_count = 0, could_be = 0;
+  for (int round = 0; round < 250; ++round) {
+    const View view = small_view(random);
+    const Vec3 eye = eye_position(view);
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 12));
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    const ExactRays rays(view);
+    const std::vector<double> exact = exact_depths(rays, view, occluders);
+    const std::vector<double> front = exact_depths(rays, view, occluders, true);
+    const Vec3 forward = view_direction(view);
+    for (int i = 0; i < 21; ++i) {
+      std::array<Vec3, 3> triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 d = random.direction();
+        const float side = d.x * forward.x + d.y * forward.y + d.z * forward.z;
+        // The first behind the eye, the second before it.
+        const float turn = (k == 0 && side > 0) || (k == 1 && side < 0) ? -1.0f : 1.0f;
+        const float by = turn * (random.below(3) == 0 ? 200.0f : 20.0f);
+        triangle[k] = {eye.x + d.x * by, eye.y + d.y * by, eye.z + d.z * by};
+      }
+      bool seen = false, seen_without_insides = false;
+      for (std::uint32_t p = 0; p < exact.size() && !seen; ++p) {
+        const double at = rays.hit(p % view.width + 0.5, p / view.width + 0.5, triangle);
+        seen = at > exact[p];
+        seen_without_insides = seen_without_insides || at > front[p];
+      }
+      const bool may_see = buffer.may_see(std::span<const Vec3>(triangle));
+      if (seen) ASSERT_TRUE(may_see) << "round " << round << " triangle " << i;
+      hidden += !may_see, seen_count += seen;
+      could_be += !seen_without_insides;
+    }
+  }
+  EXPECT_GT(seen_count, 500u);
+  EXPECT_GT(hidden, 500u);
+  EXPECT_GT(static_cast<double>(hidden), 0.85 * static_cast<double>(could_be));
+}
+
+TEST(Occlusion, MeshesOfManyGroupsHideTheSameHoweverTheyAreCut) {
+  // One ball in one mesh, and in pieces of 16 triangles: whole groups are left out where others hide them.
+  const scene::Shape ball = scene::sphere(4);
+  const OccluderMesh mesh(ball.positions, ball.indices);
+  Random random(18);
+  for (int round = 0; round < 20; ++round) {
+    Affine transform;
+    for (Vec4& row : transform.rows)
+      row = {random.between(-3, 3), random.between(-3, 3), random.between(-3, 3), random.between(-2, 2)};
+    Camera camera{.eye = {random.between(-4, 4), 0, round % 4 == 0 ? 3.0f : 14.0f}};
+    camera.orthographic_height = round % 5 == 4 ? 12.0f : 0;
+    const View view = *make_view(camera, 150, 110);
+    OcclusionBuffer whole, pieces;
+    ASSERT_FALSE(whole.begin({view, {}}));
+    ASSERT_FALSE(pieces.begin({view, {}}));
+    whole.draw_mesh(mesh, transform);
+    for (std::size_t i = 0; i < ball.indices.size(); i += 48)
+      pieces.draw_mesh({ball.positions, std::span(ball.indices).subspan(i, 48)}, transform);
+    std::vector<float> by_whole(150 * 110), by_pieces(by_whole.size());
+    whole.read_nearness(by_whole);
+    pieces.read_nearness(by_pieces);
+    // Outlines of pieces are drawn a little smaller, so some pixels of theirs show what lies behind.
+    std::size_t covered = 0, same = 0;
+    for (std::size_t p = 0; p < by_whole.size(); ++p) {
+      ASSERT_GE(by_whole[p], by_pieces[p]) << "round " << round << " pixel " << p;
+      covered += by_whole[p] > -INFINITY;
+      same += by_whole[p] == by_pieces[p];
+    }
+    EXPECT_GT(same, by_whole.size() * 9 / 10);
+    if (camera.orthographic_height == 0 && round % 4 != 0) EXPECT_GT(covered, 0u);
+  }
+}
+
 TEST(Occlusion, RectanglesOfAnySizeAreTestedByEachOfTheirPixels) {
   Random random(16);
   std::size_t one = 0, few = 0, many = 0, hidden = 0;
@@ -400,11 +475,22 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   for (int i = 0; i < 1000; ++i) queries.push_back(box_of(random, 1));
   std::vector<std::array<Vec3, 3>> triangles;
   for (int i = 0; i < 1000; ++i) triangles.push_back(triangle_of(random));
+  for (int i = 0; i < 100; ++i) {
+    triangles.push_back(triangle_of(random));
+    triangles.back()[0] = random.inside({{-9, -9, 60}, {9, 9, 90}});  // behind the eye
+  }
+  const scene::Shape shape = scene::sphere(3);
+  const OccluderMesh mesh(shape.positions, shape.indices);
+  Affine crossing;  // the near plane
+  for (Vec4& row : crossing.rows) row.x *= 3, row.y *= 3, row.z *= 3;
+  crossing.rows[0].w = 2, crossing.rows[2].w = 60;
   const auto run = [&] {
     OcclusionBuffer buffer;
     EXPECT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
     buffer.draw_balls(balls);
+    buffer.draw_mesh(mesh, crossing);
+    buffer.draw_mesh(mesh, {});
     std::vector<float> drawn(333 * 217);
     buffer.read_nearness(drawn);
     std::vector<std::uint8_t> visible(queries.size());

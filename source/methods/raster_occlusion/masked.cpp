@@ -1,13 +1,12 @@
 // Occlusion on the CPU, after masked software occlusion culling (Hasselgren, Andersson & Akenine-Möller
 // 2016): the frustum's objects first, of these the largest on the image as occluders into the depth tiles
 // (round ones as balls, which are cheap, so nearly all of them), then all against the tiles by box and
-// sphere. Where a scene is one built thing of few triangles, like a game level, nearly all of it occludes,
-// and what its box leaves of an object is tested triangle by triangle.
+// sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes, and what
+// its box leaves of an object is tested triangle by triangle.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -16,8 +15,8 @@
 #include <sightline/projection.hpp>
 #include <sightline/world.hpp>
 
+#include "culling/depth_tiles.hpp"
 #include "culling/draw_list.hpp"
-#include "geometry/linear.hpp"
 #include "methods/methods.hpp"
 #include "methods/raster_occlusion/inner_shell.hpp"
 #include "scene/scale_bounds.hpp"
@@ -34,8 +33,6 @@ constexpr std::array kParameters{
                   1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
 };
-
-constexpr double kSurface = 0.99;  // share of it that occludes where a scene occludes as one
 
 WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
@@ -58,7 +55,7 @@ public:
     // Objects that share few meshes are instances, whose triangles would be too many in one.
     const bool one_thing = 2 * scene.meshes.size() >= scene.size();
     if (one_thing && triangle_count(scene) <= parameters.count("whole")) {
-      find_corners();
+      find_blocks();
       build_whole();
     } else {
       find_balls();
@@ -76,7 +73,7 @@ public:
       moved_[o] = 1;
     }
     if (!whole_) return;
-    for (const ObjectId o : objects) place_corners(o);
+    for (const ObjectId o : objects) place_triangles(o);
     if (first_time) build_whole();
   }
 
@@ -120,21 +117,29 @@ private:
     bool cut;  // by the near plane
   };
 
-  // The corners of every object's triangles, in world space.
-  void place_corners(ObjectId o) {
+  // Three corners a triangle, in world space.
+  std::span<const Vec3> corners_of(ObjectId o) {
     const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
-    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-      corners_[first_corner_[o] + i] = transform_point(
-          scene_.transform[o], scene_.positions[mesh.first_vertex + scene_.indices[mesh.first_index + i]]);
-    }
+    corners_.clear();
+    for (const std::uint32_t i : std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count))
+      corners_.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + i]));
+    return corners_;
   }
 
-  void find_corners() {
-    first_corner_.assign(1, 0);
+  void place_triangles(ObjectId o) {
+    const std::span<const Vec3> corners = corners_of(o);
+    for (std::size_t b = first_block_[o]; b < first_block_[o + 1]; ++b)
+      blocks_[b].take(corners, (b - first_block_[o]) * culling::TriangleBlock::kSize);
+  }
+
+  void find_blocks() {
+    constexpr std::size_t kSize = culling::TriangleBlock::kSize;
+    first_block_.assign(1, 0);
     for (ObjectId o = 0; o < scene_.size(); ++o)
-      first_corner_.push_back(first_corner_.back() + scene_.meshes[scene_.mesh[o]].index_count);
-    corners_.resize(first_corner_.back());
-    for (ObjectId o = 0; o < scene_.size(); ++o) place_corners(o);
+      first_block_.push_back(first_block_.back() +
+                             static_cast<std::uint32_t>((scene_.triangles(o) + kSize - 1) / kSize));
+    blocks_.resize(first_block_.back());
+    for (ObjectId o = 0; o < scene_.size(); ++o) place_triangles(o);
   }
 
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
@@ -142,44 +147,21 @@ private:
     std::vector<Vec3> positions;
     for (ObjectId o = 0; o < scene_.size(); ++o) {
       if (moved_[o] || scene_.surface[o] != Surface::opaque) continue;
-      positions.insert(positions.end(), corners_.begin() + first_corner_[o],
-                       corners_.begin() + first_corner_[o + 1]);
+      const std::span<const Vec3> corners = corners_of(o);
+      positions.insert(positions.end(), corners.begin(), corners.end());
     }
     std::vector<std::uint32_t> indices(positions.size());
     std::iota(indices.begin(), indices.end(), 0u);
-    whole_ = std::make_unique<OccluderMesh>(positions, large_triangles(positions, indices));
-  }
-
-  // Triangles that together hold nearly all of the surface: details hide little and cost as much as walls.
-  std::vector<std::uint32_t> large_triangles(std::span<const Vec3> positions,
-                                             std::span<const std::uint32_t> indices) const {
-    std::vector<std::pair<double, std::uint32_t>> by_area;
-    double total = 0;
-    for (std::uint32_t i = 0; i + 3 <= indices.size(); i += 3) {
-      const glm::dvec3 a = geometry::to_double(positions[indices[i]]),
-                       b = geometry::to_double(positions[indices[i + 1]]),
-                       c = geometry::to_double(positions[indices[i + 2]]);
-      by_area.emplace_back(glm::length(glm::cross(b - a, c - a)), i);
-      total += by_area.back().first;
-    }
-    std::sort(by_area.begin(), by_area.end(), std::greater());
-    std::vector<std::uint32_t> kept;
-    double sum = 0;
-    for (const auto& [area, i] : by_area) {
-      if (sum > kSurface * total) break;
-      sum += area;
-      kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
-    }
-    return kept;
+    whole_ = std::make_unique<OccluderMesh>(positions, indices);
   }
 
   // Of what its box leaves, an object's triangles may drop some more. Keeps the rest in front, in order.
   void drop_hidden_triangles(std::span<ObjectId> visible, CullResult& result) {
     std::size_t kept = 0;
     for (const ObjectId o : visible) {
-      const auto its = std::span(corners_).subspan(first_corner_[o], first_corner_[o + 1] - first_corner_[o]);
+      const auto its = std::span(blocks_).subspan(first_block_[o], first_block_[o + 1] - first_block_[o]);
       visible[kept] = o;
-      kept += buffer_.may_see(its);
+      kept += culling::query_triangles(buffer_.tiles(), its, scene_.triangles(o));
     }
     result.culled_occlusion += visible.size() - kept;
     result.count = kept;
@@ -295,8 +277,9 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::uint8_t> moved_;
   std::unique_ptr<OccluderMesh> whole_;
-  std::vector<Vec3> corners_;  // of all triangles, object by object, in world space; for `whole_`
-  std::vector<std::uint32_t> first_corner_;  // one an object, and the end
+  std::vector<culling::TriangleBlock> blocks_;  // of all triangles, object by object; for `whole_`
+  std::vector<std::uint32_t> first_block_;      // one an object, and the end
+  std::vector<Vec3> corners_;
   std::vector<std::unique_ptr<OccluderMesh>> meshes_, cut_meshes_;
   std::vector<std::optional<Sphere>> balls_;  // one a mesh, in its own space
   std::vector<Occluder> picked_;
