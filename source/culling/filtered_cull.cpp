@@ -22,8 +22,7 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
   const std::size_t lanes = hn::Lanes(f);
   Corner corners[Frustum::sides];
   const std::size_t count = corners_of(chunk, view, planes, corners);
-  out = {};
-  test_planes(corners, count, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+  out = test_objects(chunk, corners, count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
     if (view.area_scale > 0) {
       // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
       const VF half = hn::Set(f, 0.5f);
@@ -43,7 +42,7 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
       mask = hn::And(mask, hn::Or(large, hn::Le(distance, radius)));
     }
     if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
-    add_bits(mask, i, out);
+    return mask;
   });
 }
 
@@ -74,8 +73,8 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
               {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
               visible.data());
   for (std::uint32_t i = 0; i < chunk.count; ++i) {
-    if (visible[i] || (seen.at(i) & 1) == 0) continue;
-    seen.bytes[i / 8] &= static_cast<std::uint8_t>(~(1u << (i % 8)));
+    if (visible[i] || !seen.at(i)) continue;
+    seen.drop(i);
     ++dropped;
   }
   return dropped;

@@ -141,11 +141,16 @@ Check World::insert(std::span<const WorldBox> boxes, std::span<Handle> handles) 
       s.free_ids.pop_back();
     }
     const culling::SectorCell cell = culling::sector_cell(boxes[i]);
-    if (sector == ChunkMap::kNone || !(cell == last_cell)) sector = s.sector_at(cell), last_cell = cell;
+    if (sector == ChunkMap::kNone || !(cell == last_cell)) {
+      sector = s.sector_at(cell), last_cell = cell;
+      s.touched.push_back(sector);
+    }
     s.sectors[sector].map->insert(id, culling::relative_box(boxes[i], s.sectors[sector].origin));
     s.objects[id].sector = sector;
     handles[i] = {id, s.objects[id].generation};
   }
+  for (const std::uint32_t touched : s.touched) s.sectors[touched].map->tighten();
+  s.touched.clear();
   s.size += boxes.size();
   return {};
 }

@@ -100,10 +100,17 @@ HWY_INLINE PlaneSet planes_of(const ChunkBits& bits, std::uint32_t chunk, PlaneS
   return planes;
 }
 
-// Writes up to 15 values more than count, which kCullPadding and the chunks' own padding leave room for.
+// Writes up to 63 values more than count, which kCullPadding leaves room for. Most chunks hold 48 to 96
+// objects, evenly spread: one guess at whether there are more than 64 goes wrong less often than where a loop
+// ends.
 HWY_INLINE void copy_ids(const ObjectId* HWY_RESTRICT from, std::size_t count, ObjectId* HWY_RESTRICT to) {
   const U u;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(u)) hn::StoreU(hn::Load(u, from + i), u, to + i);
+  const auto copy = [&](std::size_t first, std::size_t end) HWY_ATTR {
+    for (std::size_t i = first; i < end; i += hn::Lanes(u)) hn::StoreU(hn::Load(u, from + i), u, to + i);
+  };
+  if (count <= ChunkMap::kSmallCapacity) return copy(0, ChunkMap::kSmallCapacity);
+  copy(0, 64);
+  if (count > 64) copy(64, ChunkMap::kCapacity);
 }
 
 // The sides of boxes that lie farthest along a plane's normal, and the plane.
@@ -151,36 +158,52 @@ HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size
   test_planes<0>(corners, planes, count, use);
 }
 
-// A bit an object of a chunk.
+// A bit an object of a chunk. Whole words are kept in registers and stored once: loads that gather what
+// several narrow stores have just written make processors wait.
 struct alignas(16) ObjectBits {
-  std::array<std::uint8_t, ChunkMap::kCapacity / 8 + 4> bytes{};
+  std::array<std::uint64_t, 2> words{};
 
-  [[nodiscard]] std::uint8_t at(std::size_t i) const {
-    return static_cast<std::uint8_t>(bytes[i / 8] >> (i % 8));
-  }
+  [[nodiscard]] bool at(std::size_t i) const { return words[i / 64] >> (i % 64) & 1; }
+  void drop(std::size_t i) { words[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
 };
+static_assert(ChunkMap::kCapacity <= 128);
 
-// Of objects i …; `to` holds none of them yet.
-HWY_INLINE void add_bits(hn::Mask<F> mask, std::size_t i, ObjectBits& to) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(F(), mask, bits);
-  if (hn::Lanes(F()) < 8) {
-    to.bytes[i / 8] |= static_cast<std::uint8_t>(bits[0] << (i % 8));
-  } else {
-    std::memcpy(&to.bytes[i / 8], bits, hn::Lanes(F()) / 8);
-  }
-}
-
+// Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
-  std::uint8_t from[8] = {bits.at(i), bits.bytes[i / 8 + 1]};
-  if (hn::Lanes(d) < 8) from[0] &= (1u << hn::Lanes(d)) - 1;
+  std::uint8_t from[8];
+  if (hn::Lanes(d) < 8) {
+    from[0] = static_cast<std::uint8_t>(bits.words[i / 64] >> (i % 64) & ((1u << hn::Lanes(d)) - 1));
+  } else {
+    std::memcpy(from, reinterpret_cast<const std::uint8_t*>(&bits.words) + i / 8, hn::Lanes(d) / 8);
+  }
   return hn::LoadMaskBits(d, from);
 }
 
 HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
   // Boxes are read along their rows, which processors find out by themselves.
-  for (std::uint32_t i = 0; i < chunk.count; i += 16) hwy::Prefetch(chunk.objects + i);
+  for (std::uint32_t i = 0; i < 64; i += 16) hwy::Prefetch(chunk.objects + i);
+  if (chunk.count <= 64) return;
+  for (std::uint32_t i = 64; i < ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.objects + i);
+}
+
+// Which objects the planes leave, and `also(i, mask)` of each vector of them; bits from count on mean
+// nothing.
+template <class Also>
+HWY_INLINE ObjectBits test_objects(const ChunkMap::ChunkView& chunk, const Corner* corners,
+                                   std::size_t planes, const Also& also) {
+  ObjectBits out;
+  std::uint64_t low = 0, high = 0;
+  test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const std::uint64_t bits = bits_of(also(i, mask));
+    if (i < 64) {
+      low |= bits << i;
+    } else {
+      high |= bits << (i - 64);
+    }
+  });
+  out.words = {low, high};
+  return out;
 }
 
 // One view, frustum only: ids straight into `out`.

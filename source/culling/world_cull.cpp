@@ -103,15 +103,6 @@ struct ChunkViews {
   std::array<ObjectBits, kMaxViews> seen;
 };
 
-HWY_INLINE void test_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
-                             ObjectBits& out) {
-  Corner corners[Frustum::sides];
-  const std::size_t count = corners_of(chunk, view, planes, corners);
-  if (hn::Lanes(F()) < 8) out = {};
-  test_planes(corners, count, chunk.count,
-              [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR { add_bits(mask, i, out); });
-}
-
 HWY_INLINE void store_masks(hn::Vec<U> masks, std::uint8_t* HWY_RESTRICT to) {
   const hn::Rebind<std::uint8_t, U> bytes;
   hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), masks)), bytes, to);
@@ -136,10 +127,10 @@ HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, const ChunkV
   return kept;
 }
 
-// The masks of a chunk that the views of `whole` see all of: nothing to leave out. Writes up to 15 more.
+// The masks of a chunk that the views of `whole` see all of: nothing to leave out. Writes up to 63 more.
 HWY_INLINE void write_masks(const ChunkMap::ChunkView& chunk, std::uint8_t whole, const ChunkViews& views,
                             std::uint8_t* HWY_RESTRICT masks) {
-  const hn::CappedTag<std::uint8_t, 16> bytes;
+  const hn::CappedTag<std::uint8_t, 64> bytes;
   for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(bytes)) {
     auto mask = hn::Set(bytes, whole);
     for (std::size_t k = 0; k < views.count; ++k) {
@@ -229,8 +220,12 @@ PassCounts frustum_views(const PassInput& input, std::span<const BlockEntry> ent
       crossed.count = 0;
       for (std::uint32_t by = crossed_by[i]; by != 0; by &= by - 1) {
         const int v = std::countr_zero(by);
+        Corner corners[Frustum::sides];
+        const std::size_t planes =
+            corners_of(chunk, views[v], planes_of(bits[v], i, entry.planes[v]), corners);
         crossed.bits[crossed.count] = input.bits[v];
-        test_objects(chunk, views[v], planes_of(bits[v], i, entry.planes[v]), crossed.seen[crossed.count++]);
+        crossed.seen[crossed.count++] =
+            test_objects(chunk, corners, planes, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
       }
       counts.tested += crossed.count * chunk.count;
       if (whole != 0) {

@@ -52,6 +52,7 @@ struct WorldState {
   ChunkMap::Locations locations;  ///< shared by all sectors' maps
   std::vector<WorldObject> objects;
   std::vector<ObjectId> free_ids;
+  std::vector<std::uint32_t> touched;  ///< sectors that an insert filled
   std::size_t size = 0;
   Culler culler;  ///< of the free function cull()
 

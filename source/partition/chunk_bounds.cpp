@@ -149,7 +149,8 @@ void ChunkMap::loosen(std::uint32_t node, const Box& gone) noexcept {
   }
 }
 
-void ChunkMap::tighten() noexcept {
+void ChunkMap::tighten() {
+  arrange();
   if (!any_loose_) return;
   any_loose_ = false;
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents

@@ -120,6 +120,7 @@ std::uint32_t ChunkMap::find_chunk(const Key& key, const Vec3& centre) const noe
 // --- memory ---
 
 std::uint32_t ChunkMap::take_lanes(std::uint32_t capacity) {
+  ++misplaced_;
   std::vector<std::uint32_t>& free = capacity == kCapacity ? free_large_ : free_small_;
   if (!free.empty()) {
     const std::uint32_t first = free.back();

@@ -152,6 +152,52 @@ TEST(ChunkMap, MovesTouchTheSameMemoryHoweverManyThereAre) {
   EXPECT_LT(map.blocks().size(), 600u);
 }
 
+// How many chunks do not begin where the one before them in their block ends.
+std::size_t strays(const ChunkMap& map) {
+  std::size_t count = 0;
+  for (const ChunkMap::Block& block : map.blocks()) {
+    for (std::uint32_t i = 1; i < block.count; ++i) {
+      const auto before = map.chunk(block, i - 1), here = map.chunk(block, i);
+      count += here.objects != before.objects + (before.min_y - before.min_x);
+    }
+  }
+  return count;
+}
+
+TEST(ChunkMap, PutsNeighboursSideBySideOnceMostChunksAreNew) {
+  ChunkMap map({kGround, 1});
+  Random random(6);
+  std::vector<Box> boxes;
+  const auto fill = [&](ObjectId limit) {
+    while (boxes.size() < limit) {
+      const auto id = static_cast<ObjectId>(boxes.size());
+      map.insert(id, boxes.emplace_back(random_box(random, 100, 1)));
+    }
+  };
+  fill(20000);
+  EXPECT_GT(strays(map), 100u);
+  map.tighten();
+  EXPECT_EQ(strays(map), 0u);
+  EXPECT_EQ(failure(map), "");
+  // A few new chunks are not worth it; many are, with the room that removals left behind.
+  fill(21000);
+  map.tighten();
+  const std::size_t few = strays(map);
+  EXPECT_GT(few, 0u);
+  for (ObjectId id = 0; id < 5000; ++id) map.remove(3 * id);
+  fill(50000);
+  EXPECT_GT(strays(map), few);
+  map.tighten();
+  EXPECT_EQ(strays(map), 0u);
+  EXPECT_EQ(failure(map), "");
+  for (ObjectId id = 0; id < 50000; ++id) {
+    if (id % 3 != 0 || id >= 15000) ASSERT_EQ(map.box(id), boxes[id]);
+  }
+  // Room is given and taken as before.
+  for (ObjectId id = 0; id < 5000; ++id) map.insert(3 * id, boxes[3 * id]);
+  EXPECT_EQ(failure(map), "");
+}
+
 TEST(ChunkMap, TellsWhichChunksChanged) {
   ChunkMap map({kGround, 3});
   Random random(9);

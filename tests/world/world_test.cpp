@@ -274,6 +274,42 @@ void expect_each_alone(const World& world, std::span<const WorldView> views,
   EXPECT_EQ(all.culled_occlusion, occluded);
 }
 
+// Ids and masks are written in steps that reach beyond what is counted: never beyond the buffers.
+TEST(World, FitsItsBuffersHoweverManyObjectsAChunkHolds) {
+  Camera camera{.eye = {0, 0, 10}, .forward = {0, 0, -1}};
+  camera.far_plane = 100;
+  const WorldView whole{*make_view(camera, 640, 480), {}};
+  camera.eye.x = 8.5f;  // its side crosses the objects
+  std::size_t seen = 0, unseen = 0;
+  const WorldView part{*make_view(camera, 640, 480), {}};
+  for (std::size_t count = 1; count <= 200; ++count) {
+    World world;
+    std::vector<WorldBox> boxes(count);
+    std::vector<Handle> handles(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = 0.01 * static_cast<double>(i) - 1;
+      boxes[i] = {{x, -1, -1}, {x, 1, 1}};
+    }
+    ASSERT_FALSE(world.insert(boxes, handles));
+    std::vector<ObjectId> one(cull_capacity(world));
+    ASSERT_EQ(cull(world, {&whole, 1}, {}, one).count, count);
+    const std::array views{whole, part};
+    std::vector<ObjectId> visible(cull_capacity(world));
+    std::vector<std::uint8_t> masks(visible.size());
+    const CullResult result = cull(world, views, {}, visible, masks);
+    ASSERT_EQ(result.count, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(visible[i], one[i]);
+      ASSERT_TRUE(masks[i] & 1);
+      ++(masks[i] & 2 ? seen : unseen);
+    }
+    std::sort(visible.begin(), visible.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(visible[i], i);
+  }
+  EXPECT_GT(seen, 100u);
+  EXPECT_GT(unseen, 100u);
+}
+
 TEST(World, CullsViewsThatAreTheSameForEachOfThem) {
   Random random(21);
   World world;
