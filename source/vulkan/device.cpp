@@ -145,6 +145,7 @@ Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_
   const vk::raii::PhysicalDevice& physical = choose(devices, options.choice);
   info_ = describe(physical);
   limits_ = physical.getProperties().limits;
+  if (options.widest_dispatch) limits_.maxComputeWorkGroupCount[0] = options.widest_dispatch;
   memory_ = physical.getMemoryProperties();
   if (physical.getProperties().apiVersion < VK_API_VERSION_1_3) {
     throw Error(fmt::format("device '{}': it has no Vulkan 1.3, which is expected", info_.name));

@@ -26,6 +26,7 @@ struct DeviceOptions {
   bool validation = false;            ///< loads VK_LAYER_KHRONOS_validation and counts its messages
   std::uint64_t memory_limit = 0;     ///< bytes that buffers and images may take; 0: what the device has
   std::vector<std::string> withheld;  ///< features to treat as absent, in Vulkan's names
+  std::uint32_t widest_dispatch = 0;  ///< workgroups that fit side by side; 0: as many as the device says
 };
 
 /// The devices, in the loader's order; empty where there is no Vulkan at all.
@@ -45,6 +46,8 @@ public:
   [[nodiscard]] const vk::raii::CommandPool& command_pool() const noexcept { return *command_pool_; }
   [[nodiscard]] const DeviceInfo& info() const noexcept { return info_; }
   [[nodiscard]] const vk::PhysicalDeviceLimits& limits() const noexcept { return limits_; }
+  /// Workgroups that fit side by side.
+  [[nodiscard]] std::uint32_t widest_dispatch() const noexcept { return limits_.maxComputeWorkGroupCount[0]; }
   [[nodiscard]] const Features& features() const noexcept { return *features_; }
   [[nodiscard]] bool has_timestamps() const noexcept { return timestamps_; }
   /// All pipelines share one layout: 128 bytes of push constants, and a set with one uniform buffer, the

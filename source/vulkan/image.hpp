@@ -24,8 +24,8 @@ public:
   [[nodiscard]] std::uint32_t width() const noexcept { return width_; }
   [[nodiscard]] std::uint32_t height() const noexcept { return height_; }
 
-  /// Records a copy of all pixels, row 0 first, into the buffer, where a row takes `row` pixels, or as many as it
-  /// has; barriers included.
+  /// Records a copy of all pixels, row 0 first, into the buffer, where a row takes `row` pixels, or as many
+  /// as it has; barriers included.
   void copy_to(const vk::raii::CommandBuffer& commands, const Buffer& buffer, std::uint32_t row = 0) const;
   /// All pixels, row 0 first; waits.
   [[nodiscard]] std::vector<std::uint32_t> read() const;

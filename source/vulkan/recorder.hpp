@@ -69,13 +69,24 @@ public:
     commands.pushConstants<T>(*device_.layout(), vk::ShaderStageFlagBits::eAll, 0, constants);
   }
 
-  /// Runs `rows` times at least `threads` invocations in groups of `group`, then makes their writes seen.
+  /// Workgroups that fit side by side.
+  [[nodiscard]] std::uint32_t widest_dispatch() const noexcept { return device_.widest_dispatch(); }
+
+  /// Runs at least `threads` invocations in groups of `group`, laid out as invocation.h reads them, then
+  /// makes their writes seen.
   template <class T>
   void dispatch(const ComputePipeline& pipeline, const T& constants, std::uint32_t threads,
-                std::uint32_t group = 256, std::uint32_t rows = 1) const {
+                std::uint32_t group = 256) const {
+    const std::uint32_t groups = (threads + group - 1) / group, widest = widest_dispatch();
+    run(pipeline, constants, std::min(groups, widest), (groups + widest - 1) / widest);
+  }
+  /// Runs `rows` of `groups` workgroups each.
+  template <class T>
+  void run(const ComputePipeline& pipeline, const T& constants, std::uint32_t groups,
+           std::uint32_t rows) const {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
     push(constants);
-    commands.dispatch((threads + group - 1) / group, rows, 1);
+    commands.dispatch(groups, rows, 1);
     full_barrier(commands);
   }
 

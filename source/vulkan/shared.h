@@ -26,7 +26,8 @@ struct ViewData {
   float pixels_per_metre;
   float metres_per_w;
   float coordinate_error;
-  uint reversed;  // 1: the near plane lies at depth 1
+  float near_push;  // metres by which plane 4 lies before the near plane, at least
+  uint reversed;    // 1: the near plane lies at depth 1
 };
 
 struct ObjectData {
@@ -62,7 +63,7 @@ struct CommandData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewData) == 64 + 96 + 32 + 24);
+static_assert(sizeof(ViewData) == 64 + 96 + 32 + 28);
 static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshData) == 16 &&
               sizeof(CommandData) == 20 && sizeof(CornerData) == 20);
 }  // namespace sightline::vulkan::shared

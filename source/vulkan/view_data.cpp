@@ -21,6 +21,9 @@ shared::ViewData view_data(const View& view, const Box& extent) noexcept {
     const Plane& plane = frustum.planes[i];
     out.planes[i] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.distance};
   }
+  // The same planes, but for the push that the scene's size asks for.
+  const Frustum tight = make_frustum(view, {});
+  out.near_push = 1.01f * (frustum.planes[Frustum::front].distance - tight.planes[Frustum::front].distance);
   const Projector projector = make_projector(view, extent);
   const Vec3 forward = view_direction(view);
   out.eye = {projector.eye.x, projector.eye.y, projector.eye.z, projector.orthographic ? 1.0f : 0.0f};

@@ -21,7 +21,7 @@ struct Push {
   std::array<vk::DeviceAddress, 2> lists, commands;
   std::array<VisibleDraws::Condition, 2> conditions;
   VisibleDraws::Condition transparent_condition;
-  std::uint32_t opaque, mesh_count, transparent, list_count;
+  std::uint32_t opaque, mesh_count, transparent, list_count, widest;
 };
 
 std::uint32_t block_count(const SceneBuffers& scene) {
@@ -30,6 +30,29 @@ std::uint32_t block_count(const SceneBuffers& scene) {
 
 std::uint64_t done_at(const SceneBuffers& scene) {
   return 2 * (2 * (std::uint64_t{scene.opaque} / 32 + 1) + block_count(scene));
+}
+
+Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& frame, vk::DeviceAddress flags,
+             const VisibleDraws::List& first, vk::DeviceAddress transparent_order,
+             const VisibleDraws::List* second) {
+  using List = VisibleDraws::List;
+  const auto list = [](const List* of) { return of ? of->out->list.address() : 0; };
+  const auto commands = [](const List* of) { return of ? of->out->commands.address() : 0; };
+  return {flags,
+          scene.slot_objects.address(),
+          scan.address(),
+          scene.mesh_data.address(),
+          scene.object_data.address(),
+          transparent_order,
+          {list(&first), list(second)},
+          {commands(&first), commands(second)},
+          {first.opaque, second ? second->opaque : VisibleDraws::Condition{}},
+          first.transparent,
+          scene.opaque,
+          scene.meshes,
+          transparent_order ? first.out->transparent_commands : 0,
+          second ? 2u : 1u,
+          frame.widest_dispatch()};
 }
 
 }  // namespace
@@ -67,31 +90,17 @@ Recorder::Groups VisibleDraws::listed() const noexcept {
 }
 
 void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
-                         vk::DeviceAddress transparent_order, const List* second,
-                         const Recorder::Groups* groups) const {
-  const auto list = [](const List* of) { return of ? of->out->list.address() : 0; };
-  const auto commands = [](const List* of) { return of ? of->out->commands.address() : 0; };
-  const Push push{flags,
-                  scene_.slot_objects.address(),
-                  scan_.address(),
-                  scene_.mesh_data.address(),
-                  scene_.object_data.address(),
-                  transparent_order,
-                  {list(&first), list(second)},
-                  {commands(&first), commands(second)},
-                  {first.opaque, second ? second->opaque : Condition{}},
-                  first.transparent,
-                  scene_.opaque,
-                  scene_.meshes,
-                  transparent_order ? first.out->transparent_commands : 0,
-                  second ? 2u : 1u};
-  if (groups) {
-    frame.dispatch(scan_blocks_, push, *groups);
-    frame.dispatch(scan_write_, push, *groups);
-  } else {
-    frame.dispatch(scan_blocks_, push, this->groups() * kLanes, kLanes);
-    frame.dispatch(scan_write_, push, this->groups() * kLanes, kLanes, push.list_count);
-  }
+                         vk::DeviceAddress transparent_order, const List* second) const {
+  const Push push = push_of(scene_, scan_, frame, flags, first, transparent_order, second);
+  frame.run(scan_blocks_, push, groups(), 1);
+  frame.run(scan_write_, push, groups(), push.list_count);
+}
+
+void VisibleDraws::build_where(const Recorder& frame, vk::DeviceAddress flags, const List& list,
+                               const Recorder::Groups& groups) const {
+  const Push push = push_of(scene_, scan_, frame, flags, list, 0, nullptr);
+  frame.dispatch(scan_blocks_, push, groups);
+  frame.dispatch(scan_write_, push, groups);
 }
 
 }  // namespace sightline::vulkan

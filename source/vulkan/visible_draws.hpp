@@ -28,15 +28,17 @@ public:
   };
   /// Lists the objects that meet a condition; into a second list, where there is one, opaque objects alone.
   /// `transparent_order` holds all transparent objects as they are to be drawn; 0 leaves the transparent
-  /// commands as they were. `groups`, two commands of groups(), has the device decide whether it is done.
+  /// commands as they were.
   void build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
-             vk::DeviceAddress transparent_order, const List* second = nullptr,
-             const Recorder::Groups* groups = nullptr) const;
+             vk::DeviceAddress transparent_order, const List* second = nullptr) const;
   void build(const Recorder& frame, vk::DeviceAddress flags, Condition condition,
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
     build(frame, flags, List{condition, condition, &out}, transparent_order);
   }
-  /// How many groups each step of build() takes for one list.
+  /// One list of opaque objects, built if the device finds groups() at `groups`, and not if it finds 0.
+  void build_where(const Recorder& frame, vk::DeviceAddress flags, const List& list,
+                   const Recorder::Groups& groups) const;
+  /// How many groups each step takes for one list.
   [[nodiscard]] std::uint32_t groups() const noexcept;
   /// Of the first list built last: groups of 64 over its opaque objects; then in a word how many they are.
   [[nodiscard]] Recorder::Groups listed() const noexcept;

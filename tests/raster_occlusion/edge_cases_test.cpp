@@ -22,6 +22,11 @@ std::uint32_t add_cube(Scene& scene) {
   return scene.add_mesh(corners, normals, indices);
 }
 
+std::uint32_t add_ball(Scene& scene) {
+  const scene::Shape ball = scene::sphere(2);
+  return scene.add_mesh(ball.positions, ball.normals, ball.indices);
+}
+
 Affine at(float x, float y, float z, float sx = 1, float sy = 1, float sz = 1) {
   Affine out;
   out.rows = {Vec4{sx, 0, 0, x}, Vec4{0, sy, 0, y}, Vec4{0, 0, sz, z}};
@@ -44,6 +49,27 @@ TEST_F(EdgeCases, CameraInsideABoxAndBoxesAcrossTheNearPlane) {
       camera.depth = depth;
       camera.forward = {std::sin(1.0f * step), 0.1f * step - 0.3f, -std::cos(1.0f * step)};
       examination.look(view_of(camera), "in step " + std::to_string(step));
+    }
+  }
+}
+
+TEST_F(EdgeCases, BoxesAtTheNearPlaneOfAWideWorld) {
+  // The wider the world, the farther the frustum's planes are pushed outwards, half a metre for ±1,000 km;
+  // what the true near plane cuts has no face left to test.
+  for (const float reach : {1e3f, 1e4f, 1e5f, 1e6f, 1e7f}) {
+    for (const float behind : {0.6f * 4.8e-7f * reach, 0.101f}) {  // the plane; the second holds the eye
+      Scene scene;
+      const std::uint32_t cube = add_cube(scene), ball = add_ball(scene);
+      scene.add_object(cube, at(0, 0, -1.1f + behind));
+      scene.add_object(cube, at(0, -50, 0, reach, 0.01f, reach));
+      scene.add_object(cube, at(0, 0, -30));
+      scene.add_object(ball, at(0, 0, -1.1f + behind));
+      scene.add_object(cube, at(0.01f, 0, -1.1f + behind, 0.05f, 0.05f, 0.05f));  // within the ball
+      std::vector<std::string> methods = kOcclusionMethods;
+      methods.emplace_back("masked");
+      Examination examination(device(), scene, methods);
+      const std::string where = "at the near plane of a world of " + std::to_string(reach) + " m";
+      for (int frame = 0; frame < 2; ++frame) examination.look(view_of({}, 160, 120), where);
     }
   }
 }
@@ -154,6 +180,25 @@ TEST_F(EdgeCases, FlatObjectsFarFromTheOriginAndANearPlaneCloseToTheEye) {
       examination.look(view_of(camera, 160, 120), "in step " + std::to_string(step));
     }
   }
+}
+
+TEST_F(EdgeCases, DispatchesWiderThanADeviceAllows) {
+  vulkan::DeviceOptions options;
+  options.validation = true;
+  options.widest_dispatch = 3;
+  vulkan::Device narrow(options);
+  Scene scene = or_throw(generate_world("irregular?detail=0"));
+  {
+    Examination examination(narrow, scene, kOcclusionMethods);
+    scene::Random random(6);
+    for (int frame = 0; frame < 4; ++frame) {
+      Camera camera = camera_at(scene, frame < 2 ? "near" : "far");
+      camera.eye.x += 0.5f * frame;
+      examination.look(view_of(camera, 161, 93), "in frame " + std::to_string(frame));
+      examination.move(0.05, random);
+    }
+  }
+  EXPECT_EQ(narrow.messages(), 0u) << narrow.first_message();
 }
 
 TEST_F(EdgeCases, AWindowOfOnePixelAndOneOf4096By4096) {

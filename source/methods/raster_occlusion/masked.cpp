@@ -196,7 +196,10 @@ private:
   void draw_occluders(const View& view, std::span<const ObjectId> candidates) {
     if (whole_) return buffer_.draw_mesh(*whole_, {});
     const Projector projector = make_projector(view, extent(scene_));
-    const Plane front = make_frustum(view, extent(scene_)).planes[Frustum::front];
+    // The frustum's planes are pushed outwards with the scene's size; here as far inwards, for what the true
+    // near plane cuts must not pass for whole.
+    Plane front = make_frustum(view, {}).planes[Frustum::front];
+    front.distance -= make_frustum(view, extent(scene_)).planes[Frustum::front].distance - front.distance;
     picked_.clear(), near_first_.clear(), drawn_balls_.clear();
     for (const ObjectId o : candidates) {
       if (scene_.surface[o] != Surface::opaque) continue;

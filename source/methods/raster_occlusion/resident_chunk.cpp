@@ -31,7 +31,7 @@ constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
   vk::DeviceAddress boxes, state, chunks_in, chunk_objects, depth, tiles, list, test;
-  std::uint32_t stamp;
+  std::uint32_t stamp, parts_in;
 };
 
 struct FacesPush {
@@ -131,8 +131,8 @@ private:
     const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
     frame.dispatch(objects_,
                    Push{boxes, state_.address(), chunks_in_.address(), resident_.address(), depth_.address(),
-                        farthest_.address(), list_.address(), test_.address(), stamp_},
-                   count, 1);
+                        farthest_.address(), list_.address(), test_.address(), stamp_, count},
+                   count * kPart, kPart);
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
     for (const std::uint32_t across_edge : {0, 1}) {

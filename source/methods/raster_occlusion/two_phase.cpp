@@ -34,7 +34,7 @@ constexpr VisibleDraws::Condition kNever{0, 1};
 
 struct NewTilesPush {
   vk::DeviceAddress boxes, late, follow_up, listed, tiles;
-  std::uint32_t objects, scan_groups, stamp;
+  std::uint32_t objects, scan_groups, stamp, widest;
 };
 
 struct TiedPush {
@@ -113,13 +113,14 @@ void TwoPhase::list_what_is_new(vulkan::Recorder& frame) {
                                  scan{follow_up_, kScanGroups};
   frame.dispatch(new_tiles_,
                  NewTilesPush{scene.box_data.address(), late_.list.address(), follow_up_.address(),
-                              fresh.address(), tiles_.address(), scene.objects, draws.groups(), stamp_},
+                              fresh.address(), tiles_.address(), scene.objects, draws.groups(), stamp_,
+                              renderer_.device().widest_dispatch()},
                  fresh);
   frame.dispatch(tied_,
                  TiedPush{scene.box_data.address(), scene.object_data.address(), state_.address(),
                           tiles_.address(), scene.objects, stamp_},
                  tied);
-  draws.build(frame, state_.address(), {among(stamp_, kTied, kTied), kNever, &again_}, 0, nullptr, &scan);
+  draws.build_where(frame, state_.address(), {among(stamp_, kTied, kTied), kNever, &again_}, scan);
 }
 
 void TwoPhase::read_back(Frame& frame) {

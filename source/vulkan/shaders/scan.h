@@ -20,6 +20,7 @@ layout(push_constant, scalar) uniform Push {
   CommandBuffer commands_of[2];
   uvec2 condition_of[2], transparent_condition;  // mask, value
   uint opaque, mesh_count, transparent, list_count;
+  uint widest;  // workgroups that fit side by side
 };
 
 // The slot after the last has its place in a word, too.

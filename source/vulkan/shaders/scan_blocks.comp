@@ -3,6 +3,7 @@
 
 #include "scan.h"
 layout(local_size_x = 64) in;
+#include "vulkan/shaders/invocation.h"
 
 // Which slots are listed, and how many before each word of them in its block; the block that ends last adds up
 // the blocks and writes the commands: one a mesh for the opaque objects, then one a transparent object. What costs
@@ -91,7 +92,8 @@ void main() {
   }
   if (lane == 0) {
     scan.at[done_at()] = 0;
-    const uint words[4] = uint[](total.x / 64 + uint(total.x % 64 != 0), 1, 1, total.x);
+    const uvec3 groups = in_rows(total.x / 64 + uint(total.x % 64 != 0), widest);
+    const uint words[4] = uint[](groups.x, groups.y, groups.z, total.x);
     for (uint i = 0; i < 4; ++i) scan.at[listed_at() + i] = words[i];
   }
   memoryBarrierBuffer();

@@ -35,11 +35,11 @@ bool outside(vec4 sphere) {
 }
 
 // Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
-// raster test would not see it.
+// raster test would not see it. The plane at hand has been pushed towards the eye, so as to drop nothing in view.
 bool reaches_near_plane(vec3 centre, vec3 half_extent) {
   const vec4 plane = view.planes[4];
   const float nearest = dot(plane.xyz, centre) + plane.w - dot(abs(plane.xyz), half_extent);
-  return nearest <= 4 * plane_slack(plane, centre, half_extent);
+  return nearest <= view.near_push + 4 * plane_slack(plane, centre, half_extent);
 }
 
 // The box grown by 1/32 pixel: more than the 1/256 pixel to which the rasteriser snaps vertices, of box and

@@ -3,6 +3,7 @@
 
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 layout(local_size_x = 64) in;
+#include "vulkan/shaders/invocation.h"
 
 // The farthest depth of each tile of 4 x 4 pixels. Rows are padded to whole tiles. Pixels are read in pairs: llvmpipe
 // reads memory lane by lane, at the same cost for a word as for two.
@@ -19,7 +20,7 @@ const uint kDepthTile = 4;
 
 void main() {
   const uint columns = (width + kDepthTile - 1) / kDepthTile, rows = (height + kDepthTile - 1) / kDepthTile;
-  const uint tile = gl_GlobalInvocationID.x;
+  const uint tile = invocation();
   if (tile >= columns * rows) return;
   const uvec2 first = kDepthTile * uvec2(tile % columns, tile / columns);
   float farthest = reversed != 0 ? 1 : 0;

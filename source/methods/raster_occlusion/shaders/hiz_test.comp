@@ -6,6 +6,7 @@
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 256) in;
+#include "vulkan/shaders/invocation.h"
 
 // Frustum and contribution; then the nearest depth of a box against the farthest depths over its rectangle
 // (Greene et al. 1993), in the level where the rectangle is at most three texels wide.
@@ -44,7 +45,7 @@ bool shows(vec3 centre, vec3 half_extent) {
 }
 
 void main() {
-  const uint object = gl_GlobalInvocationID.x;
+  const uint object = invocation();
   if (object >= objects) return;
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;

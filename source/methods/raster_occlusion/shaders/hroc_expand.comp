@@ -3,11 +3,12 @@
 
 #include "hroc.h"
 layout(local_size_x = 64) in;
+#include "vulkan/shaders/invocation.h"
 
 // The children of nodes that turned out visible are tested next.
 void main() {
   const uint count = test.vertex_count / kBoxVertices;
-  for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64) {
+  for (uint i = invocation(); i < count; i += gl_NumWorkGroups.x * gl_NumWorkGroups.y * 64) {
     const uint node = list.at[i];
     if (node >= interior || marks.at[node] == 0) continue;
     const NodeData data = nodes.at[node];

@@ -3,10 +3,11 @@
 
 #include "hroc.h"
 layout(local_size_x = 256) in;
+#include "vulkan/shaders/invocation.h"
 
 // Last frame's visible nodes are not tested anew; what hangs below them is.
 void main() {
-  const uint node = gl_GlobalInvocationID.x;
+  const uint node = invocation();
   if (node >= total) return;
   const uint parent = parents.at[node];
   const bool reached = parent == kNoParent || seen.at[parent] != 0;

@@ -6,6 +6,7 @@
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 64) in;
+#include "vulkan/shaders/invocation.h"
 
 // Notes the tiles that objects drawn late may touch, and has the work done that follows from there being any.
 // VkDispatchIndirectCommands: of this shader, by what was listed late; of what follows, zeros as yet.
@@ -18,15 +19,15 @@ layout(push_constant, scalar) uniform Push {
   FollowUpBuffer follow_up;
   ListedBuffer listed;
   WordBuffer tiles;
-  uint objects, scan_groups, frame;
+  uint objects, scan_groups, frame, widest;
 };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i >= listed.count) return;
   if (i == 0) {
     tiles.at[0] = frame;
-    follow_up.tied = uvec3((objects + 255) / 256, 1, 1);
+    follow_up.tied = in_rows((objects + 255) / 256, widest);
     follow_up.scan = uvec3(scan_groups, 1, 1);
   }
   const BoxData box = boxes.at[late.at[i]];

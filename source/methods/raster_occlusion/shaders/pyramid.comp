@@ -1,6 +1,7 @@
 #version 460
 #include "vulkan/shared.h"
 layout(local_size_x = 256) in;
+#include "vulkan/shaders/invocation.h"
 
 // One level of the depth pyramid: the farthest of up to four depths below.
 layout(buffer_reference, scalar) buffer FloatBuffer { float at[]; };
@@ -12,10 +13,11 @@ layout(push_constant, scalar) uniform Push {
 };
 
 void main() {
-  if (gl_GlobalInvocationID.x >= to_size.x * to_size.y) return;
-  const uvec2 at = uvec2(gl_GlobalInvocationID.x % to_size.x, gl_GlobalInvocationID.x / to_size.x);
+  const uint i = invocation();
+  if (i >= to_size.x * to_size.y) return;
+  const uvec2 at = uvec2(i % to_size.x, i / to_size.x);
   const uvec2 low = 2 * at, high = min(low + 1, from_size - 1);
   const float a = from.at[low.y * from_size.x + low.x], b = from.at[low.y * from_size.x + high.x];
   const float c = from.at[high.y * from_size.x + low.x], d = from.at[high.y * from_size.x + high.x];
-  to.at[gl_GlobalInvocationID.x] = reversed != 0 ? min(min(a, b), min(c, d)) : max(max(a, b), max(c, d));
+  to.at[i] = reversed != 0 ? min(min(a, b), min(c, d)) : max(max(a, b), max(c, d));
 }

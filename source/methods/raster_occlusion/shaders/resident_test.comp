@@ -6,6 +6,7 @@
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 32) in;
+#include "vulkan/shaders/invocation.h"
 
 // One group a part of a chunk that is in, one invocation an object: frustum and contribution; boxes at the near plane
 // are seen untested; then what spares a box the raster test: it is dropped if it lies behind the farthest
@@ -26,7 +27,7 @@ layout(push_constant, scalar) uniform Push {
   FloatBuffer tiles;
   WordBuffer list;
   DrawBuffer test;
-  uint frame;
+  uint frame, parts_in;
 };
 
 const uint kParts = 3, kWords = 97;
@@ -77,7 +78,8 @@ bool tiles_leave_open(Footprint print) {
 }
 
 void main() {
-  const uint entry = chunks_in.at[gl_WorkGroupID.x], part = entry & 0x7fffffff;
+  if (workgroup() >= parts_in) return;
+  const uint entry = chunks_in.at[workgroup()], part = entry & 0x7fffffff;
   const uint chunk = kWords * (part / kParts), i = 32 * (part % kParts) + gl_LocalInvocationID.x;
   if (i >= chunk_objects.at[chunk]) return;
   const uint object = chunk_objects.at[chunk + 1 + i];

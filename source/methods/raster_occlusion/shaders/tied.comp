@@ -6,6 +6,7 @@
 #include "boxes.h"
 #include "state.h"
 layout(local_size_x = 256) in;
+#include "vulkan/shaders/invocation.h"
 
 // Drawn objects in a tile where something was drawn late: where depths are equal, the order of drawing decides.
 layout(push_constant, scalar) uniform Push {
@@ -16,7 +17,7 @@ layout(push_constant, scalar) uniform Push {
 };
 
 void main() {
-  const uint object = gl_GlobalInvocationID.x;
+  const uint object = invocation();
   if (object >= objects) return;
   const uint bits = state_bits(frame, state.at[object]);
   if ((bits & (kDrawnEarly | kSeen)) == 0 || data.at[object].transparent != 0) return;

@@ -5,6 +5,7 @@
 
 #include "boxes.h"
 layout(local_size_x = 256) in;
+#include "vulkan/shaders/invocation.h"
 
 // Per object: bounding sphere against six planes, then contribution.
 layout(push_constant, scalar) uniform Push {
@@ -15,7 +16,7 @@ layout(push_constant, scalar) uniform Push {
 };
 
 void main() {
-  const uint object = gl_GlobalInvocationID.x;
+  const uint object = invocation();
   if (object >= objects) return;
   const BoxData box = boxes.at[object];
   uint kept = 1;
