@@ -78,7 +78,11 @@ refused "/proc/page" "$sightline" reproduce ray-pvs --report /proc/page
 refused "--device" "$sightline" compare "$world" --device ""
 refused "--size" "$sightline" compare "$world" --size 99999x1
 refused "--views" "$sightline" verify "$world" --views 0
-refused "less than nothing" "$sightline" verify "$world" --seed -1
+refused "whole number" "$sightline" verify "$world" --seed -1
+refused "whole number" "$sightline" verify "$world" --seed 18446744073709551616
+refused "nonexistent" "$sightline" verify "$world" --device any --pvs nonexistent
+refused "it is empty" "$sightline" reproduce vertex-chunk --device ""
+refused "nowhere/x.json" "$sightline" compare "$world" --json nowhere/x.json
 refused "'nonesuch': no such command" "$sightline" reproduce nonesuch
 refused "an entry is empty" "$sightline" compare "$world" --methods none,,vfc-vc
 refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch

@@ -117,13 +117,16 @@ void add_bake(CLI::App& app, int& exit) {
       "Bake the visible set of each cell of a grid; goes on where it was killed; mpirun shares it out");
   auto options = std::make_shared<Options>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
-  command.add_option("-o,--output", options->file, "the file to write")->required()->type_name("FILE.pvs");
+  command.add_option("-o,--output", options->file, "the file to write")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE.pvs");
   command.add_option("--cell", options->bake.cell, "metres along each side of a cell")->capture_default_str();
   command.add_option("--target", options->bake.target, "share of a view that a cell's set may lack")
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
   command.add_option("--seed", options->bake.seed, "of the viewpoints")
-      ->check(not_negative())
+      ->check(whole_number())
       ->capture_default_str();
   command.add_option("--rays", options->bake.rays, "from each viewpoint")
       ->check(CLI::Range(1, 1 << 20))
@@ -138,10 +141,11 @@ void add_bake(CLI::App& app, int& exit) {
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
   command.add_option("--check-seed", options->check_seed, "of those views")
-      ->check(not_negative())
+      ->check(whole_number())
       ->capture_default_str();
   command
       .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")
+      ->check(output_file())
       ->type_name("FILE.csv");
   on_run(command, exit, [options] { return run_bake(*options); });
 }

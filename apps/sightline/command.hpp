@@ -43,11 +43,13 @@ void attach_pvs(Scene& scene, const std::string& file);
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
-/// Option values: a share from 0 to 1; a number that is not negative; a folder for a page, made and tried
-/// before any work is done.
+/// Option values: a share from 0 to 1; a whole number of 64 bits; a folder for a page, made, and a file's
+/// folder, both tried before any work is done; a name that is not empty.
 CLI::Validator share();
-CLI::Validator not_negative();
+CLI::Validator whole_number();
 CLI::Validator page_folder();
+CLI::Validator output_file();
+CLI::Validator not_empty();
 
 /// "A,B,C", the value of an option, as a list; refuses empty entries. Parameters of a method may hold no
 /// comma.

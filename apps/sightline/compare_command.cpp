@@ -27,9 +27,17 @@ int run(const Options& options) {
   std::tie(measure.width, measure.height) = parse_size(options.size);
   if (options.device != "cpu") {
     if (!options.report.empty()) throw Error("--report: expected --device cpu");
-    return compare_on_device({options.scene, options.methods, options.path, options.device, options.json,
-                              measure.width, measure.height, options.frames, 0, options.moving,
-                              options.limit});
+    return compare_on_device({.scene = options.scene,
+                              .pvs = options.pvs,
+                              .methods = options.methods,
+                              .path = options.path,
+                              .device = options.device,
+                              .json = options.json,
+                              .width = measure.width,
+                              .height = measure.height,
+                              .views = options.frames,
+                              .moving = options.moving,
+                              .limit = options.limit});
   }
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
   if (options.limit) throw Error("--limit: expected a Vulkan device, by --device");
@@ -59,7 +67,7 @@ void add_compare(CLI::App& app, int& exit) {
       *app.add_subcommand("compare", "Run methods side by side along a camera path: the table");
   auto options = std::make_shared<Options>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
-  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked (CPU)")
+  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
       ->type_name("FILE");
   command
       .add_option("--methods", options->methods,
@@ -81,6 +89,7 @@ void add_compare(CLI::App& app, int& exit) {
   command.add_flag("--limit", options->limit,
                    "also draw just what the item buffer sees, which no culling of whole objects can beat");
   command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
+      ->check(output_file())
       ->type_name("FILE");
   command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
       ->check(page_folder())

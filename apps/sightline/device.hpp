@@ -14,7 +14,7 @@ inline constexpr const char* kDeviceHelp =
 
 /// What `compare` and `verify` are told, when it is to happen on a device.
 struct DeviceCall {
-  std::string scene, methods, path, device, json;
+  std::string scene, pvs, methods, path{}, device, json{};
   std::uint32_t width = 0, height = 0;
   std::size_t views = 0;
   std::uint64_t seed = 0;

@@ -8,6 +8,7 @@
 
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 
 #include <sightline/error.hpp>
 #include <sightline/io.hpp>
@@ -51,7 +52,8 @@ std::unique_ptr<vulkan::Device> open_device(const std::string& name) {
   keep_freed_memory();
   vulkan::DeviceOptions options;
   options.choice = name == "any" ? "" : name;
-  options.validation = std::getenv("SIGHTLINE_VALIDATION") != nullptr;
+  const char* const validation = std::getenv("SIGHTLINE_VALIDATION");
+  options.validation = validation && *validation && std::string_view(validation) != "0";
   return std::make_unique<vulkan::Device>(options);
 }
 
@@ -65,6 +67,7 @@ void expect_silence(const vulkan::Device& device) {
 int compare_on_device(const DeviceCall& call) {
   const auto device = open_device(call.device);
   Scene scene = load_scene(call.scene);
+  attach_pvs(scene, call.pvs);
   const std::string path_name = call.path.empty() ? std::string(lab::default_path(scene)) : call.path;
   const lab::CameraPath path = lab::make_path(scene, path_name, call.views);
   lab::Workbench bench(*device, scene, methods_or(call, methods::methods_on_device(scene)));
@@ -88,6 +91,7 @@ int compare_on_device(const DeviceCall& call) {
 int verify_on_device(const DeviceCall& call) {
   const auto device = open_device(call.device);
   Scene scene = load_scene(call.scene);
+  attach_pvs(scene, call.pvs);
   lab::Workbench bench(*device, scene, methods_or(call, methods_to_verify()));
   const std::vector<Camera> cameras = lab::random_cameras(scene, call.views, call.seed);
   const lab::DeviceVerification result =

@@ -32,7 +32,10 @@ void add_generate(CLI::App& app, int& exit) {
   auto world = std::make_shared<std::string>(), file = std::make_shared<std::string>();
   command.add_option("WORLD", *world, "the world, with parameters as a query: forest?trees=30000&seed=7")
       ->required();
-  command.add_option("-o,--output", *file, "the file to write")->required()->type_name("FILE.glb");
+  command.add_option("-o,--output", *file, "the file to write")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE.glb");
   on_run(command, exit, [world, file] {
     const std::string name = world->starts_with("world:") ? world->substr(6) : *world;
     const Scene scene = or_throw(generate_world(name));

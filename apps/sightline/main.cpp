@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -25,12 +26,13 @@ CLI::Validator share() {
   return {refuse, "0 to 1"};
 }
 
-CLI::Validator not_negative() {
-  // CLI11 lets a minus wrap round to the largest numbers.
+CLI::Validator whole_number() {
+  // CLI11 lets a minus wrap round to the largest numbers, and takes them for what is larger still.
   const auto refuse = [](const std::string& text) -> std::string {
-    return text.find('-') == std::string::npos
-               ? ""
-               : "'" + text + "' is less than nothing, expected a number from 0";
+    std::uint64_t value = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = read.ec == std::errc{} && read.ptr == text.data() + text.size();
+    return good ? "" : "'" + text + "': expected a whole number from 0 to 18446744073709551615";
   };
   return {refuse, ""};
 }
@@ -41,6 +43,23 @@ CLI::Validator page_folder() {
     std::filesystem::create_directories(folder, failed);
     if (!failed && access(folder.c_str(), W_OK | X_OK) == 0) return "";
     return "'" + folder + "' cannot be written, expected a folder or a place for one";
+  };
+  return {refuse, ""};
+}
+
+CLI::Validator output_file() {
+  const auto refuse = [](const std::string& file) -> std::string {
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    const bool open = access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0;
+    if (!file.empty() && open) return "";
+    return "'" + file + "' cannot be written, expected a file in a folder that is there and open to writing";
+  };
+  return {refuse, ""};
+}
+
+CLI::Validator not_empty() {
+  const auto refuse = [](const std::string& text) -> std::string {
+    return text.empty() ? "it is empty, expected a name" : "";
   };
   return {refuse, ""};
 }

@@ -52,7 +52,9 @@ void add_methods(CLI::App& app, int& exit) {
   CLI::App& command =
       *app.add_subcommand("methods", "List the methods: name, paper, guarantee, parameters, what they need");
   auto json = std::make_shared<std::string>();
-  command.add_option("--json", *json, "also write the list as JSON to FILE")->type_name("FILE");
+  command.add_option("--json", *json, "also write the list as JSON to FILE")
+      ->check(output_file())
+      ->type_name("FILE");
   on_run(command, exit, [json] {
     const std::vector<vulkan::DeviceInfo> devices = vulkan::list_devices();
     if (!json->empty()) {

@@ -131,6 +131,7 @@ void add_reproduce(CLI::App& app, int& exit) {
       ->check(page_folder())
       ->type_name("DIR");
   paper.add_option("--device", options->device, "where frames are drawn; cpu draws none (default: any)")
+      ->check(not_empty())
       ->type_name("cpu|NAME");
   on_run(paper, exit, [options] { return run_object_frustum(*options); });
 
@@ -142,6 +143,7 @@ void add_reproduce(CLI::App& app, int& exit) {
       ->type_name("DIR");
   chunks
       .add_option("--device", options->device, "a Vulkan device by index or part of its name (default: any)")
+      ->check(not_empty())
       ->type_name("NAME");
   on_run(chunks, exit, [options] { return run_vertex_chunk(*options); });
   add_ray_pvs(command, exit);
@@ -152,6 +154,7 @@ void add_reproduce(CLI::App& app, int& exit) {
       ->check(page_folder())
       ->type_name("DIR");
   calls.add_option("--device", options->device, "Vulkan device: its number or part of its name")
+      ->check(not_empty())
       ->type_name("NAME");
   on_run(calls, exit, [options] { return run_draw_calls(*options); });
 }

@@ -36,8 +36,15 @@ void print_level_evidence(const Scene& scene, std::uint64_t seed) {
 int run(const Options& options) {
   const auto [width, height] = parse_size(options.size);
   if (options.device != "cpu") {
-    return verify_on_device({options.scene, options.methods, "", options.device, "", width, height,
-                             options.views, options.seed, options.moving});
+    return verify_on_device({.scene = options.scene,
+                             .pvs = options.pvs,
+                             .methods = options.methods,
+                             .device = options.device,
+                             .width = width,
+                             .height = height,
+                             .views = options.views,
+                             .seed = options.seed,
+                             .moving = options.moving});
   }
   if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
   Scene scene = load_scene(options.scene);
@@ -74,7 +81,7 @@ void add_verify(CLI::App& app, int& exit) {
       "verify", "Prove methods against the item buffer on random views; exit 1 if a guarantee is broken");
   auto options = std::make_shared<Options>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
-  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked (CPU)")
+  command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
       ->type_name("FILE");
   command
       .add_option("--methods", options->methods,
@@ -85,7 +92,7 @@ void add_verify(CLI::App& app, int& exit) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command.add_option("--seed", options->seed, "of the random views")
-      ->check(not_negative())
+      ->check(whole_number())
       ->capture_default_str();
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")

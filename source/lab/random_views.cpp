@@ -1,9 +1,13 @@
 #include "lab/random_views.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <sightline/error.hpp>
 
 #include "lab/level_space.hpp"
 #include "scene/random.hpp"
@@ -104,13 +108,21 @@ std::vector<Camera> random_cameras(const Scene& scene, std::size_t count, std::u
   Random random(seed);
   std::vector<Camera> cameras;
   cameras.reserve(count);
-  while (cameras.size() < count) {
+  constexpr int kTries = 1000;
+  for (int tries = 0; cameras.size() < count;) {
+    if (++tries > kTries) {
+      throw Error(fmt::format("{}: no view of it can be computed in single precision, {:g} m across",
+                              scene.name, ground.diagonal));
+    }
     Camera camera;
     camera.eye = random_eye(ground, random);
     set_random_direction(camera, random);
     set_random_projection(camera, ground, random);
     // The few that chance made senseless, such as `up` along `forward`, are drawn again.
-    if (make_view(camera, 64, 64)) cameras.push_back(camera);
+    if (make_view(camera, 64, 64)) {
+      cameras.push_back(camera);
+      tries = 0;
+    }
   }
   return cameras;
 }
