@@ -136,7 +136,7 @@ void draw_convex(DepthTiles& tiles, const Convex& polygon) noexcept;
 void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
                       const std::array<float, 3>& high) noexcept;
 /// A triangle that crosses the near plane, about the eye.
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<Vec3, 3>& corners) noexcept;
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_balls(DepthTiles& tiles, std::span<const Sphere> balls) noexcept;
 /// Allocates until it has seen its largest mesh.

@@ -143,7 +143,6 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
 struct Triangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
   alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
-  alignas(64) std::array<std::array<float, 16>, 9> corners;  // of those to be cut
   std::array<std::uint32_t, 3> on_right, steep;  // a bit a triangle: the edge bounds it to the right
   std::uint32_t drawn = 0, cut = 0;
 };
@@ -164,6 +163,28 @@ HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const std::array
   return bits_of(hn::Or(hn::Or(left, right), hn::Or(above, below)));
 }
 
+HWY_INLINE V3 nearest_of(const std::array<V3, 3>& corners, VF first, VF second, VF nearest) {
+  const auto is_first = hn::Eq(first, nearest), is_second = hn::Eq(second, nearest);
+  const auto choose = [&](VF a, VF b, VF c)
+                          HWY_ATTR { return hn::IfThenElse(is_first, a, hn::IfThenElse(is_second, b, c)); };
+  return {choose(corners[0].x, corners[1].x, corners[2].x), choose(corners[0].y, corners[1].y, corners[2].y),
+          choose(corners[0].z, corners[1].z, corners[2].z)};
+}
+
+// Triangle 16·group + i of the mesh in double precision.
+std::array<std::array<double, 3>, 3> about_eye(const EyeProjection& e, const OccluderTopology& mesh,
+                                               const Affine& transform, std::size_t group, std::size_t i) {
+  std::array<std::array<double, 3>, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* from = &mesh.corners[(group * 9 + 3 * k) * OccluderTopology::kGroup + i];
+    const Vec3 at = transform_point(
+        transform, {from[0], from[OccluderTopology::kGroup], from[2 * OccluderTopology::kGroup]});
+    out[k] = {double{at.x} - e.eye_high.x - e.eye_low.x, double{at.y} - e.eye_high.y - e.eye_low.y,
+              double{at.z} - e.eye_high.z - e.eye_low.z};
+  }
+  return out;
+}
+
 // Triangles 16·group + lane … of the mesh; false where there is nothing to draw.
 HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
                        std::size_t group, std::size_t lane, Triangles& out) {
@@ -180,13 +201,6 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f);
   out.cut = bits_of(hn::Eq(facing, hn::Set(f, kCut)));
   if (out.cut != 0) out.cut &= ~beyond_a_side(tiles, corners);
-  if (out.cut != 0) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      hn::Store(corners[k].x, f, out.corners[3 * k].data());
-      hn::Store(corners[k].y, f, out.corners[3 * k + 1].data());
-      hn::Store(corners[k].z, f, out.corners[3 * k + 2].data());
-    }
-  }
   auto drawn = hn::Eq(hn::Abs(facing), one);
   out.drawn = 0;
   const VF *x = image.x, *y = image.y;
@@ -231,7 +245,9 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   const VF reach = hn::Max(hn::Max(most(p), most(q)), most(r));
   const PixelRays& rays = tiles.rays;
   const bool orthographic = e.orthographic;
-  const VF plane_at = dot(unit, p);
+  // From the nearest corner, where the normal's error counts the least.
+  const V3 anchor = nearest_of(corners, nearness(0), nearness(1), nearest);
+  const VF plane_at = dot(unit, anchor);
   const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
   // Seen too much edge on, the plane says nothing.
   const VF least =
@@ -240,7 +256,11 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   const VF across = hn::Div(dot(unit, rays.across), scale), down = hn::Div(dot(unit, rays.down), scale);
   const VF ray_at = dot(unit, rays.at);
   const VF start = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
-  hn::Store(moved_back(start, across, down, nearest), f, out.at.data());
+  // The normal is as uncertain as the corners are far and the triangle is thin.
+  const VF sides = hn::Add(most(minus(q, p)), most(minus(r, p)));
+  VF doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, 4.2e-7f), reach), sides), hn::Mul(length, hn::Abs(scale)));
+  if (orthographic) doubt = hn::Mul(doubt, hn::Add(sides, sides));
+  hn::Store(hn::Sub(moved_back(start, across, down, nearest), doubt), f, out.at.data());
   hn::Store(across, f, out.across.data());
   hn::Store(down, f, out.down.data());
   hn::Store(nearest, f, out.nearest.data());
@@ -249,6 +269,10 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
       hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
   const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
   const auto to_right = hn::Gt(facing, zero);
+  const auto from_middle = [&](VF at_x, VF at_y) HWY_ATTR {
+    return hn::Add(hn::Abs(hn::Sub(at_x, hn::Set(f, 0.5f * static_cast<float>(tiles.width)))),
+                   hn::Abs(hn::Sub(at_y, hn::Set(f, 0.5f * static_cast<float>(tiles.height)))));
+  };
   const OccluderTopology::Group& its = mesh.groups[group];
   know_facing(tiles, mesh, transform, group);
   for (std::uint32_t i = its.first_beside; i < its.end_beside; ++i)
@@ -262,8 +286,11 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
     const VF by_seam = hn::IfThenZeroElse(seam, inset);
     const auto falls = hn::Gt(y[next], y[k]);
     const auto on_right = hn::Not(hn::Xor(falls, to_right));
-    // From the vertex of lower number, so that both sides of a seam compute the same bits.
-    const auto turned = pixels_at(its.turned[k], lane);
+    // From the vertex nearer the image's middle, where rounding is least; of two as near, from that of lower
+    // number: both sides of a seam compute the same bits.
+    const VF here = from_middle(x[k], y[k]), there = from_middle(x[next], y[next]);
+    const auto turned =
+        hn::Or(hn::Lt(there, here), hn::And(hn::Eq(there, here), pixels_at(its.turned[k], lane)));
     const VF ax = hn::IfThenElse(turned, x[next], x[k]), ay = hn::IfThenElse(turned, y[next], y[k]),
              bx = hn::IfThenElse(turned, x[k], x[next]), by = hn::IfThenElse(turned, y[k], y[next]);
     const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
@@ -282,10 +309,11 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
     bottom =
         hn::IfThenElse(hn::AndNot(above, bounds), hn::Min(bottom, hn::Sub(hn::Min(ay, by), inset)), bottom);
   }
-  hn::Store(left, f, out.left.data());
-  hn::Store(right, f, out.right.data());
-  hn::Store(top, f, out.top.data());
-  hn::Store(bottom, f, out.bottom.data());
+  // Where only seams bound a corner of the outline, rounding may carry them beyond it.
+  hn::Store(hn::Add(left, inset), f, out.left.data());
+  hn::Store(hn::Sub(right, inset), f, out.right.data());
+  hn::Store(hn::Add(top, inset), f, out.top.data());
+  hn::Store(hn::Sub(bottom, inset), f, out.bottom.data());
   out.drawn = bits_of(drawn);
   return (out.drawn | out.cut) != 0;
 }
@@ -369,10 +397,8 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
     }
     for (std::uint32_t rest = ready.cut; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      std::array<Vec3, 3> points;
-      for (std::size_t k = 0; k < 3; ++k)
-        points[k] = {ready.corners[3 * k][i], ready.corners[3 * k + 1][i], ready.corners[3 * k + 2][i]};
-      draw_clipped_triangle(tiles, points);
+      draw_clipped_triangle(
+          tiles, about_eye(tiles.projection, mesh, transform, group, lane + static_cast<std::size_t>(i)));
     }
   }
 }

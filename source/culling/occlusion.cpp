@@ -84,22 +84,25 @@ PixelRays pixel_rays(const View& view, const Rows& rows) {
   return out;
 }
 
-// A polygon of points about the eye.
+// A polygon of points about the eye; in double precision, for what the near plane cuts may reach far behind
+// the eye, and its plane must still be right before it.
 struct Polygon {
   static constexpr std::size_t kMost = 12;
-  std::array<glm::vec3, kMost> points;
+  std::array<glm::dvec3, kMost> points;
   std::size_t count = 0;
 };
+
+double dot(const Vec4& row, const glm::dvec3& q) {
+  return row.x * q.x + row.y * q.y + row.z * q.z + row.w;
+}
 
 // Sutherland & Hodgman 1974, one plane.
 Polygon clip(const Polygon& polygon, const Vec4& plane) {
   Polygon out;
-  const auto side = [&](const glm::vec3& p) {
-    return plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w;
-  };
+  const auto side = [&](const glm::dvec3& p) { return dot(plane, p); };
   for (std::size_t i = 0; i < polygon.count; ++i) {
-    const glm::vec3 &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
-    const float at = side(a), next = side(b);
+    const glm::dvec3 &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
+    const double at = side(a), next = side(b);
     if (at >= 0 && out.count < Polygon::kMost) out.points[out.count++] = a;
     if ((at >= 0) != (next >= 0) && out.count < Polygon::kMost)
       out.points[out.count++] = a + (b - a) * (at / (at - next));
@@ -107,26 +110,22 @@ Polygon clip(const Polygon& polygon, const Vec4& plane) {
   return out;
 }
 
-float dot(const Vec4& row, const glm::vec3& q) {
-  return ((row.x * q.x + row.y * q.y) + row.z * q.z) + row.w;
-}
-
 // The plane's nearness through normal · q = at; false where it is seen too much edge on.
-bool set_plane(Convex& out, const DepthTiles& tiles, const glm::vec3& normal, float at, float reach) {
+bool set_plane(Convex& out, const DepthTiles& tiles, const glm::dvec3& normal, double at, double reach) {
   const PixelRays& rays = tiles.rays;
   const auto along = [&](const std::array<float, 3>& v) {
     return normal.x * v[0] + normal.y * v[1] + normal.z * v[2];
   };
-  const float scale = tiles.projection.orthographic ? along(rays.forward) : at;
-  if (!(std::fabs(scale) > (tiles.projection.orthographic ? 1e-4f : 1e-5f * reach + 1e-6f))) return false;
-  out.across = along(rays.across) / scale;
-  out.down = along(rays.down) / scale;
-  out.at = (tiles.projection.orthographic ? along(rays.at) - at : along(rays.at)) / scale;
+  const double scale = tiles.projection.orthographic ? along(rays.forward) : at;
+  if (!(std::fabs(scale) > (tiles.projection.orthographic ? 1e-4 : 1e-5 * reach + 1e-6))) return false;
+  out.across = static_cast<float>(along(rays.across) / scale);
+  out.down = static_cast<float>(along(rays.down) / scale);
+  out.at = static_cast<float>((tiles.projection.orthographic ? along(rays.at) - at : along(rays.at)) / scale);
   return true;
 }
 
 // Draws a planar convex polygon, clipped to the near plane and to somewhat more than the image.
-void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::vec3& normal, float at) {
+void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::dvec3& normal, double at) {
   const EyeProjection& e = tiles.projection;
   const auto w = static_cast<float>(tiles.width), h = static_cast<float>(tiles.height);
   const auto beyond = [&](const Vec4& row, float scale, float shift) {
@@ -141,13 +140,14 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::vec3& normal, f
   if (polygon.count > Convex::kMaxEdges) return;
   std::array<float, Polygon::kMost> x, y;
   Convex out;
-  float nearest = -kInfinity, reach = 0, area = 0;
+  float nearest = -kInfinity, area = 0;
+  double reach = 0;
   out.left = out.top = kInfinity, out.right = out.bottom = -kInfinity;
   for (std::size_t i = 0; i < polygon.count; ++i) {
-    const glm::vec3& q = polygon.points[i];
-    const float over_w = 1 / dot(e.w, q);
-    x[i] = dot(e.x, q) * over_w, y[i] = dot(e.y, q) * over_w;
-    nearest = std::max(nearest, e.orthographic ? dot(e.nearness, q) : over_w);
+    const glm::dvec3& q = polygon.points[i];
+    const double over_w = 1 / dot(e.w, q);
+    x[i] = static_cast<float>(dot(e.x, q) * over_w), y[i] = static_cast<float>(dot(e.y, q) * over_w);
+    nearest = std::max(nearest, static_cast<float>(e.orthographic ? dot(e.nearness, q) : over_w));
     reach = std::max({reach, std::fabs(q.x), std::fabs(q.y), std::fabs(q.z)});
     out.left = std::min(out.left, x[i]), out.right = std::max(out.right, x[i]);
     out.top = std::min(out.top, y[i]), out.bottom = std::max(out.bottom, y[i]);
@@ -194,22 +194,22 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
       Polygon face;
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       for (const auto& [s, t] : {std::pair{false, false}, {true, false}, {true, true}, {false, true}}) {
-        glm::vec3& p = face.points[face.count++];
+        glm::dvec3& p = face.points[face.count++];
         p[a] = at, p[b] = s ? high[b] : low[b], p[c] = t ? high[c] : low[c];
       }
-      glm::vec3 normal(0);
+      glm::dvec3 normal(0);
       normal[a] = 1;
       draw_polygon(tiles, face, normal, at);
     }
   }
 }
 
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<Vec3, 3>& corners) noexcept {
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners) noexcept {
   Polygon polygon;
-  for (const Vec3& c : corners) polygon.points[polygon.count++] = {c.x, c.y, c.z};
-  const glm::vec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
-  const glm::vec3 normal = glm::cross(q - p, r - p);
-  const float length = glm::length(normal);
+  for (const auto& c : corners) polygon.points[polygon.count++] = {c[0], c[1], c[2]};
+  const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
+  const glm::dvec3 normal = glm::cross(q - p, r - p);
+  const double length = glm::length(normal);
   if (length > 0) draw_polygon(tiles, polygon, normal / length, glm::dot(normal / length, p));
 }
 

@@ -102,6 +102,50 @@ TEST(OcclusionCases, TheEyeCloseToAnOccluderAndInsideOne) {
   EXPECT_GT(c.kept, 50u);    // inside
 }
 
+bool seen_beside_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                      const Box& object) {
+  OcclusionBuffer buffer;
+  EXPECT_FALSE(buffer.begin({*make_view(Camera{.near_plane = 0.1f, .far_plane = 2000}, 1280, 720), {}}));
+  buffer.draw_mesh(OccluderMesh(positions, indices), {});
+  return buffer.may_see(object);
+}
+
+TEST(OcclusionCases, BeforeALongThinTriangleThatTheNearPlaneCuts) {
+  // Its corners lie far behind the eye and before it, so its plane near the eye hangs on their last digits.
+  // The boxes are 0.1 % and 1 % nearer than it.
+  const std::array<std::uint32_t, 3> indices{0, 1, 2};
+  const std::array<Vec3, 3> a{Vec3{40.706974f, 33.5703278f, 39.6204681f},
+                              Vec3{-20.9666214f, -16.9682941f, -20.7303028f},
+                              Vec3{0.80761534f, 1.07009804f, 0.256068408f}};
+  EXPECT_TRUE(seen_beside_mesh(
+      a, indices,
+      {{-0.210826546f, 0.0517381877f, -0.438929707f}, {-0.210825667f, 0.0517390668f, -0.438925326f}}));
+  const std::array<Vec3, 3> b{Vec3{206.847321f, 120.47831f, -189.304291f},
+                              Vec3{-64.3020096f, -37.5403748f, 58.7040443f},
+                              Vec3{-6.78999615f, -7.17136192f, 3.97707176f}};
+  EXPECT_TRUE(seen_beside_mesh(
+      b, indices,
+      {{0.337599933f, -0.0370386653f, -0.530917764f}, {0.337601006f, -0.0370376036f, -0.530912459f}}));
+}
+
+TEST(OcclusionCases, BesideTheTipOfAFanWhoseFarCornersLieBeyondTheImage) {
+  // The middle triangle meets the outline at the tip alone, where two seams bound it; the boxes lie 0.035 and
+  // 0.002 pixels outside.
+  const std::array<std::uint32_t, 15> indices{0, 1, 1, 2, 3, 3, 0, 1, 4, 1, 2, 4, 2, 3, 4};
+  const std::array<Vec3, 5> wide{
+      Vec3{90.9346161f, 83.6410446f, -0.186803475f}, Vec3{276.89505f, 214.796402f, -0.177292496f},
+      Vec3{326.836761f, 91.5983505f, -0.465546787f}, Vec3{244.41394f, 28.4981594f, -0.1936941f},
+      Vec3{-2.83456755f, 0.0742960274f, -13.5402069f}};
+  EXPECT_TRUE(seen_beside_mesh(
+      wide, indices, {{-6.2826848f, 0.164393857f, -30.0100002f}, {-6.27468491f, 0.172393844f, -30.0f}}));
+  const std::array<Vec3, 5> small{
+      Vec3{4.95818281f, 14.6525803f, -0.380099952f}, Vec3{4.6761179f, 13.5314951f, -0.195456579f},
+      Vec3{7.37944603f, 8.93720436f, -0.131871328f}, Vec3{4.59598446f, 5.3677268f, -0.243035123f},
+      Vec3{-3.38174748f, 1.09854162f, -7.65373993f}};
+  EXPECT_TRUE(seen_beside_mesh(
+      small, indices, {{-13.2590017f, 4.30207109f, -30.0100002f}, {-13.2510014f, 4.31007147f, -30.0f}}));
+}
+
 TEST(OcclusionCases, ASlowObjectLeavingCover) {
   Case c;
   const std::array occluders{Box{{-2, -2, -1}, {2, 2, 0}}};
