@@ -32,6 +32,19 @@ std::span<const WorldBox> boxes_of(const BoxArray& array) {
   return {reinterpret_cast<const WorldBox*>(array.data()), static_cast<std::size_t>(array.shape(0))};
 }
 
+// Of occluders; World says the same of its own boxes.
+void refuse_invalid(std::span<const WorldBox> boxes) {
+  const auto in_reach = [](double low, double high) {  // false for NaN, too
+    return low >= -kWorldReach && high <= kWorldReach && low <= high;
+  };
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const WorldBox& b = boxes[i];
+    if (in_reach(b.min.x, b.max.x) && in_reach(b.min.y, b.max.y) && in_reach(b.min.z, b.max.z)) continue;
+    throw py::value_error("occlusion: box " + std::to_string(i) + " of " + std::to_string(boxes.size()) +
+                          " is not valid, expected min <= max within 1e11 m of 0");
+  }
+}
+
 std::span<const Handle> handles_of(const HandleArray& array) {
   if (array.ndim() != 2 || array.shape(1) != 2) {
     throw py::value_error("handles: expected a uint32 array of shape (n, 2), as insert() returns");
@@ -126,9 +139,11 @@ PYBIND11_MODULE(sightline, m) {
           "draw_boxes",
           [](OcclusionBuffer& buffer, const BoxArray& boxes) {
             if (buffer.width() == 0) throw py::value_error("occlusion: draw before begin");
-            buffer.draw_boxes(boxes_of(boxes));
+            const auto given = boxes_of(boxes);
+            refuse_invalid(given);
+            buffer.draw_boxes(given);
           },
-          "Solid boxes (n, 2, 3).", py::arg("boxes"));
+          "Solid boxes (n, 2, 3); nothing is drawn where one of them is not valid.", py::arg("boxes"));
 
   py::class_<Culler>(m, "Culler", "Remembers from frame to frame what helps the next.")
       .def(py::init<>())

@@ -3,7 +3,8 @@
  *
  * Objects are opaque; the caller owns what it creates and destroys it. A function that can fail returns a
  * status; sightline_last_error() says why, in one sentence, for the last failure on the calling thread. A
- * failed call changes nothing. A world may be read by many threads at once (each culling with a culler of its
+ * failed call changes nothing. Running out of memory is no status: it ends the process, as in C++ programs
+ * built without exceptions. A world may be read by many threads at once (each culling with a culler of its
  * own), and changed by one while no other uses it. NULL where a pointer is needed is SIGHTLINE_BAD_ARGUMENT;
  * every destroy function takes NULL.
  *

@@ -11,6 +11,7 @@
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 
+#include "culling/sector_test.hpp"
 #include "culling/world_cull.hpp"
 #include "culling/world_state.hpp"
 #include "geometry/linear.hpp"
@@ -28,12 +29,13 @@ struct Job {
 };
 
 struct CullerState {
-  std::vector<const ChunkMap*> maps;
-  std::vector<SectorView> views;
+  std::vector<const ChunkMap*> maps;  // of the sectors that some view may see
+  std::vector<SectorView> views;      // of these
   std::vector<BlockEntry> entries;
   std::array<Job, kMaxJobs> jobs;
   /// The plane that failed last, one a view and region: the next frame tries it first.
-  std::vector<std::vector<std::uint8_t>> failed;  // by sector
+  std::vector<std::vector<std::uint8_t>> failed;  // by the world's sector
+  std::array<SectorTest, kMaxViews> tests;
 
   PassInput input;
   ObjectId* out = nullptr;
@@ -102,8 +104,9 @@ using ViewPlanes = std::array<PlaneSet, kMaxViews>;
 // The region tree of one sector, depth first.
 class RegionWalk {
 public:
-  RegionWalk(CullerState& state, std::uint32_t sector, std::size_t views) noexcept
-      : state_(state), sector_(sector), views_(views), map_(*state.maps[sector]) {}
+  /// `sector` counts the sectors that some view may see, `failed` is the sector's.
+  RegionWalk(CullerState& state, std::uint32_t sector, std::size_t views, std::uint8_t* failed) noexcept
+      : state_(state), sector_(sector), views_(views), failed_(failed), map_(*state.maps[sector]) {}
 
   std::uint64_t run() noexcept {
     ViewPlanes all{};
@@ -129,7 +132,7 @@ private:
   void visit(std::uint32_t index, ViewPlanes planes) noexcept {
     const ChunkMap::Node& node = map_.nodes()[index];
     ++visited_;
-    std::uint8_t* failed = &state_.failed[sector_][index * kMaxViews];
+    std::uint8_t* failed = failed_ + index * kMaxViews;
     if (node.objects == 0 || !narrow(node.bounds, planes, failed)) return;
     visited_ += node.blocks.size();
     find_blocks(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
@@ -141,6 +144,7 @@ private:
   CullerState& state_;
   std::uint32_t sector_;
   std::size_t views_;
+  std::uint8_t* failed_;
   const ChunkMap& map_;
   std::uint64_t visited_ = 0;
 };
@@ -236,21 +240,35 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   culling::CullerState& state = *state_;
   const auto& sectors = world.state().sectors;
   state.maps.clear(), state.views.clear(), state.entries.clear();
-  if (state.failed.size() < sectors.size()) state.failed.resize(sectors.size());
   const culling::DifferentViews different = culling::different_views(views, options);
+  const auto of_different = std::span(different.first).first(different.count);
+  for (std::size_t d = 0; d < different.count; ++d)
+    state.tests[d] = culling::SectorTest(views[different.first[d]]);
+  // Room for all sectors, so that a camera that turns allocates nothing.
+  state.maps.reserve(sectors.size());
+  state.views.reserve(sectors.size() * different.count);
+  for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
+    state.failed.emplace_back();
+    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
+  }
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    state.maps.push_back(sectors[s].map.get());
-    if (!sectors[s].map) {
-      state.views.resize(state.views.size() + different.count);
+    if (!sectors[s].map) continue;
+    bool missed = true;
+    for (std::size_t d = 0; d < different.count && missed; ++d)
+      missed = state.tests[d].misses(sectors[s].origin, sectors[s].bounds);
+    if (missed) {
+      ++result.nodes_visited;  // its root: that is what the walk would have looked at
       continue;
     }
-    const partition::ChunkMap& map = *sectors[s].map;
-    for (const std::uint8_t v : std::span(different.first).first(different.count)) {
+    const auto kept = static_cast<std::uint32_t>(state.maps.size());
+    state.maps.push_back(sectors[s].map.get());
+    for (const std::uint8_t v : of_different) {
       const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
       state.views.push_back(culling::sector_view(views[v], sectors[s], options, occlusion));
     }
-    state.failed[s].resize(map.nodes().size() * kMaxViews, 0);
-    if (map.size() > 0) result.nodes_visited += culling::RegionWalk(state, s, different.count).run();
+    std::vector<std::uint8_t>& failed = state.failed[s];
+    failed.resize(state.maps[kept]->nodes().size() * kMaxViews, 0);
+    result.nodes_visited += culling::RegionWalk(state, kept, different.count, failed.data()).run();
   }
 
   state.input = {state.maps, state.views, different.count, different.bits};

@@ -56,22 +56,36 @@ std::uint32_t WorldState::sector_at(const SectorCell& cell) {
   }
   sectors[added] = {{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
                      static_cast<double>(cell.z) * kSectorSide},
-                    std::make_unique<ChunkMap>(kSectorMap, &locations)};
+                    std::make_unique<ChunkMap>(kSectorMap, &locations),
+                    {},
+                    false};
   sector_of_cell.emplace(cell, added);
   return added;
 }
 
+void WorldState::touch(std::uint32_t sector) {
+  if (sectors[sector].touched) return;
+  sectors[sector].touched = true;
+  touched.push_back(sector);
+}
+
 void WorldState::tidy() {
-  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
+  // Which sector is freed first says which is used again first: in order, whatever order they were touched
+  // in.
+  std::sort(touched.begin(), touched.end());
+  for (const std::uint32_t s : touched) {
     Sector& sector = sectors[s];
-    if (!sector.map) continue;
+    sector.touched = false;
     sector.map->tighten();
+    sector.bounds = sector.map->nodes()[0].bounds;
     if (sector.map->size() > 0) continue;
     const WorldPoint& o = sector.origin;
     sector_of_cell.erase(sector_cell({o, o}));
     sector.map.reset();
     free_sectors.push_back(s);
   }
+  tidied += touched.size();
+  touched.clear();
 }
 
 }  // namespace culling
@@ -143,14 +157,13 @@ Check World::insert(std::span<const WorldBox> boxes, std::span<Handle> handles) 
     const culling::SectorCell cell = culling::sector_cell(boxes[i]);
     if (sector == ChunkMap::kNone || !(cell == last_cell)) {
       sector = s.sector_at(cell), last_cell = cell;
-      s.touched.push_back(sector);
+      s.touch(sector);
     }
     s.sectors[sector].map->insert(id, culling::relative_box(boxes[i], s.sectors[sector].origin));
     s.objects[id].sector = sector;
     handles[i] = {id, s.objects[id].generation};
   }
-  for (const std::uint32_t touched : s.touched) s.sectors[touched].map->tighten();
-  s.touched.clear();
+  s.tidy();
   s.size += boxes.size();
   return {};
 }
@@ -168,10 +181,12 @@ Check World::move(std::span<const Handle> handles, std::span<const WorldBox> box
     const bool stays = static_cast<double>(cell.x) * culling::kSectorSide == origin.x &&
                        static_cast<double>(cell.y) * culling::kSectorSide == origin.y &&
                        static_cast<double>(cell.z) * culling::kSectorSide == origin.z;
+    s.touch(from);
     if (stays) {
       s.sectors[from].map->move(id, culling::relative_box(boxes[i], origin));
     } else {
       const std::uint32_t to = s.sector_at(cell);
+      s.touch(to);
       s.sectors[from].map->remove(id);
       s.sectors[to].map->insert(id, culling::relative_box(boxes[i], s.sectors[to].origin));
       s.objects[id].sector = to;
@@ -195,6 +210,7 @@ Check World::remove(std::span<const Handle> handles) {
   }
   for (const Handle& handle : handles) {
     culling::WorldObject& object = s.objects[handle.index];
+    s.touch(object.sector);
     s.sectors[object.sector].map->remove(handle.index);
     object.sector = ChunkMap::kNone;
     s.free_ids.push_back(handle.index);

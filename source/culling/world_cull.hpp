@@ -33,7 +33,7 @@ struct SectorView {
 
 /// A block that some view may see.
 struct BlockEntry {
-  std::uint32_t sector = 0, block = 0;
+  std::uint32_t sector = 0, block = 0;  ///< the sector as PassInput counts them
   std::array<PlaneSet, kMaxViews> planes{};
 };
 
@@ -42,7 +42,7 @@ struct PassCounts {
   std::uint64_t tested = 0, chunks = 0, occluded = 0;
 };
 
-/// The maps and the views of a cull; views lie sector by sector.
+/// The maps and the views of a cull, of the sectors that some view may see; views lie sector by sector.
 struct PassInput {
   std::span<const partition::ChunkMap* const> maps;  ///< one a sector
   std::span<const SectorView> views;                 ///< sectors × view_count

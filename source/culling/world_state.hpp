@@ -37,6 +37,8 @@ struct SectorCellHash {
 struct Sector {
   WorldPoint origin;
   std::unique_ptr<ChunkMap> map;  ///< relative to the origin; null: the sector is free
+  Box bounds;                     ///< the map's, kept here so that a cull need not fetch it from there
+  bool touched = false;           ///< stands in WorldState::touched
 };
 
 /// In WorldState::objects, one an id.
@@ -52,12 +54,15 @@ struct WorldState {
   ChunkMap::Locations locations;  ///< shared by all sectors' maps
   std::vector<WorldObject> objects;
   std::vector<ObjectId> free_ids;
-  std::vector<std::uint32_t> touched;  ///< sectors that an insert filled
+  std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
+  std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
   Culler culler;  ///< of the free function cull()
 
   std::uint32_t sector_at(const SectorCell& cell);
-  /// Shrinks bounds that moves and removals left too large, and frees the sectors that they left empty.
+  /// To be called of every sector whose map changes.
+  void touch(std::uint32_t sector);
+  /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty.
   void tidy();
 };
 

@@ -34,6 +34,9 @@ occlusion = sightline.Occlusion()
 occlusion.begin(ahead)
 occlusion.draw_boxes(boxes[:1])
 assert list(culler.cull(world, [ahead], occlusion=[occlusion])) == [handles[0, 0]]
+for bad in (np.nan, np.inf, -np.inf):
+    assert "box 1 of 2" in refused(occlusion.draw_boxes, np.stack([boxes[0], np.full((2, 3), bad)]))
+assert "box 0 of 1" in refused(occlusion.draw_boxes, boxes[:1, ::-1])
 
 boxes += (1e7, 0, 0)
 world.move(handles, boxes)

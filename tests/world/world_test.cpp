@@ -8,6 +8,7 @@
 #include <map>
 #include <thread>
 
+#include "culling/sector_test.hpp"
 #include "culling/world_state.hpp"
 #include "geometry/linear.hpp"
 #include "scene/random.hpp"
@@ -176,6 +177,122 @@ TEST(World, KeepsNoSectorThatNothingStandsIn) {
   const WorldView back{*make_view(Camera{.eye = {0.5f, 0.5f, 10}}, 64, 64), {}};
   EXPECT_EQ(culler.cull(world, {&back, 1}, {}, visible).count, 1u);
   EXPECT_EQ(world.box(handles[1]), home[1]);
+}
+
+// A move or a removal looks at the sectors that it touches, however many there are.
+TEST(World, TidiesOnlyTheSectorsItTouches) {
+  World world;
+  std::vector<WorldBox> boxes;
+  for (int i = 0; i < 1000; ++i)
+    boxes.push_back(wide({{0, 0, 0}, {1, 1, 1}}, {culling::kSectorSide * i, 0, 0}));
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_FALSE(world.insert(boxes, handles));
+  const culling::WorldState& state = world.state();
+  ASSERT_EQ(state.sectors.size(), 1000u);
+  const auto tidied_by = [&](auto&& change) {
+    const std::uint64_t before = state.tidied;
+    EXPECT_FALSE(change());
+    EXPECT_TRUE(state.touched.empty());
+    for (const culling::Sector& sector : state.sectors) {
+      EXPECT_FALSE(sector.touched);
+      if (sector.map) EXPECT_EQ(sector.bounds, sector.map->nodes()[0].bounds);
+    }
+    return state.tidied - before;
+  };
+  // Within its sector; to the next one, 7 leaving theirs empty; and several at once, each sector but once.
+  const WorldBox aside = wide({{5, 0, 0}, {6, 1, 1}});
+  EXPECT_EQ(tidied_by([&] { return world.move({&handles[0], 1}, {&aside, 1}); }), 1u);
+  EXPECT_EQ(
+      tidied_by([&] { return world.move(std::span(handles).first(7), std::span(boxes).subspan(1, 7)); }), 8u);
+  EXPECT_EQ(state.sector_of_cell.size(), 999u);
+  const std::array both{handles[6], handles[7]};
+  EXPECT_EQ(tidied_by([&] { return world.remove(both); }), 1u);
+  EXPECT_EQ(state.sector_of_cell.size(), 998u);
+  std::array<Handle, 2> again;
+  EXPECT_EQ(tidied_by([&] { return world.insert(std::span(boxes).first(2), again); }), 2u);
+  EXPECT_EQ(state.sectors.size(), 1000u);
+}
+
+// The sector's bounds against the frustum that its view has.
+bool frustum_misses(const WorldView& view, const culling::Sector& sector) {
+  using namespace geometry;
+  glm::dmat4 moved(1.0);
+  moved[3] = {sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
+              sector.origin.z - view.origin.z, 1.0};
+  const glm::dmat4 clip = to_double(view.view.eye_to_clip) * (to_double(view.view.world_to_eye) * moved);
+  const Frustum frustum = frustum_of(clip, view_direction(view.view), sector.bounds);
+  return classify(frustum, sector.bounds) == Overlap::outside;
+}
+
+// What is said of a sector's bounds before its view is made must be what its view would say.
+TEST(World, LeavesOutFarSectorsThatTheirOwnFrustumsMiss) {
+  using namespace geometry;
+  for (const double shift : {0.0, 1e7, 9e10}) {
+    const WorldPoint origin{shift, 0, -shift};
+    Random random(11);
+    World world;
+    Culler culler;
+    std::map<ObjectId, WorldBox> twin;
+    const Box around{{-60000, -4000, -60000}, {60000, 4000, 60000}};
+    std::vector<WorldBox> boxes;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 at = random.inside(around);
+      const float half = std::exp(random.between(-5, 6));
+      boxes.push_back(
+          wide({{at.x - half, at.y - half, at.z - half}, {at.x + half, at.y + half, at.z + half}}, origin));
+    }
+    std::vector<Handle> handles(boxes.size());
+    ASSERT_FALSE(world.insert(boxes, handles));
+    for (std::size_t i = 0; i < boxes.size(); ++i) twin[handles[i].index] = boxes[i];
+    std::uint64_t outside = 0, missed = 0, kept = 0, orthographic = 0, infinite = 0, reversed = 0;
+    for (int step = 0; step < 300; ++step) {
+      const Camera camera = test::random_camera(random, around);
+      const Result<View> made = make_view(camera, 1280, 720);
+      if (!made) continue;
+      WorldView view{*made, origin};
+      if (step % 8 == 0) view.origin.x -= 1e6, view.origin.z += 1e6;
+      orthographic += camera.orthographic_height > 0, infinite += std::isinf(camera.far_plane);
+      reversed += camera.depth == Depth::reversed;
+      for (const culling::Sector& sector : world.state().sectors) {
+        const bool its_own = frustum_misses(view, sector);
+        outside += its_own;
+        if (!culling::SectorTest(view).misses(sector.origin, sector.bounds)) continue;
+        ++missed;
+        ASSERT_TRUE(its_own) << "step " << step;
+      }
+      // Planes brought within millimetres of a sector's bounds.
+      const auto& sectors = world.state().sectors;
+      const glm::dmat4 clip = to_double(made->eye_to_clip) * to_double(made->world_to_eye);
+      const glm::dmat4 rows = glm::transpose(clip), back = glm::inverse(clip);
+      for (const auto& [plane, middle] :
+           {std::pair{rows[3] + rows[0], glm::dvec4(-1, 0, 0.5, 1)},
+            std::pair{rows[3] - rows[1], glm::dvec4(0, 1, 0.5, 1)},
+            std::pair{camera.depth == Depth::reversed ? rows[3] - rows[2] : rows[2],
+                      glm::dvec4(0, 0, camera.depth == Depth::reversed ? 1 : 0, 1)}}) {
+        const culling::Sector& sector = sectors[random.below(static_cast<std::uint32_t>(sectors.size()))];
+        const glm::dvec3 n = glm::normalize(glm::dvec3(plane));
+        const glm::dvec4 on_plane = back * middle;
+        const Box& b = sector.bounds;
+        const glm::dvec3 corner(n.x >= 0 ? b.max.x : b.min.x, n.y >= 0 ? b.max.y : b.min.y,
+                                n.z >= 0 ? b.max.z : b.min.z);
+        const glm::dvec3 at = glm::dvec3(sector.origin.x, sector.origin.y, sector.origin.z) + corner -
+                              glm::dvec3(on_plane) / on_plane.w + n * double{random.between(0, 0.004f)};
+        const WorldView touching{*made, {at.x, at.y, at.z}};
+        if (frustum_misses(touching, sector)) continue;
+        ++kept;
+        ASSERT_FALSE(culling::SectorTest(touching).misses(sector.origin, sector.bounds)) << "step " << step;
+      }
+      if (step % 20 != 0) continue;
+      expect_right(world, culler, twin, {&view, 1}, 0.5);
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(kept, 30u);
+    EXPECT_GT(orthographic, 9u);
+    EXPECT_GT(infinite, 9u);
+    EXPECT_GT(reversed, 9u);
+    EXPECT_GT(outside, 100000u);
+    EXPECT_GT(missed, outside - outside / 1000) << "of " << outside;
+  }
 }
 
 TEST(World, FindsStaleHandlesOut) {
