@@ -169,7 +169,7 @@ VertexChunkWorld reproduce_vertex_chunk(vulkan::Device& device, const std::strin
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
   measure.measure.warm_up = 2;
-  measure.measure.repeats = options.quick ? 1 : 3;
+  measure.measure.repeats = 1;
   world.rising = compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
   measure.measure.repeats = options.quick ? 7 : 5;
   world.far = compare_on_device(bench, {"far", {vertex_chunk_far(scene)}}, measure);
