@@ -28,8 +28,8 @@ scripts/check-package.sh build/release
 echo "== sanitizers"
 cmake --preset asan >/dev/null
 cmake --build --preset asan
-# These two are large rather than tricky: minutes under the sanitizers, and their small siblings run the same code.
-ctest --preset asan -j"$(nproc)" -E 'AMillionObjects|VerifyWorld.*forest'
+# These are large rather than tricky: minutes under the sanitizers, and their small siblings run the same code.
+ctest --preset asan -j"$(nproc)" -E 'AMillionObjects|(VerifyWorld|Conformance).*forest'
 
 echo "== threads"
 cmake --preset tsan >/dev/null
