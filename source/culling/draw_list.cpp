@@ -1,8 +1,8 @@
 #include "culling/draw_list.hpp"
 
-#include <array>
 #include <utility>
 
+#include "culling/radix_sort.hpp"
 #include "culling/view_depth.hpp"
 
 namespace sightline::culling {
@@ -26,19 +26,6 @@ DrawList::DrawList(const Scene& scene) : instances_(scene.meshes.size(), 0) {
   touched_.reserve(scene.meshes.size());
 }
 
-// Radix sort of the keys' high halves, least significant byte first; std::sort would take four times as long.
-void DrawList::sort(std::vector<std::uint64_t>& keys) noexcept {
-  scratch_.resize(keys.size());
-  for (int shift = 32; shift < 64; shift += 8) {
-    std::array<std::uint32_t, 256> start{};
-    for (const std::uint64_t key : keys) ++start[key >> shift & 255];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& bucket : start) sum += std::exchange(bucket, sum);
-    for (const std::uint64_t key : keys) scratch_[start[key >> shift & 255]++] = key;
-    keys.swap(scratch_);
-  }
-}
-
 void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcept {
   const Vec3 eye = eye_position(view), forward = view_direction(view);
   opaque_.clear(), transparent_.clear();
@@ -48,8 +35,8 @@ void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcep
     (blended ? transparent_ : opaque_)
         .push_back(std::uint64_t{blended ? ~near_first : near_first} << 32 | id);
   }
-  sort(opaque_);
-  sort(transparent_);
+  sort_by_high_bits(opaque_, scratch_, 32);
+  sort_by_high_bits(transparent_, scratch_, 32);
 
   // Opaque: meshes in the order of their nearest object, their objects near to far.
   touched_.clear();

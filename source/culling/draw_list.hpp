@@ -19,8 +19,6 @@ public:
   void build(const Scene& scene, const View& view, Frame& frame) noexcept;
 
 private:
-  void sort(std::vector<std::uint64_t>& keys) noexcept;
-
   // depth in the high half, id in the low: equal depths still have one order
   std::vector<std::uint64_t> opaque_, transparent_, scratch_;
   std::vector<std::uint32_t> instances_;  // by mesh, all 0 between builds

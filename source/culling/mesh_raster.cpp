@@ -4,32 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 #include "culling/depth_tiles.hpp"
+#include "culling/radix_sort.hpp"
 #include "culling/view_depth.hpp"
-
-#ifndef SIGHTLINE_CULLING_MESH_RASTER_ONCE
-#define SIGHTLINE_CULLING_MESH_RASTER_ONCE
-namespace sightline::culling {
-namespace {
-
-// By the upper half of the keys' high words, near enough for an order that only saves time.
-void sort_roughly(std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& other) {
-  other.resize(keys.size());
-  for (int shift = 48; shift < 64; shift += 8) {
-    std::array<std::uint32_t, 256> start{};
-    for (const std::uint64_t key : keys) ++start[key >> shift & 255];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& bucket : start) sum += std::exchange(bucket, sum);
-    for (const std::uint64_t key : keys) other[start[key >> shift & 255]++] = key;
-    keys.swap(other);
-  }
-}
-
-}  // namespace
-}  // namespace sightline::culling
-#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "culling/mesh_raster.cpp"
@@ -368,7 +346,8 @@ void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
       s.group.push_back(static_cast<std::uint32_t>(first + i));
     }
   }
-  sort_roughly(s.near_first, s.other);
+  // By the upper half of the depths, near enough for an order that only saves time.
+  sort_by_high_bits(s.near_first, s.other, 48);
 }
 
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,

@@ -277,35 +277,54 @@ std::array<Vec3, 3> triangle_of(Random& random) {
   return out;
 }
 
+// A view, twelve boxes drawn as occluders, and which triangles a pixel centre sees beside them.
+struct BoxesBeforeTriangles {
+  View view;
+  OcclusionBuffer buffer;
+  std::vector<double> exact, front;  // front: but for what lies within an occluder
+
+  BoxesBeforeTriangles(Random& random, float size) : view(small_view(random)) {
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, size));
+    EXPECT_FALSE(buffer.begin({view, {}}));
+    buffer.draw_boxes(occluders);
+    const ExactRays rays(view);
+    exact = exact_depths(rays, view, occluders);
+    front = exact_depths(rays, view, occluders, true);
+  }
+
+  struct Seen {
+    bool seen = false, without_insides = false;
+  };
+  Seen look(const std::array<Vec3, 3>& triangle) const {
+    const ExactRays rays(view);
+    Seen out;
+    for (std::uint32_t p = 0; p < exact.size() && !out.seen; ++p) {
+      const double at = rays.hit(p % view.width + 0.5, p / view.width + 0.5, triangle);
+      out.seen = at > exact[p];
+      out.without_insides = out.without_insides || at > front[p];
+    }
+    return out;
+  }
+};
+
 TEST(Occlusion, NeverHidesATriangleThatAPixelCentreSees) {
   Random random(15);
   std::size_t hidden = 0, could_be = 0, seen_by_box = 0;
   for (int round = 0; round < 250; ++round) {
-    const View view = small_view(random);
-    std::vector<Box> occluders;
-    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 8));
-    OcclusionBuffer buffer;
-    ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_boxes(occluders);
-    const ExactRays rays(view);
-    const std::vector<double> exact = exact_depths(rays, view, occluders);
-    const std::vector<double> front = exact_depths(rays, view, occluders, true);
+    BoxesBeforeTriangles trial(random, 8);
+    const OcclusionBuffer& buffer = trial.buffer;
     std::vector<Vec3> all;
     bool any_seen = false;
     for (int i = 0; i < 21; ++i) {
       const std::array<Vec3, 3> triangle = triangle_of(random);
       all.insert(all.end(), triangle.begin(), triangle.end());
-      bool seen = false, seen_without_insides = false;
-      for (std::uint32_t p = 0; p < exact.size() && !seen; ++p) {
-        const double at = rays.hit(p % view.width + 0.5, p / view.width + 0.5, triangle);
-        seen = at > exact[p];
-        seen_without_insides = seen_without_insides || at > front[p];
-      }
+      const auto [seen, without_insides] = trial.look(triangle);
       const bool may_see = buffer.may_see(std::span<const Vec3>(triangle));
       if (seen) ASSERT_TRUE(may_see) << "round " << round << " triangle " << i;
       any_seen = any_seen || may_see;
       hidden += !may_see;
-      could_be += !seen_without_insides;
+      could_be += !without_insides;
       Box box{triangle[0], triangle[0]};
       for (const Vec3& c : triangle) {
         box.min = {std::min(box.min.x, c.x), std::min(box.min.y, c.y), std::min(box.min.z, c.z)};
@@ -325,17 +344,9 @@ TEST(Occlusion, LooksCloselyAtTrianglesThatBeginBehindTheEye) {
   Random random(17);
   std::size_t hidden = 0, seen_count = 0, could_be = 0;
   for (int round = 0; round < 250; ++round) {
-    const View view = small_view(random);
-    const Vec3 eye = eye_position(view);
-    std::vector<Box> occluders;
-    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 12));
-    OcclusionBuffer buffer;
-    ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_boxes(occluders);
-    const ExactRays rays(view);
-    const std::vector<double> exact = exact_depths(rays, view, occluders);
-    const std::vector<double> front = exact_depths(rays, view, occluders, true);
-    const Vec3 forward = view_direction(view);
+    BoxesBeforeTriangles trial(random, 12);
+    const OcclusionBuffer& buffer = trial.buffer;
+    const Vec3 eye = eye_position(trial.view), forward = view_direction(trial.view);
     for (int i = 0; i < 21; ++i) {
       std::array<Vec3, 3> triangle;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -346,16 +357,11 @@ TEST(Occlusion, LooksCloselyAtTrianglesThatBeginBehindTheEye) {
         const float by = turn * (random.below(3) == 0 ? 200.0f : 20.0f);
         triangle[k] = {eye.x + d.x * by, eye.y + d.y * by, eye.z + d.z * by};
       }
-      bool seen = false, seen_without_insides = false;
-      for (std::uint32_t p = 0; p < exact.size() && !seen; ++p) {
-        const double at = rays.hit(p % view.width + 0.5, p / view.width + 0.5, triangle);
-        seen = at > exact[p];
-        seen_without_insides = seen_without_insides || at > front[p];
-      }
+      const auto [seen, without_insides] = trial.look(triangle);
       const bool may_see = buffer.may_see(std::span<const Vec3>(triangle));
       if (seen) ASSERT_TRUE(may_see) << "round " << round << " triangle " << i;
       hidden += !may_see, seen_count += seen;
-      could_be += !seen_without_insides;
+      could_be += !without_insides;
     }
   }
   EXPECT_GT(seen_count, 500u);

@@ -1,5 +1,5 @@
-// The number of this invocation, and of its workgroup, in a dispatch that may be laid out in several rows: a device may
-// allow no more than 65,535 workgroups side by side. Included after the group's size.
+// The number of this invocation, and of its workgroup, in a dispatch that may be laid out in several rows: a
+// device may allow no more than 65,535 workgroups side by side. Included after the group's size.
 uint workgroup() {
   return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
 }

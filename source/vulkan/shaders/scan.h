@@ -9,9 +9,9 @@ layout(buffer_reference, scalar) coherent buffer SharedWords {
 
 layout(push_constant, scalar) uniform Push {
   WordBuffer flags, slot_objects;
-  // A list: two a word of 32 slots, which of them are listed and how many before it in its block; one a block,
-  // how many before it. After both: groups done, 0 between dispatches; a VkDispatchIndirectCommand over the
-  // first list, and how long it is.
+  // A list: two a word of 32 slots, which of them are listed and how many before it in its block; one a
+  // block, how many before it. After both: groups done, 0 between dispatches; a VkDispatchIndirectCommand
+  // over the first list, and how long it is.
   SharedWords scan;
   MeshBuffer meshes;
   ObjectBuffer objects;

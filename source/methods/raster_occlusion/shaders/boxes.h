@@ -35,7 +35,8 @@ bool outside(vec4 sphere) {
 }
 
 // Whether the box reaches the near plane, or the eye is inside: its faces before the plane are clipped, so a
-// raster test would not see it. The plane at hand has been pushed towards the eye, so as to drop nothing in view.
+// raster test would not see it. The plane at hand has been pushed towards the eye, so as to drop nothing in
+// view.
 bool reaches_near_plane(vec3 centre, vec3 half_extent) {
   const vec4 plane = view.planes[4];
   const float nearest = dot(plane.xyz, centre) + plane.w - dot(abs(plane.xyz), half_extent);
