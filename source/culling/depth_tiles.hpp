@@ -155,6 +155,8 @@ struct TriangleBlock {
   /// Up to 16 of the triangles from `first` on, three corners each.
   void take(std::span<const Vec3> triangles, std::size_t first) noexcept;
 };
+/// Of blocks that are soon asked for the first, if there is one.
+void prefetch(std::span<const TriangleBlock> blocks) noexcept;
 /// The same of the first `count` triangles of whole blocks.
 bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
                      std::size_t count) noexcept;

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "culling/mesh_raster.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "culling/depth_raster-inl.hpp"
@@ -382,6 +383,13 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   }
 }
 
+HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) {
+  constexpr std::size_t kGroup = OccluderTopology::kGroup;
+  hwy::Prefetch(&mesh.groups[group]);
+  for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.corners[(group * 9 + i) * kGroup]);
+  for (std::size_t i = 0; i < 3; ++i) hwy::Prefetch(&mesh.neighbour[(group * 3 + i) * kGroup]);
+}
+
 void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = tiles.mesh;
@@ -398,6 +406,9 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affin
         tiles, tiles.projection,
         {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
         visible.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
+    }
     for (std::size_t i = 0; i < count; ++i) {
       if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)]);
     }
