@@ -232,6 +232,7 @@ void OccluderTopology::lay_out() {
         out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
         low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p));
         if (first + i >= end) continue;
+        group.first_half |= std::uint32_t{first_half[first + i]} << i;
         group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
         const std::uint32_t other = neighbours[first + i][k];
         neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
@@ -439,6 +440,7 @@ OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std:
     t.neighbours[sides.triangle[0]][sides.edge[0]] = sides.triangle[1];
     t.neighbours[sides.triangle[1]][sides.edge[1]] = sides.triangle[0];
   }
+  culling::pair_up(t);
   t.lay_out();
 }
 
