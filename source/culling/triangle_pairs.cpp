@@ -37,7 +37,7 @@ double diagonal(const OccluderTopology& mesh, std::uint32_t triangle, std::uint3
     return glm::dot(glm::cross(from, to), normal) >
            kLeastTurn * glm::length(from) * glm::length(to) * glm::length(normal);
   };
-  const bool convex = turns(a - c, d - a) && turns(b - d, c - b);
+  const bool convex = turns(a - c, d - a) && turns(d - a, b - d) && turns(b - d, c - b);
   return flat && convex ? glm::length(b - a) : 0;
 }
 
