@@ -134,6 +134,8 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::dvec3& normal, 
   };
   for (const Vec4& plane : {tiles.rays.near_plane, beyond(e.x, 1, w), beyond(e.x, -1, 2 * w),
                             beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
+    const auto outside = [&](const glm::dvec3& p) { return !(dot(plane, p) >= 0); };
+    if (std::none_of(polygon.points.begin(), polygon.points.begin() + polygon.count, outside)) continue;
     polygon = clip(polygon, plane);
     if (polygon.count < 3) return;
   }
