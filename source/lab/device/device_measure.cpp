@@ -9,7 +9,7 @@ namespace sightline::lab {
 
 namespace {
 
-struct Samples {
+struct Times {
   std::vector<double> cpu, gpu, frame;
 };
 
@@ -66,7 +66,7 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
   Frame frame;
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], measure.width, measure.height));
-    std::vector<Samples> samples(contestants.size());
+    std::vector<Times> samples(contestants.size());
     if (told) {
       told->visible.clear();
       const ItemBuffer seen = bench.judge(view);
