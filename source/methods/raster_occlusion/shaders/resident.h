@@ -1,5 +1,5 @@
-// What the steps of resident-chunk's test share: objects in view ask for the depth tiles that their boxes touch, the
-// blocks of tiles that were asked for are made, and the boxes are held against them.
+// What the steps of resident-chunk's test share: objects in view ask for the depth tiles that their boxes
+// touch, the blocks of tiles that were asked for are made, and the boxes are held against them.
 const uint kParts = 3, kWords = 97;  // parts of a chunk that a workgroup takes; words of a chunk
 const uint kFaceVertices = 18;
 const uint kGroup = 32;     // lanes, an object each
@@ -16,7 +16,9 @@ struct Question {
 const uint kInside = 1;     // lies wholly in the picture
 const uint kHasPoints = 2;  // is large enough for its points to tell something
 const uint kHasTiles = 4;   // asked for its tiles
-layout(buffer_reference, scalar) buffer QuestionBuffer { Question at[]; };
+layout(buffer_reference, scalar) buffer QuestionBuffer {
+  Question at[];
+};
 
 struct Draw {
   uint vertex_count, instance_count, first_vertex, first_instance;  // VkDrawIndirectCommand
@@ -30,7 +32,9 @@ layout(buffer_reference, scalar) buffer TestBuffer {
   Asked asked[2];
 };
 const uint kQuestions = 0, kBlocks = 1;  // of `asked`
-layout(buffer_reference, scalar) buffer FloatBuffer { float at[]; };
+layout(buffer_reference, scalar) buffer FloatBuffer {
+  float at[];
+};
 
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
@@ -38,9 +42,9 @@ layout(push_constant, scalar) uniform Push {
   WordBuffer chunks_in;      // three times the chunk's number and the part's, bit 31: wholly in the frustum
   WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
   QuestionBuffer questions;
-  WordBuffer blocks;         // whether each was asked for; then those that were, as x | y << 16
+  WordBuffer blocks;  // whether each was asked for; then those that were, as x | y << 16
   FloatBuffer tiles;
-  WordBuffer list;           // boxes for the raster test
+  WordBuffer list;  // boxes for the raster test
   TestBuffer test;
   uint frame, parts_in, widest;  // widest: workgroups that fit side by side
 };
