@@ -30,14 +30,20 @@ function(sightline_module folder)
   add_library(sightline_${folder} OBJECT ${ARGN})
   sightline_target(sightline_${folder})
   target_compile_options(sightline_${folder} PRIVATE -fno-exceptions -fno-rtti)
+  # Highway includes a source again for each vector target: it has to stand alone.
+  set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(sightline_${folder} PRIVATE sightline_core_dependencies)
   set_property(GLOBAL APPEND PROPERTY sightline_core_modules sightline_${folder})
 endfunction()
 
 # sightline_precompile(TARGET HEADERS...): parses what most sources of the target include once. Only headers of others:
-# one's own are included where they are used.
+# one's own are included where they are used. sightline_precompile(TARGET LIKE OTHER): the same headers, parsed once for both.
 function(sightline_precompile name)
-  target_precompile_headers(${name} PRIVATE ${ARGN})
+  if(ARGV1 STREQUAL LIKE)
+    target_precompile_headers(${name} REUSE_FROM ${ARGV2})
+  else()
+    target_precompile_headers(${name} PRIVATE ${ARGN})
+  endif()
   # For ccache: the same header gives the same bytes.
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
 endfunction()

@@ -18,7 +18,7 @@ namespace sightline::app {
 
 namespace {
 
-struct Options {
+struct BakeOptions {
   std::string scene, file, cells;
   bake::CellOptions bake;
   int threads = 0;
@@ -26,7 +26,7 @@ struct Options {
   std::uint64_t check_seed = 1;
 };
 
-void print_level(const Scene& scene, const CellPvs& cells, const Options& options) {
+void print_level(const Scene& scene, const CellPvs& cells, const BakeOptions& options) {
   const std::vector<lab::CellComparison> rows = lab::compare_with_level(scene, cells);
   fmt::print("\nCell by cell against the level's own PVS, {} cells\n\n{}", rows.size(),
              lab::render(lab::comparison_table(rows)));
@@ -37,7 +37,7 @@ void print_level(const Scene& scene, const CellPvs& cells, const Options& option
   }
 }
 
-int run_bake(const Options& options) {
+int run_bake(const BakeOptions& options) {
   const bake::Ranks ranks = bake::Ranks::join();
   const Scene scene = load_scene(options.scene);
   // Ranks share the machine out: a thread each, unless told otherwise.
@@ -115,7 +115,7 @@ void add_bake(CLI::App& app, int& exit) {
   CLI::App& command = *app.add_subcommand(
       "bake",
       "Bake the visible set of each cell of a grid; goes on where it was killed; mpirun shares it out");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BakeOptions>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("-o,--output", options->file, "the file to write")
       ->required()

@@ -15,14 +15,14 @@ namespace sightline::app {
 
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string scene, methods, path, size = "1280x720", device = "cpu", pvs, json, report;
   std::size_t frames = 24;
   double moving = 0;
   bool limit = false;
 };
 
-int run(const Options& options) {
+int run_compare(const CompareOptions& options) {
   lab::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   if (options.device != "cpu") {
@@ -65,7 +65,7 @@ int run(const Options& options) {
 void add_compare(CLI::App& app, int& exit) {
   CLI::App& command =
       *app.add_subcommand("compare", "Run methods side by side along a camera path: the table");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
       ->type_name("FILE");
@@ -94,7 +94,7 @@ void add_compare(CLI::App& app, int& exit) {
   command.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
       ->check(page_folder())
       ->type_name("DIR");
-  on_run(command, exit, [options] { return run(*options); });
+  on_run(command, exit, [options] { return run_compare(*options); });
 }
 
 }  // namespace sightline::app

@@ -15,7 +15,7 @@ namespace sightline::app {
 
 namespace {
 
-struct Options {
+struct ReproduceOptions {
   bool quick = false;
   std::string report, device;
 };
@@ -39,7 +39,7 @@ void print_drawn_object_frustum(const std::string& name, bool quick) {
              lab::kPublishedObjectFrustum.fps / lab::kPublishedGridCell.fps);
 }
 
-int run_object_frustum(const Options& options) {
+int run_object_frustum(const ReproduceOptions& options) {
   const Scene scene = lab::object_frustum_scene();
   const lab::EmbreeJudge judge(scene);
   const std::vector<lab::Contestant> contestants = lab::object_frustum_contestants(scene);
@@ -60,7 +60,7 @@ int run_object_frustum(const Options& options) {
   return Exit::done;
 }
 
-int run_vertex_chunk(const Options& options) {
+int run_vertex_chunk(const ReproduceOptions& options) {
   const auto device = open_device(options.device.empty() ? "any" : options.device);
   std::vector<lab::VertexChunkWorld> worlds;
   for (const char* name : {"regular", "irregular"}) {
@@ -94,7 +94,7 @@ void add_ray_pvs(CLI::App& command, int& exit) {
   on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 
-int run_draw_calls(const Options& options) {
+int run_draw_calls(const ReproduceOptions& options) {
   const auto opened = open_device(options.device.empty() ? "any" : options.device);
   vulkan::Device& device = *opened;
   const lab::DrawCallOptions how{.quick = options.quick};
@@ -125,7 +125,7 @@ void add_reproduce(CLI::App& app, int& exit) {
   command.require_subcommand(1);
   CLI::App& paper =
       *command.add_subcommand("object-frustum", "Le Hoang Minh et al. 2022: grid-cell and object-frustum");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproduceOptions>();
   paper.add_flag("--quick", options->quick, "fewer repeats");
   paper.add_option("--report", options->report, "also write an HTML page to DIR")
       ->check(page_folder())

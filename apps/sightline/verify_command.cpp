@@ -17,7 +17,7 @@ namespace sightline::app {
 
 namespace {
 
-struct Options {
+struct VerifyOptions {
   std::string scene, methods, size = "160x120", device = "cpu", pvs;
   std::size_t views = 100;
   std::uint64_t seed = 1;
@@ -33,7 +33,7 @@ void print_level_evidence(const Scene& scene, std::uint64_t seed) {
              lab::render(lab::evidence_table(lab::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
 }
 
-int run(const Options& options) {
+int run_verify(const VerifyOptions& options) {
   const auto [width, height] = parse_size(options.size);
   if (options.device != "cpu") {
     return verify_on_device({.scene = options.scene,
@@ -79,7 +79,7 @@ int run(const Options& options) {
 void add_verify(CLI::App& app, int& exit) {
   CLI::App& command = *app.add_subcommand(
       "verify", "Prove methods against the item buffer on random views; exit 1 if a guarantee is broken");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VerifyOptions>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
       ->type_name("FILE");
@@ -100,7 +100,7 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
       ->check(share());
-  on_run(command, exit, [options] { return run(*options); });
+  on_run(command, exit, [options] { return run_verify(*options); });
 }
 
 }  // namespace sightline::app

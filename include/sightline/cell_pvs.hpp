@@ -13,6 +13,7 @@ namespace sightline {
 struct Scene;
 
 inline constexpr std::uint32_t kNoCell = 0xffffffffu;
+inline constexpr std::uint64_t kMostCells = std::uint64_t{1} << 22;  ///< that are baked and read
 
 /// One set of objects a cell. Cells run x first, then y, then z.
 struct CellPvs {

@@ -9,12 +9,6 @@
 
 namespace sightline::bake {
 
-namespace {
-
-constexpr std::uint64_t kMostCells = std::uint64_t{1} << 22;
-
-}  // namespace
-
 CellPvs make_cells(const Scene& scene, const CellOptions& options) {
   CellPvs cells;
   cells.bounds = extent(scene);

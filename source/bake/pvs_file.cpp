@@ -24,7 +24,6 @@ constexpr char kMagic[8] = {'S', 'i', 'g', 'h', 't', 'P', 'V', 'S'};
 constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeader = 84;
 constexpr std::size_t kChecksumAt = 76;
-constexpr std::uint64_t kMostCells = std::uint64_t{1} << 22;
 constexpr std::uint32_t kMostObjects = 1u << 30;
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 29;
 

@@ -11,6 +11,8 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <sightline/error.hpp>
 
 namespace sightline::io {
@@ -70,7 +72,7 @@ void write_file(const std::filesystem::path& path, std::span<const std::span<con
   if (device) return write_pieces(path, path, "wb", pieces);
   std::filesystem::path temporary = path;
   static std::atomic<unsigned> count = 0;
-  temporary += "." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp";
+  temporary += fmt::format(".{}.{}.tmp", ::getpid(), count++);
   try {
     write_pieces(temporary, path, "wbx", pieces);
     std::filesystem::rename(temporary, path);

@@ -6,11 +6,11 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sightline/io.hpp>
 
 #include "io/files.hpp"
+#include "io/gltf_document.hpp"
 #include "io/gltf_transform.hpp"
 
 namespace sightline {
@@ -19,11 +19,7 @@ namespace io::gltf {
 
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kVertexData = 34962, kIndexData = 34963;
-constexpr std::size_t kMaxObjects = std::size_t{1} << 24;  // ids are kept as floats
 
 enum View { positions_view, normals_view, indices_view, instances_view };
 

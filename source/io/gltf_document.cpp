@@ -13,9 +13,6 @@ namespace sightline::io::gltf {
 
 namespace {
 
-constexpr std::uint32_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
-                        kUnsignedInt = 5125, kFloat = 5126;
-
 std::uint32_t component_size(std::uint64_t type) {
   switch (type) {
     case kByte:

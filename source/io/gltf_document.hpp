@@ -35,6 +35,12 @@ void numbers_of(const Json& value, const char* what, std::span<double> out);
 
 inline constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
+/// Component types (glTF 2.0, 3.6.2.2).
+inline constexpr std::uint32_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+                               kUnsignedInt = 5125, kFloat = 5126;
+/// Of a scene that is read or written: ids are kept as floats.
+inline constexpr std::size_t kMaxObjects = std::size_t{1} << 24;
+
 /// Elements of a buffer, each read where it stands. Every index below count() is safe.
 class Accessor {
 public:

@@ -17,7 +17,6 @@ namespace io::gltf {
 
 namespace {
 
-constexpr std::size_t kMaxObjects = std::size_t{1} << 24;
 constexpr std::uint32_t kMaxDepth = 4096;
 // Bounds are computed from the vertices of each object: more than this takes minutes.
 constexpr std::uint64_t kMaxTransformed = std::uint64_t{1} << 35;

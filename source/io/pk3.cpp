@@ -26,7 +26,7 @@ struct Discard {
 };
 using Archive = std::unique_ptr<zip_t, Discard>;
 
-std::string reason(int code) {
+std::string zip_reason(int code) {
   zip_error_t error;
   zip_error_init_with_code(&error, code);
   std::string text = zip_error_strerror(&error);
@@ -116,7 +116,7 @@ std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std
     throw Error(path.string() + ": not a regular file, expected a zip archive");
   int code = 0;
   const Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
-  if (!archive) throw Error(path.string() + ": not a readable zip archive: " + reason(code));
+  if (!archive) throw Error(path.string() + ": not a readable zip archive: " + zip_reason(code));
   return unpack(archive.get(), path.string(), entry);
 }
 

@@ -176,9 +176,15 @@ Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_
   queue_.emplace(*device_, family_index, 0);
   command_pool_.emplace(
       *device_, vk::CommandPoolCreateInfo{vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family_index});
-  const vk::DescriptorSetLayoutBinding view{0, vk::DescriptorType::eUniformBuffer, 1,
-                                            vk::ShaderStageFlagBits::eAll};
-  set_layout_.emplace(*device_, vk::DescriptorSetLayoutCreateInfo{{}, view});
+  constexpr auto kNearest = vk::Filter::eNearest;
+  constexpr auto kEdge = vk::SamplerAddressMode::eClampToEdge;
+  sampler_.emplace(*device_, vk::SamplerCreateInfo{{}, kNearest, kNearest, {}, kEdge, kEdge, kEdge});
+  using Stage = vk::ShaderStageFlagBits;
+  const std::array bindings{
+      vk::DescriptorSetLayoutBinding{0, vk::DescriptorType::eUniformBuffer, 1, Stage::eAll},
+      vk::DescriptorSetLayoutBinding{1, vk::DescriptorType::eCombinedImageSampler, Stage::eCompute,
+                                     **sampler_}};
+  set_layout_.emplace(*device_, vk::DescriptorSetLayoutCreateInfo{{}, bindings});
   const vk::PushConstantRange push{vk::ShaderStageFlagBits::eAll, 0, 128};
   layout_.emplace(*device_, vk::PipelineLayoutCreateInfo{{}, **set_layout_, push});
 } catch (const vk::SystemError& error) {

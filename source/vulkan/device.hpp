@@ -50,8 +50,8 @@ public:
   [[nodiscard]] std::uint32_t widest_dispatch() const noexcept { return limits_.maxComputeWorkGroupCount[0]; }
   [[nodiscard]] const Features& features() const noexcept { return *features_; }
   [[nodiscard]] bool has_timestamps() const noexcept { return timestamps_; }
-  /// All pipelines share one layout: 128 bytes of push constants, and a set with one uniform buffer, the
-  /// view.
+  /// All pipelines share one layout: 128 bytes of push constants, and a set with a uniform buffer, the view,
+  /// and for compute shaders the frame's depth with a sampler that takes the nearest texel.
   [[nodiscard]] const vk::raii::PipelineLayout& layout() const noexcept { return *layout_; }
 
   [[nodiscard]] const vk::raii::DescriptorSetLayout& set_layout() const noexcept { return *set_layout_; }
@@ -95,6 +95,7 @@ private:
   std::optional<vk::raii::Device> device_;
   std::optional<vk::raii::Queue> queue_;
   std::optional<vk::raii::CommandPool> command_pool_;
+  std::optional<vk::raii::Sampler> sampler_;
   std::optional<vk::raii::DescriptorSetLayout> set_layout_;
   std::optional<vk::raii::PipelineLayout> layout_;
 };

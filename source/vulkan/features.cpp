@@ -24,7 +24,6 @@ constexpr std::array kFeatures{
     Feature{"drawIndirectFirstInstance", true, &Core::drawIndirectFirstInstance},
     Feature{"fragmentStoresAndAtomics", true, &Core::fragmentStoresAndAtomics},
     Feature{"geometryShader", false, &Core::geometryShader},
-    Feature{"shaderInt64", false, &Core::shaderInt64},
     Feature{"bufferDeviceAddress", true, nullptr, &Vulkan12::bufferDeviceAddress},
     Feature{"scalarBlockLayout", true, nullptr, &Vulkan12::scalarBlockLayout},
     Feature{"dynamicRendering", true, nullptr, nullptr, &Vulkan13::dynamicRendering},

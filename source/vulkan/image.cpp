@@ -21,8 +21,9 @@ Image::Image(Device& device, vk::Format format, std::uint32_t width, std::uint32
                             device.info().name, width, height, what, limit));
   }
   using Usage = vk::ImageUsageFlagBits;
-  const auto usage = (format == kDepthFormat ? Usage::eDepthStencilAttachment : Usage::eColorAttachment) |
-                     Usage::eTransferSrc;
+  const auto usage =
+      (format == kDepthFormat ? Usage::eDepthStencilAttachment | Usage::eSampled : Usage::eColorAttachment) |
+      Usage::eTransferSrc;
   image_.emplace(device.handle(), vk::ImageCreateInfo{{},
                                                       vk::ImageType::e2D,
                                                       format,
@@ -64,6 +65,15 @@ void Image::move_to(const vk::raii::CommandBuffer& commands, vk::ImageLayout fro
                                         **image_,
                                         {aspect_, 0, 1, 0, 1}};
   commands.pipelineBarrier2(vk::DependencyInfo{{}, {}, {}, barrier});
+}
+
+void Image::begin_reading(const vk::raii::CommandBuffer& commands) const {
+  move_to(commands, layout_, kReadLayout);
+  full_barrier(commands);
+}
+
+void Image::end_reading(const vk::raii::CommandBuffer& commands) const {
+  move_to(commands, kReadLayout, layout_);
 }
 
 void Image::copy_to(const vk::raii::CommandBuffer& commands, const Buffer& buffer, std::uint32_t row) const {

@@ -30,9 +30,10 @@ std::array<std::uint32_t, 4> background() {
 }
 
 vk::raii::DescriptorPool make_pool(const Device& device) {
-  const vk::DescriptorPoolSize size{vk::DescriptorType::eUniformBuffer, 1};
+  const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, 1},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, 1}};
   return {device.handle(),
-          vk::DescriptorPoolCreateInfo{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size}};
+          vk::DescriptorPoolCreateInfo{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes}};
 }
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
@@ -93,6 +94,9 @@ void Renderer::resize(std::uint32_t width, std::uint32_t height) {
   if (targets_ && targets_->depth.width() == width && targets_->depth.height() == height) return;
   targets_.reset();
   targets_.emplace(device_, width, height);
+  const vk::DescriptorImageInfo depth{{}, targets_->depth.view(), kReadLayout};
+  device_.handle().updateDescriptorSets(
+      vk::WriteDescriptorSet{*view_set_[0], 1, 0, vk::DescriptorType::eCombinedImageSampler, depth}, {});
 }
 
 void Renderer::sort_transparent(const View& view) {

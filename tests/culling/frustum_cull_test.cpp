@@ -8,8 +8,6 @@
 namespace sightline {
 namespace {
 
-constexpr Box kAround{{-300, -300, -300}, {300, 300, 300}};
-
 struct World {
   Boxes boxes;
   std::vector<float> x, y, z, radius;
@@ -18,8 +16,8 @@ struct World {
 World random_world(scene::Random& random, std::size_t count) {
   World world;
   for (std::size_t i = 0; i < count; ++i) {
-    world.boxes.push_back(test::random_box(random, kAround));
-    const Vec3 at = random.inside(kAround);
+    world.boxes.push_back(test::random_box(random, test::kAround));
+    const Vec3 at = random.inside(test::kAround);
     world.x.push_back(at.x), world.y.push_back(at.y), world.z.push_back(at.z);
     world.radius.push_back(random.between(0, 20));
   }
@@ -50,7 +48,7 @@ TEST(FrustumCull, EqualsTestingOneByOneForEverySimdTarget) {
       const World world = random_world(random, count);
       for (int v = 0; v < 30; ++v) {
         const Frustum frustum =
-            make_frustum(test::random_view(random, kAround), {{-600, -600, -600}, {600, 600, 600}});
+            make_frustum(test::random_view(random, test::kAround), {{-600, -600, -600}, {600, 600, 600}});
         std::vector<ObjectId> expected_boxes, expected_spheres;
         for (ObjectId i = 0; i < count; ++i) {
           if (overlaps(frustum, world.boxes[i])) expected_boxes.push_back(i);

@@ -12,8 +12,6 @@ namespace {
 
 using geometry::to_double;
 
-constexpr Box kAround{{-300, -300, -300}, {300, 300, 300}};
-
 // The largest overshoot of a box behind any clip plane, in double precision straight from the matrices:
 // negative where the box is certainly outside. Scaled to metres.
 double clip_clearance(const View& view, const Box& box) {
@@ -39,10 +37,10 @@ TEST(Frustum, AgreesWithBruteForceInDoublePrecision) {
   scene::Random random(1);
   int outside = 0, kept = 0;
   for (int v = 0; v < 500; ++v) {
-    const View view = test::random_view(random, kAround);
+    const View view = test::random_view(random, test::kAround);
     const Frustum frustum = make_frustum(view, {{-600, -600, -600}, {600, 600, 600}});
     for (int b = 0; b < 200; ++b) {
-      const Box box = test::random_box(random, kAround);
+      const Box box = test::random_box(random, test::kAround);
       const double clearance = clip_clearance(view, box);
       const bool overlap = overlaps(frustum, box);
       if (clearance >= 0) ASSERT_TRUE(overlap) << "lost a box by " << clearance << " m";
@@ -58,11 +56,11 @@ TEST(Frustum, NeverLosesAPointInsideTheClipVolume) {
   scene::Random random(2);
   int inside = 0;
   for (int v = 0; v < 2000; ++v) {
-    const View view = test::random_view(random, kAround);
-    const Frustum frustum = make_frustum(view, kAround);
+    const View view = test::random_view(random, test::kAround);
+    const Frustum frustum = make_frustum(view, test::kAround);
     const glm::dmat4 clip = to_double(view.eye_to_clip) * to_double(view.world_to_eye);
     for (int i = 0; i < 50; ++i) {
-      const Vec3 p = random.inside(kAround);
+      const Vec3 p = random.inside(test::kAround);
       const glm::dvec4 c = clip * glm::dvec4(to_double(p), 1);
       const bool in = std::fabs(c.x) <= c.w && std::fabs(c.y) <= c.w && c.z >= 0 && c.z <= c.w;
       if (!in) continue;
@@ -78,10 +76,10 @@ TEST(Frustum, InsideMeansEveryCornerIsInside) {
   scene::Random random(3);
   int inside = 0;
   for (int v = 0; v < 500; ++v) {
-    const View view = test::random_view(random, kAround);
-    const Frustum frustum = make_frustum(view, kAround);
+    const View view = test::random_view(random, test::kAround);
+    const Frustum frustum = make_frustum(view, test::kAround);
     for (int b = 0; b < 200; ++b) {
-      const Box box = test::random_box(random, kAround);
+      const Box box = test::random_box(random, test::kAround);
       if (classify(frustum, box) != Overlap::inside) continue;
       ++inside;
       for (int corner = 0; corner < 8; ++corner) {

@@ -13,8 +13,6 @@ namespace {
 
 using geometry::to_double;
 
-constexpr Box kAround{{-300, -300, -300}, {300, 300, 300}};
-
 struct Pixel {
   double x, y, w;
 };
@@ -29,10 +27,10 @@ TEST(Projection, ARectHoldsThePixelsOfEveryPointOfItsBox) {
   scene::Random random(1);
   int finite = 0;
   for (int v = 0; v < 1000; ++v) {
-    const View view = test::random_view(random, kAround);
+    const View view = test::random_view(random, test::kAround);
     const Projector projector = make_projector(view, {{-600, -600, -600}, {600, 600, 600}});
     for (int b = 0; b < 20; ++b) {
-      const Box box = test::random_box(random, kAround);
+      const Box box = test::random_box(random, test::kAround);
       const Rect rect = projected_rect(projector, box);
       if (std::isinf(rect.min_x)) continue;
       ++finite;
@@ -50,7 +48,7 @@ TEST(Projection, ARectHoldsThePixelsOfEveryPointOfItsBox) {
 }
 
 TEST(Projection, ABoxAcrossTheEyePlaneHasNoRect) {
-  const Projector projector = make_projector(*make_view({}, 100, 100), kAround);
+  const Projector projector = make_projector(*make_view({}, 100, 100), test::kAround);
   EXPECT_TRUE(std::isinf(projected_rect(projector, {{-1, -1, -1}, {1, 1, 1}}).min_x));
   EXPECT_FALSE(std::isinf(projected_rect(projector, {{-1, -1, -9}, {1, 1, -8}}).min_x));
 }
@@ -93,7 +91,7 @@ TEST(Projection, TheAreaBoundIsTheAreaOfTheEllipse) {
     const View view = *make_view({.vertical_fov = 1.4f}, 120, 90);
     const Sphere sphere{{random.between(-4, 4), random.between(-3, 3), random.between(-14, -9)},
                         random.between(0.5f, 2)};
-    const Projector projector = make_projector(view, kAround);
+    const Projector projector = make_projector(view, test::kAround);
     const double area = sampled_area(view, sphere);
     const float bound = projected_area_bound(projector, sphere);
     if (area == 0) continue;
@@ -108,7 +106,7 @@ TEST(Projection, TheAreaBoundIsTheAreaOfTheEllipse) {
 }
 
 TEST(Projection, TheEyeInsideASphereSeesNothingElse) {
-  const Projector projector = make_projector(*make_view({}, 100, 100), kAround);
+  const Projector projector = make_projector(*make_view({}, 100, 100), test::kAround);
   EXPECT_TRUE(std::isinf(projected_area(projector, {{0, 0, 1}, 2})));
   EXPECT_TRUE(std::isinf(projected_area_bound(projector, {{0, 0, 1}, 2})));
 }
@@ -116,7 +114,7 @@ TEST(Projection, TheEyeInsideASphereSeesNothingElse) {
 TEST(Projection, AnOrthographicSphereKeepsItsAreaAtAnyDistance) {
   Camera camera;
   camera.orthographic_height = 50;
-  const Projector projector = make_projector(*make_view(camera, 100, 100), kAround);
+  const Projector projector = make_projector(*make_view(camera, 100, 100), test::kAround);
   const float expected = std::numbers::pi_v<float> * 4 * 4;
   EXPECT_NEAR(projected_area(projector, {{0, 0, -10}, 2}), expected, 1e-2);
   EXPECT_NEAR(projected_area(projector, {{0, 0, -200}, 2}), expected, 1e-2);

@@ -17,11 +17,11 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string refusal_of_bytes(const Blob& bytes) {
+std::string refusal_of_gltf(const Blob& bytes) {
   return error_of([&] { read_gltf(bytes, "sample.gltf"); });
 }
 std::string refusal(const json& document) {
-  return refusal_of_bytes(to_bytes(document));
+  return refusal_of_gltf(to_bytes(document));
 }
 
 Blob sample_glb() {
@@ -36,9 +36,9 @@ Blob sample_glb() {
 
 TEST(GltfHostile, EveryTruncationIsRefused) {
   for (const Blob& whole : {sample_glb(), to_bytes(one_triangle())}) {
-    ASSERT_EQ(refusal_of_bytes(whole), "");
+    ASSERT_EQ(refusal_of_gltf(whole), "");
     for (std::size_t size = 0; size < whole.size(); ++size) {
-      ASSERT_THAT(refusal_of_bytes({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
+      ASSERT_THAT(refusal_of_gltf({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
                   StartsWith("sample.gltf: "))
           << size;
     }
@@ -52,7 +52,7 @@ TEST(GltfHostile, AnyByteMayBeAnything) {
       Blob bytes = whole;
       for (int change = 0; change <= round % 3; ++change)
         bytes[random() % bytes.size()] = std::byte(random() & 0xff);
-      const std::string said = refusal_of_bytes(bytes);
+      const std::string said = refusal_of_gltf(bytes);
       if (!said.empty()) {
         ASSERT_THAT(said, HasSubstr("sample.gltf"));
       }
@@ -100,11 +100,11 @@ TEST(GltfHostile, DeepNestingDoesNotOverflowTheStack) {
   brackets.append(kDepth, '[');
   std::string closed = brackets;
   closed.append(kDepth, ']') += '}';
-  EXPECT_THAT(refusal_of_bytes(to_bytes(closed)), HasSubstr("no triangle"));
-  EXPECT_THAT(refusal_of_bytes(to_bytes(brackets)), HasSubstr("not JSON"));
+  EXPECT_THAT(refusal_of_gltf(to_bytes(closed)), HasSubstr("no triangle"));
+  EXPECT_THAT(refusal_of_gltf(to_bytes(brackets)), HasSubstr("not JSON"));
   std::string objects;
   for (std::size_t i = 0; i < kDepth; ++i) objects += R"({"a":)";
-  EXPECT_THAT(refusal_of_bytes(to_bytes(objects)), HasSubstr("not JSON"));
+  EXPECT_THAT(refusal_of_gltf(to_bytes(objects)), HasSubstr("not JSON"));
 }
 
 TEST(GltfHostile, CirclesAndSharedChildren) {
@@ -210,13 +210,13 @@ TEST(GltfHostile, WrongVersionsAndContainers) {
   EXPECT_THAT(refusal(document), HasSubstr("version '1.0'"));
   Blob glb = sample_glb();
   glb[4] = std::byte{1};
-  EXPECT_THAT(refusal_of_bytes(glb), HasSubstr("GLB version 1"));
+  EXPECT_THAT(refusal_of_gltf(glb), HasSubstr("GLB version 1"));
   glb = sample_glb();
   glb[16] = std::byte{'X'};
-  EXPECT_THAT(refusal_of_bytes(glb), HasSubstr("no JSON in its first chunk"));
+  EXPECT_THAT(refusal_of_gltf(glb), HasSubstr("no JSON in its first chunk"));
   glb = sample_glb();
   std::memset(&glb[8], 0xff, 4);
-  EXPECT_THAT(refusal_of_bytes(glb), HasSubstr("says it is"));
+  EXPECT_THAT(refusal_of_gltf(glb), HasSubstr("says it is"));
 }
 
 }  // namespace

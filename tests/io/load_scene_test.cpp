@@ -14,7 +14,7 @@ namespace {
 using namespace samples;
 using testing::HasSubstr;
 
-std::string refusal(const std::string& specification) {
+std::string refusal_to_load(const std::string& specification) {
   return error_of([&] { load_scene(specification); });
 }
 
@@ -39,35 +39,36 @@ TEST(LoadScene, ArchivesAreFoundInTheDataFolders) {
   write(folder / "only-here.pk3", to_pk3("maps/a.bsp", to_bsp(two_rooms())));
   ASSERT_EQ(setenv("SIGHTLINE_DATA", ("/nowhere:" + folder.path().string()).c_str(), 1), 0);
   EXPECT_EQ(load_scene("only-here.pk3:maps/a.bsp").size(), 6u);
-  EXPECT_THAT(refusal("nor-here.pk3:maps/a.bsp"), HasSubstr("nor-here.pk3"));
+  EXPECT_THAT(refusal_to_load("nor-here.pk3:maps/a.bsp"), HasSubstr("nor-here.pk3"));
   unsetenv("SIGHTLINE_DATA");
-  EXPECT_THAT(refusal("only-here.pk3:maps/a.bsp"), HasSubstr("only-here.pk3"));
+  EXPECT_THAT(refusal_to_load("only-here.pk3:maps/a.bsp"), HasSubstr("only-here.pk3"));
 }
 
 TEST(LoadScene, OneSentenceForEachMistake) {
   const TemporaryFolder folder;
   for (const char* ending : {".bsp", ".gltf", ".glb"}) {
     const std::string missing = (folder / ("missing" + std::string(ending))).string();
-    EXPECT_EQ(refusal(missing), missing + ": no such file");
+    EXPECT_EQ(refusal_to_load(missing), missing + ": no such file");
     const std::string empty = (folder / ("empty" + std::string(ending))).string();
     write(empty, {});
-    EXPECT_THAT(refusal(empty), HasSubstr(empty + ": "));
+    EXPECT_THAT(refusal_to_load(empty), HasSubstr(empty + ": "));
     const std::string is_folder = (folder / ("folder" + std::string(ending))).string();
     std::filesystem::create_directory(is_folder);
-    EXPECT_THAT(refusal(is_folder), HasSubstr("not a regular file"));
+    EXPECT_THAT(refusal_to_load(is_folder), HasSubstr("not a regular file"));
   }
-  EXPECT_THAT(refusal((folder / "missing.pk3").string() + ":maps/a.bsp"), HasSubstr("no such file"));
+  EXPECT_THAT(refusal_to_load((folder / "missing.pk3").string() + ":maps/a.bsp"), HasSubstr("no such file"));
   std::filesystem::create_directory(folder / "folder.pk3");
-  EXPECT_THAT(refusal((folder / "folder.pk3").string() + ":maps/a.bsp"), HasSubstr("not a regular file"));
+  EXPECT_THAT(refusal_to_load((folder / "folder.pk3").string() + ":maps/a.bsp"),
+              HasSubstr("not a regular file"));
   write(folder / "empty.pk3", {});
-  EXPECT_THAT(refusal((folder / "empty.pk3").string() + ":maps/a.bsp"),
+  EXPECT_THAT(refusal_to_load((folder / "empty.pk3").string() + ":maps/a.bsp"),
               HasSubstr("not a readable zip archive"));
-  EXPECT_THAT(refusal(""), HasSubstr("no scene given"));
-  EXPECT_THAT(refusal("scene.obj"), HasSubstr("not a kind of scene"));
-  EXPECT_THAT(refusal("a.pk3"), HasSubstr("expected archive.pk3:maps/name.bsp"));
-  EXPECT_THAT(refusal("world:atlantis"), HasSubstr("atlantis"));
-  EXPECT_THAT(refusal("world:forest?trees=-1"), HasSubstr("trees"));
-  EXPECT_THAT(refusal(std::string("a\0.bsp", 6)), HasSubstr("zero byte"));
+  EXPECT_THAT(refusal_to_load(""), HasSubstr("no scene given"));
+  EXPECT_THAT(refusal_to_load("scene.obj"), HasSubstr("not a kind of scene"));
+  EXPECT_THAT(refusal_to_load("a.pk3"), HasSubstr("expected archive.pk3:maps/name.bsp"));
+  EXPECT_THAT(refusal_to_load("world:atlantis"), HasSubstr("atlantis"));
+  EXPECT_THAT(refusal_to_load("world:forest?trees=-1"), HasSubstr("trees"));
+  EXPECT_THAT(refusal_to_load(std::string("a\0.bsp", 6)), HasSubstr("zero byte"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr const char* kEntry = "maps/sample.bsp";
 
-std::string refusal(const Blob& archive, const std::string& entry = kEntry) {
+std::string refusal_of_archive(const Blob& archive, const std::string& entry = kEntry) {
   return error_of([&] { read_pk3(archive, entry, "sample.pk3"); });
 }
 
@@ -43,16 +43,17 @@ TEST(Pk3, UnpacksALevel) {
 
 TEST(Pk3, MissingEntryNamesTheNearest) {
   const Blob archive = to_pk3(kEntry, to_bsp(two_rooms()));
-  EXPECT_THAT(refusal(archive, "maps/simple.bsp"),
+  EXPECT_THAT(refusal_of_archive(archive, "maps/simple.bsp"),
               AllOf(HasSubstr("sample.pk3:maps/simple.bsp"), HasSubstr("maps/sample.bsp")));
-  EXPECT_THAT(refusal(archive, "maps/sample.map"), HasSubstr("nothing that ends in '.map'"));
-  EXPECT_NE(refusal(archive, ""), "");
-  EXPECT_NE(refusal(archive, std::string(1 << 20, 'x')), "");
+  EXPECT_THAT(refusal_of_archive(archive, "maps/sample.map"), HasSubstr("nothing that ends in '.map'"));
+  EXPECT_NE(refusal_of_archive(archive, ""), "");
+  EXPECT_NE(refusal_of_archive(archive, std::string(1 << 20, 'x')), "");
 }
 
 TEST(Pk3, WhatIsNoArchiveIsRefused) {
-  EXPECT_THAT(refusal({}), HasSubstr("not a readable zip archive"));
-  EXPECT_THAT(refusal(to_bytes(std::string("this is no archive"))), HasSubstr("not a readable zip archive"));
+  EXPECT_THAT(refusal_of_archive({}), HasSubstr("not a readable zip archive"));
+  EXPECT_THAT(refusal_of_archive(to_bytes(std::string("this is no archive"))),
+              HasSubstr("not a readable zip archive"));
 }
 
 TEST(Pk3Hostile, BombsAreRefused) {
@@ -60,34 +61,35 @@ TEST(Pk3Hostile, BombsAreRefused) {
   const Blob zeros(1 << 20);
   Blob archive = to_pk3(kEntry, zeros);
   set_in_headers(archive, 22, 24, 0xfffffff0);
-  EXPECT_THAT(refusal(archive), HasSubstr("expected at most"));
+  EXPECT_THAT(refusal_of_archive(archive), HasSubstr("expected at most"));
   archive = to_pk3(kEntry, zeros);
   set_in_headers(archive, 22, 24, 200 << 20);
-  EXPECT_THAT(refusal(archive), HasSubstr("which deflate cannot do"));
+  EXPECT_THAT(refusal_of_archive(archive), HasSubstr("which deflate cannot do"));
   archive = to_pk3(kEntry, zeros);
   set_in_headers(archive, 22, 24, 100);
-  EXPECT_NE(refusal(archive), "");
+  EXPECT_NE(refusal_of_archive(archive), "");
   archive = to_pk3(kEntry, zeros);
   set_in_headers(archive, 22, 24, (1 << 20) + 1);
-  EXPECT_NE(refusal(archive), "");
+  EXPECT_NE(refusal_of_archive(archive), "");
 }
 
 TEST(Pk3Hostile, WrongChecksumIsRefused) {
   Blob archive = to_pk3(kEntry, to_bsp(two_rooms()));
   set_in_headers(archive, 14, 16, 0x12345678);
-  EXPECT_THAT(refusal(archive), HasSubstr("cannot be unpacked"));
+  EXPECT_THAT(refusal_of_archive(archive), HasSubstr("cannot be unpacked"));
 }
 
 TEST(Pk3Hostile, TruncatedOrChangedAnywhere) {
   const Blob whole = to_pk3(kEntry, to_bsp(two_rooms()));
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    ASSERT_NE(refusal({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), "") << size;
+    ASSERT_NE(refusal_of_archive({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), "")
+        << size;
   }
   std::mt19937 random(5);
   for (int round = 0; round < 5000; ++round) {
     Blob bytes = whole;
     bytes[random() % bytes.size()] = std::byte(random() & 0xff);
-    const std::string said = refusal(bytes);
+    const std::string said = refusal_of_archive(bytes);
     if (!said.empty()) {
       ASSERT_THAT(said, HasSubstr("sample.pk3"));
     }

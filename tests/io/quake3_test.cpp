@@ -27,7 +27,7 @@ Scene read(const Level& level) {
 std::string refusal(const Level& level) {
   return error_of([&] { read(level); });
 }
-std::string refusal_of_bytes(const Blob& bytes) {
+std::string refusal_of_bsp(const Blob& bytes) {
   return error_of([&] { read_bsp(bytes, "sample.bsp"); });
 }
 
@@ -174,7 +174,7 @@ TEST(Quake3Hostile, EveryTruncationIsRefused) {
   const Blob whole = to_bsp(two_rooms());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string said =
-        refusal_of_bytes({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+        refusal_of_bsp({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
     ASSERT_THAT(said, StartsWith("sample.bsp: ")) << size;
   }
 }
@@ -182,10 +182,10 @@ TEST(Quake3Hostile, EveryTruncationIsRefused) {
 TEST(Quake3Hostile, WrongMagicAndVersion) {
   Blob bytes = to_bsp(two_rooms());
   bytes[4] = std::byte{47};
-  EXPECT_THAT(refusal_of_bytes(bytes), HasSubstr("version 47, expected 46"));
+  EXPECT_THAT(refusal_of_bsp(bytes), HasSubstr("version 47, expected 46"));
   bytes[0] = std::byte{'V'};
-  EXPECT_THAT(refusal_of_bytes(bytes), HasSubstr("'IBSP'"));
-  EXPECT_THAT(refusal_of_bytes({}), HasSubstr("0 bytes long"));
+  EXPECT_THAT(refusal_of_bsp(bytes), HasSubstr("'IBSP'"));
+  EXPECT_THAT(refusal_of_bsp({}), HasSubstr("0 bytes long"));
 }
 
 TEST(Quake3Hostile, ReferencesOutOfRange) {
@@ -309,7 +309,7 @@ TEST(Quake3Hostile, AnyByteMayBeAnything) {
     Blob bytes = whole;
     for (int change = 0; change < 1 + round % 4; ++change)
       bytes[random() % bytes.size()] = std::byte(random() & 0xff);
-    const std::string said = refusal_of_bytes(bytes);  // either a scene or a sentence
+    const std::string said = refusal_of_bsp(bytes);  // either a scene or a sentence
     if (!said.empty()) {
       ASSERT_THAT(said, HasSubstr("sample.bsp"));
     }
@@ -317,7 +317,7 @@ TEST(Quake3Hostile, AnyByteMayBeAnything) {
   for (int round = 0; round < 1000; ++round) {
     Blob bytes(random() % 4096);
     for (std::byte& b : bytes) b = std::byte(random() & 0xff);
-    ASSERT_NE(refusal_of_bytes(bytes), "");
+    ASSERT_NE(refusal_of_bsp(bytes), "");
   }
 }
 

@@ -12,6 +12,7 @@
 #include "lab/measure.hpp"
 #include "lab/summary.hpp"
 #include "lab/table.hpp"
+#include "support/exact_methods.hpp"
 #include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -64,13 +65,10 @@ TEST(Timing, MedianLeastAndGreatest) {
   EXPECT_EQ(timing_of({}).median, 0);
 }
 
-// They lose nothing, so every loss in these tests was put there.
-const std::vector<std::string> kMethods{"none", "vfc-vc", "grid-cell", "object-frustum"};
-
 TEST(Measure, RowsOfEveryMethodAndViewWithEveryField) {
   const Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
   const EmbreeJudge judge(scene);
-  const std::vector<Contestant> contestants = make_contestants(scene, kMethods);
+  const std::vector<Contestant> contestants = make_contestants(scene, test::kExactMethods);
   MeasureOptions options;
   options.width = 96, options.height = 64, options.repeats = 3, options.warm_up = 1;
   std::size_t told = 0;

@@ -45,8 +45,8 @@ TEST(Blocks, AreThoseThatASearchOfEveryPlaceFinds) {
 // them, and is never lost. guided loses no more than its target in any view.
 TEST(RayScenes, LoseNoObjectAsLargeAsTheSpacingAndNoMoreThanTheTarget) {
   std::vector<std::string> scenes{"world:irregular?detail=0"};
-  for (int model = 1; model <= 5; ++model) {
-    scenes.push_back("world:strata?triangles=20000&model=" + std::to_string(model));
+  for (const char* model : {"1", "2", "3", "4", "5"}) {
+    scenes.push_back(std::string("world:strata?triangles=20000&model=") + model);
   }
   if (std::filesystem::exists("/usr/share/games/openarena/baseoa/pak1-maps.pk3")) {
     scenes.emplace_back("pak1-maps.pk3:maps/oa_dm1.bsp");

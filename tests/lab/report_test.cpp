@@ -12,6 +12,7 @@
 #include "lab/report/page.hpp"
 #include "lab/report/pictures.hpp"
 #include "lab/report/report.hpp"
+#include "support/exact_methods.hpp"
 #include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -24,13 +25,10 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::Not;
 
-// They lose nothing, so every loss in these tests was put there.
-const std::vector<std::string> kMethods{"none", "vfc-vc", "grid-cell", "object-frustum"};
-
 struct Material {
   Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
   EmbreeJudge judge{scene};
-  std::vector<Contestant> contestants = make_contestants(scene, kMethods);
+  std::vector<Contestant> contestants = make_contestants(scene, test::kExactMethods);
   Comparison comparison;
   Snapshot snapshot;
 

@@ -129,6 +129,24 @@ TEST_F(EdgeCases, EqualDepthsHaveOneWinnerWhateverIsDrawnFirst) {
   }
 }
 
+TEST_F(EdgeCases, AWideBoxThatComesOutFromBehindAWall) {
+  // What shows first is a strip at one end of the box, in other tiles of depth than the rest of it.
+  for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+    Scene scene;
+    const std::uint32_t cube = add_cube(scene);
+    scene.add_object(cube, at(-10 * side.x, -10 * side.y, -5, side.x ? 10 : 20, side.y ? 10 : 20, 0.1f));
+    scene.add_object(cube, at(-3 * side.x, -3 * side.y, -20, 2.5f, 2.5f, 0.1f));
+    Examination examination(device(), scene, kOcclusionMethods);
+    for (int step = 0; step < 15; ++step) {
+      Camera camera;
+      camera.eye = {0.02f * step * side.x, 0.02f * step * side.y, 0};
+      examination.look(view_of(camera, 320, 240), "in step " + std::to_string(step));
+    }
+    EXPECT_GT(examination.visible(), 15u + 2);  // the box shows in some frames,
+    EXPECT_LT(examination.visible(), 30u - 2);  // and in others does not
+  }
+}
+
 TEST_F(EdgeCases, FlatObjectsInTheirOwnBoxes) {
   // Walls without thickness along the axes: box and mesh are the same rectangle, rounded differently.
   Scene scene;

@@ -11,6 +11,8 @@
 
 namespace sightline::test {
 
+inline constexpr Box kAround{{-300, -300, -300}, {300, 300, 300}};
+
 inline Camera random_camera(scene::Random& random, const Box& around) {
   Camera camera;
   camera.eye = random.inside(around);

@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include <sightline/world.hpp>
 
 #include "scene/random.hpp"
+#include "support/run_threads.hpp"
 
 namespace sightline {
 namespace {
@@ -19,12 +19,6 @@ using scene::Random;
 std::uint64_t hash_of(std::uint64_t h, std::span<const std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) h = (h ^ byte) * 0x100000001b3u;
   return h;
-}
-
-void run_threads(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 0; i < count; ++i) threads.emplace_back(job, data, i);
-  for (std::thread& thread : threads) thread.join();
 }
 
 // Multiples of 1/256 m, so that shifting by 10⁷ m is exact in a double.
@@ -53,7 +47,8 @@ std::uint64_t hash_of_run(const Setting& run) {
   std::vector<Handle> handles(boxes.size());
   for (WorldBox& b : boxes) b = box();
   EXPECT_FALSE(world.insert(boxes, handles));
-  const CullOptions options{.min_area = 0, .occlusion = {}, .jobs = {run_threads, nullptr, run.threads}};
+  const CullOptions options{
+      .min_area = 0, .occlusion = {}, .jobs = {test::run_threads, nullptr, run.threads}};
   std::uint64_t h = 0xcbf29ce484222325u;
   for (int frame = 0; frame < 12; ++frame) {
     std::vector<Handle> some(handles.begin() + frame * 500, handles.begin() + frame * 500 + 1000);

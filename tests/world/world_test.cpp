@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <thread>
 
 #include "culling/sector_test.hpp"
 #include "culling/world_state.hpp"
 #include "geometry/linear.hpp"
 #include "scene/random.hpp"
 #include "support/random_views.hpp"
+#include "support/run_threads.hpp"
 
 namespace sightline {
 namespace {
@@ -42,12 +42,6 @@ double depth_in(const WorldView& view, const WorldBox& b) {
   return least;
 }
 
-void run_threads(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 0; i < count; ++i) threads.emplace_back(job, data, i);
-  for (std::thread& thread : threads) thread.join();
-}
-
 void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
                   std::span<const WorldView> views, double tolerance) {
   std::vector<ObjectId> visible(cull_capacity(world));
@@ -70,7 +64,7 @@ void expect_right(const World& world, Culler& culler, const std::map<ObjectId, W
     }
   }
   // So do threads, to the bit.
-  const CullOptions threaded{.jobs = {run_threads, nullptr, 4}};
+  const CullOptions threaded{.jobs = {test::run_threads, nullptr, 4}};
   std::vector<ObjectId> by_threads(cull_capacity(world, threaded));
   std::vector<std::uint8_t> their_masks(by_threads.size());
   ASSERT_EQ(culler.cull(world, views, threaded, by_threads, their_masks).count, with_masks.count);

@@ -12,7 +12,7 @@ namespace {
 // Frames of each method and view that tell their passes' times, and no others.
 constexpr std::size_t kTimedPasses = 3;
 
-struct Samples {
+struct Times {
   std::vector<double> cpu, gpu, frame;
 };
 
@@ -69,7 +69,7 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
   Frame frame;
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], measure.width, measure.height));
-    std::vector<Samples> samples(contestants.size());
+    std::vector<Times> samples(contestants.size());
     if (told) {
       told->visible.clear();
       const ItemBuffer seen = bench.judge(view);

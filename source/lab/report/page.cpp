@@ -223,4 +223,17 @@ std::string make_page(const PageContent& content) {
   return page + "</script></body></html>\n";
 }
 
+std::string html(const Table& table) {
+  std::string out = "<div class=\"wide\"><table";
+  out += table.text_columns == 1 ? " class=\"numbers\"><thead><tr>" : "><thead><tr>";
+  for (const std::string& cell : table.header) out += "<th>" + escape(cell);
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (const std::string& cell : row) out += "<td>" + escape(cell);
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
 }  // namespace sightline::lab::report

@@ -7,6 +7,7 @@
 
 #include "lab/fate.hpp"
 #include "lab/measure.hpp"
+#include "lab/table.hpp"
 
 namespace sightline::lab::report {
 
@@ -25,5 +26,8 @@ std::string make_page(const PageContent& content);
 /// Text as it may stand in HTML, between tags or in a quoted attribute; bytes that are not UTF-8 become
 /// U+FFFD.
 std::string escape(std::string_view text);
+
+/// As HTML; of class "numbers" where all but the first column are figures.
+std::string html(const Table& table);
 
 }  // namespace sightline::lab::report

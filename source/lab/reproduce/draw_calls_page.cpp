@@ -47,19 +47,6 @@ table.numbers th:nth-child(2), table.numbers td:nth-child(2) { text-align: right
 .verdict ul { margin: 0; padding: 0 0 0 1.1rem; } .verdict li + li { margin-top: .45rem; }
 )";
 
-std::string html(const Table& table) {
-  std::string out = "<div class=\"wide\"><table";
-  out += table.text_columns == 1 ? " class=\"numbers\"><thead><tr>" : "><thead><tr>";
-  for (const std::string& cell : table.header) out += "<th>" + escape(cell);
-  out += "</tr></thead><tbody>\n";
-  for (const auto& row : table.rows) {
-    out += "<tr>";
-    for (const std::string& cell : row) out += "<td>" + escape(cell);
-    out += "</tr>\n";
-  }
-  return out + "</tbody></table></div>\n";
-}
-
 std::string as_list(const std::string& sentences) {
   std::string out = "<ul>";
   for (std::size_t at = 0; at < sentences.size();) {
@@ -138,7 +125,7 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
   page += fmt::format(
       "<p>Serpa, Serpa &amp; Rodrigues, measured again on {} ({}, {} hardware threads)</p></header>\n",
       escape(device), escape(machine.cpu), machine.cores);
-  page += "<h2>Table 1: triangles × draw calls</h2>\n" + html(table_of(grid));
+  page += "<h2>Table 1: triangles × draw calls</h2>\n" + report::html(table_of(grid));
   page += "<div class=\"verdict\">" + as_list(findings(grid)) + "</div>\n";
   nlohmann::ordered_json data = nlohmann::ordered_json::array();
   constexpr std::array kNames{"grid", "octree", "kd-tree"};
@@ -150,10 +137,10 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
     page += "<div class=\"verdict\">" + as_list(findings(walk)) + "</div>\n";
     page += "<h3>Frames per second along the walk</h3>\n<figure><div class=\"chart\"><canvas id=\"" + id +
             "\" role=\"img\" aria-label=\"Frames per second along the walk\"></canvas></div></figure>\n";
-    page += "<h3>Every structure, variant and height</h3>\n" + html(heights_table(walk)) +
-            "<h3>simple against drawcall-wise</h3>\n" + html(calls_table(walk)) +
-            "<h3>Methods, each at its best height</h3>\n" + html(methods_table(walk)) +
-            "<h3>Three ways of submission</h3>\n" + html(submission_table(walk));
+    page += "<h3>Every structure, variant and height</h3>\n" + report::html(heights_table(walk)) +
+            "<h3>simple against drawcall-wise</h3>\n" + report::html(calls_table(walk)) +
+            "<h3>Methods, each at its best height</h3>\n" + report::html(methods_table(walk)) +
+            "<h3>Three ways of submission</h3>\n" + report::html(submission_table(walk));
     page += "<h3>From above, with the cells at height 4</h3>\n<div class=\"fates\">\n";
     const Scene scene = load_scene(walk.level);
     for (std::size_t s = 0; s < kNames.size(); ++s) {

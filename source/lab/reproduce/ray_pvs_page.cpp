@@ -10,22 +10,6 @@
 
 namespace sightline::lab {
 
-namespace {
-
-std::string html(const Table& table) {
-  std::string out = "<div class=\"wide\"><table><thead><tr>";
-  for (const std::string& cell : table.header) out += "<th>" + report::escape(cell);
-  out += "</thead><tbody>\n";
-  for (const auto& row : table.rows) {
-    out += "<tr>";
-    for (const std::string& cell : row) out += "<td>" + report::escape(cell);
-    out += "\n";
-  }
-  return out + "</tbody></table></div>\n";
-}
-
-}  // namespace
-
 void write_ray_report(const std::string& device, const RayPvsOptions& options,
                       const std::vector<RayPvsModel>& models, const std::vector<RegionTime>& regions,
                       std::span<const RayScene> scenes) {
@@ -37,9 +21,9 @@ void write_ray_report(const std::string& device, const RayPvsOptions& options,
       "</style></head><body><main><h1>Ray-cast visible sets: Ye et al. 2023</h1>\n<p>{0} × {0} rays, one "
       "thread on the CPU, {1} as the GPU; medians of {2}.</p>\n<h2>Table 6</h2>\n",
       options.rays, report::escape(device), options.repeats);
-  page += html(ray_table(models)) + "<h3>Apart</h3>\n" + html(ray_parts_table(models));
+  page += report::html(ray_table(models)) + "<h3>Apart</h3>\n" + report::html(ray_parts_table(models));
   page += fmt::format("<h2>Figure 12: what the set lacks, {}x{}</h2>\n", options.width, options.height) +
-          html(ray_loss_table(models));
+          report::html(ray_loss_table(models));
   for (const RayPvsModel& model : models) {
     page += fmt::format("<h3>Model {}</h3>\n", model.model);
     for (const auto& [file, caption] : {std::pair{"everything", "everything"},
@@ -51,9 +35,9 @@ void write_ray_report(const std::string& device, const RayPvsOptions& options,
           model.model, file, caption);
     }
   }
-  page += "<h2>Figure 13: a frame of model 1 by region</h2>\n" + html(region_table(regions));
+  page += "<h2>Figure 13: a frame of model 1 by region</h2>\n" + report::html(region_table(regions));
   page += fmt::format("<h2>Rays against triangles, {}x{}</h2>\n", kRaySceneWidth, kRaySceneHeight) +
-          html(ray_scene_table(scenes));
+          report::html(ray_scene_table(scenes));
   write_file(std::filesystem::path(options.pictures) / "index.html", page + "</main></body></html>\n");
 }
 

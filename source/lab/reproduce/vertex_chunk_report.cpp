@@ -15,18 +15,6 @@ namespace sightline::lab {
 
 namespace {
 
-std::string html(const Table& table) {
-  std::string out = "<table><tr>";
-  for (const std::string& cell : table.header) out += "<th>" + report::escape(cell) + "</th>";
-  out += "</tr>\n";
-  for (const auto& row : table.rows) {
-    out += "<tr>";
-    for (const std::string& cell : row) out += "<td>" + report::escape(cell) + "</td>";
-    out += "</tr>\n";
-  }
-  return out + "</table>\n";
-}
-
 std::string chart(const VertexChunkWorld& world) {
   using Json = nlohmann::ordered_json;
   static constexpr std::array kColours{"#888888", "#e69f00", "#cc79a7", "#009e73",
@@ -68,8 +56,8 @@ void write_vertex_chunk_report(const std::string& folder, std::span<const Vertex
   for (const VertexChunkWorld& world : worlds) {
     page += fmt::format("<h2>World: {}; {} objects on {}</h2>\n", world.name,
                         world.near.rows.front().stats.objects, report::escape(world.near.device));
-    for (const Table& table : world.tables) page += html(table);
-    page += "<h3>Figure 7</h3>\n" + chart(world) + html(world.rising_fps);
+    for (const Table& table : world.tables) page += report::html(table);
+    page += "<h3>Figure 7</h3>\n" + chart(world) + report::html(world.rising_fps);
     for (const auto& picture : world.pictures) {
       save_png(picture.pixels, (std::filesystem::path(folder) / picture.file).string());
       page += fmt::format(

@@ -19,29 +19,39 @@ constexpr std::uint32_t kFace[] =
 constexpr std::uint32_t kDepthTiles[] =
 #include "shaders/depth_tiles.comp.inc"
     ;
+constexpr std::uint32_t kTileTest[] =
+#include "shaders/tile_test.comp.inc"
+    ;
 constexpr std::uint32_t kSeenBox[] =
 #include "shaders/seen_box.frag.inc"
     ;
 
-constexpr std::uint32_t kDepthTile = 4, kFaceVertices = 18;           // as in the shaders
+// As in the shaders.
+constexpr std::uint32_t kDepthTile = 4, kBlock = 8, kFaceVertices = 18, kQuestionSize = 20;
 constexpr std::uint32_t kWords = partition::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
 constexpr std::uint32_t kPart = 32;                                   ///< objects that a workgroup takes
 constexpr std::uint32_t kParts = (partition::ChunkMap::kCapacity + kPart - 1) / kPart;
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct Push {
-  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, depth, tiles, list, test;
-  std::uint32_t stamp, parts_in;
+  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, questions, blocks, tiles, list, test;
+  std::uint32_t stamp, parts_in, widest;
 };
+
+/// What the device finds out in a frame, as in resident.h.
+struct TestData {
+  struct Asked {
+    vk::DispatchIndirectCommand groups{0, 1, 1};
+    std::uint32_t count = 0;
+  };
+  std::array<vk::DrawIndirectCommand, 2> draws;
+  Asked questions, blocks;
+};
+static_assert(sizeof(TestData) == 64);
 
 struct FacesPush {
   vk::DeviceAddress boxes, state, list;
   std::uint32_t across_edge;
-};
-
-struct TilesPush {
-  vk::DeviceAddress depth, tiles;
-  std::uint32_t width, height, reversed;
 };
 
 constexpr std::array kParameters{culling::kContributionParameter, culling::kThresholdParameter,
@@ -58,8 +68,11 @@ public:
                                    .constants = shader_constants(contribution_),
                                    .depth_write = false}),
         depth_tiles_(renderer.device(), kDepthTiles),
+        against_tiles_(renderer.device(), kTileTest),
+        questions_(renderer.device(), renderer.scene().size() * kQuestionSize, vulkan::Memory::device,
+                   "what objects ask"),
         list_(renderer.device(), renderer.scene().size() * 4, vulkan::Memory::device, "objects to test"),
-        test_(renderer.device(), 32, vulkan::Memory::device, "draw commands") {
+        test_(renderer.device(), sizeof(TestData), vulkan::Memory::device, "draw commands") {
     send_changes();
   }
 
@@ -119,20 +132,32 @@ private:
     for (const std::uint32_t chunk : chunks_.crossing()) enter(chunk, 0);
     const auto count = static_cast<std::uint32_t>(entry - first);
     if (count == 0) return;
-    const std::array<std::uint32_t, 8> draws{0, 1, 0, 0, 0, 1, kFaceVertices * renderer_.buffers().objects,
-                                             0};
-    frame.commands.updateBuffer<std::uint32_t>(test_.handle(), 0, draws);
-    const std::uint32_t width = frame.targets.depth.width(), height = frame.targets.depth.height();
-    frame.targets.depth.copy_to(frame.commands, depth_for(frame), kDepthTile * tiles_across(width));
-    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
-    frame.dispatch(depth_tiles_,
-                   TilesPush{depth_.address(), farthest_.address(), width, height, frame.reversed()},
-                   tiles_across(width) * tiles_across(height), 64);
+    const TestData nothing{{vk::DrawIndirectCommand{0, 1, 0, 0},
+                            vk::DrawIndirectCommand{0, 1, kFaceVertices * renderer_.buffers().objects, 0}},
+                           {},
+                           {}};
+    frame.commands.updateBuffer<TestData>(test_.handle(), 0, nothing);
+    const std::uint32_t blocks = make_room(frame.targets.depth.width(), frame.targets.depth.height());
+    frame.commands.fillBuffer(blocks_.handle(), 0, std::uint64_t{4} * blocks, 0);
+    frame.targets.depth.begin_reading(frame.commands);
     const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
-    frame.dispatch(objects_,
-                   Push{boxes, state_.address(), chunks_in_.address(), resident_.address(), depth_.address(),
-                        farthest_.address(), list_.address(), test_.address(), stamp_, count},
-                   count * kPart, kPart);
+    const Push push{boxes,
+                    state_.address(),
+                    chunks_in_.address(),
+                    resident_.address(),
+                    questions_.address(),
+                    blocks_.address(),
+                    farthest_.address(),
+                    list_.address(),
+                    test_.address(),
+                    stamp_,
+                    count,
+                    frame.widest_dispatch()};
+    frame.dispatch(objects_, push, count * kPart, kPart);
+    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
+    frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, blocks)});
+    frame.dispatch(against_tiles_, push, {test_, offsetof(TestData, questions)});
+    frame.targets.depth.end_reading(frame.commands);
     frame.begin_rendering({});
     frame.bind(faces_, vulkan::Recorder::Compare::nearer_or_equal, vulkan::kTestBias);
     for (const std::uint32_t across_edge : {0, 1}) {
@@ -142,21 +167,21 @@ private:
     frame.end_rendering();
   }
 
-  [[nodiscard]] static std::uint32_t tiles_across(std::uint32_t pixels) {
-    return (pixels + kDepthTile - 1) / kDepthTile;
-  }
-
-  /// Room for the frame's depth, rows padded to whole tiles, and for its tiles.
-  const vulkan::Buffer& depth_for(const vulkan::Recorder& frame) {
-    const std::uint64_t across = tiles_across(frame.targets.depth.width()),
-                        tile_bytes = 4 * across * tiles_across(frame.targets.depth.height()),
-                        bytes = kDepthTile * kDepthTile * tile_bytes;
+  /// Room for the tiles of a picture; returns how many blocks they are.
+  std::uint32_t make_room(std::uint32_t width, std::uint32_t height) {
+    const auto across = [](std::uint32_t all, std::uint32_t each) { return (all + each - 1) / each; };
+    const std::uint32_t columns = across(width, kDepthTile), rows = across(height, kDepthTile),
+                        blocks = across(columns, kBlock) * across(rows, kBlock);
     vulkan::Device& device = renderer_.device();
-    if (depth_.size() < bytes) depth_ = vulkan::Buffer(device, bytes, vulkan::Memory::device, "depth");
+    const std::uint64_t tile_bytes = std::uint64_t{4} * columns * rows,
+                        block_bytes = std::uint64_t{8} * blocks;
     if (farthest_.size() < tile_bytes) {
       farthest_ = vulkan::Buffer(device, tile_bytes, vulkan::Memory::device, "depth tiles");
     }
-    return depth_;
+    if (blocks_.size() < block_bytes) {
+      blocks_ = vulkan::Buffer(device, block_bytes, vulkan::Memory::device, "blocks of depth tiles");
+    }
+    return blocks;
   }
 
   void count(CullStats& stats) override {
@@ -167,9 +192,9 @@ private:
   GroundChunks chunks_;
   vulkan::ComputePipeline objects_;
   vulkan::GraphicsPipeline faces_;
-  vulkan::ComputePipeline depth_tiles_;
-  vulkan::Buffer list_, test_;
-  vulkan::Buffer resident_, chunks_in_, staging_, depth_, farthest_;
+  vulkan::ComputePipeline depth_tiles_, against_tiles_;
+  vulkan::Buffer questions_, list_, test_;
+  vulkan::Buffer resident_, chunks_in_, staging_, blocks_, farthest_;
   std::uint32_t room_ = 0;  ///< chunks that the buffers hold
   std::vector<std::uint32_t> changed_;
   std::vector<vk::BufferCopy> regions_;
@@ -182,7 +207,7 @@ const DeviceMethodInfo kResidentChunk{
     "beyond A",
     "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
     Guarantee::exact,
-    "shaderInt64",
+    "",
     kParameters,
     make_on_device<ResidentChunk>};
 

@@ -47,10 +47,11 @@ bool reaches_near_plane(vec3 centre, vec3 half_extent) {
 // mesh alike, so that no pixel of the mesh is missed at the box's rim, nor at a slant in depth. A depth bias
 // covers what is left.
 vec3 widened(vec3 centre, vec3 half_extent) {
-  float depth = 1;
-  if (view.eye.w == 0) {
-    depth = max(0, dot(view.forward.xyz, centre - view.eye.xyz) + dot(abs(view.forward.xyz), half_extent));
-  }
+  // A choice of two values and no branch: lavapipe compiles a shader anew at every dispatch if branches on
+  // what is uniform are much of it.
+  const float farthest =
+      dot(view.forward.xyz, centre - view.eye.xyz) + dot(abs(view.forward.xyz), half_extent);
+  const float ahead = max(0, farthest), depth = view.eye.w == 0 ? ahead : 1;
   return half_extent + depth / (32 * view.pixels_per_metre) + 1e-6 * (abs(centre) + half_extent);
 }
 

@@ -1,36 +1,30 @@
 #version 460
 #include "vulkan/shared.h"
 
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-layout(local_size_x = 64) in;
+#include "vulkan/shaders/view.h"
+
+#include "resident.h"
+#include "vulkan/shaders/frame_depth.h"
+layout(local_size_x = kBlock * kBlock) in;
 #include "vulkan/shaders/invocation.h"
 
-// The farthest depth of each tile of 4 x 4 pixels. Rows are padded to whole tiles. Pixels are read in pairs: llvmpipe
-// reads memory lane by lane, at the same cost for a word as for two.
-layout(buffer_reference, scalar) readonly buffer PairBuffer { uint64_t at[]; };
-layout(buffer_reference, scalar) writeonly buffer FloatBuffer { float at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  PairBuffer depth;
-  FloatBuffer tiles;
-  uint width, height, reversed;
-};
-
-const uint kDepthTile = 4;
-
+// The farthest depth of each tile of 4 x 4 pixels: a group a block that was asked for, a lane a tile. Past the
+// picture's edge the sampler repeats it.
 void main() {
-  const uint columns = (width + kDepthTile - 1) / kDepthTile, rows = (height + kDepthTile - 1) / kDepthTile;
-  const uint tile = invocation();
-  if (tile >= columns * rows) return;
-  const uvec2 first = kDepthTile * uvec2(tile % columns, tile / columns);
-  float farthest = reversed != 0 ? 1 : 0;
-  for (uint y = 0; y < kDepthTile; ++y) {
-    const uint row = min(first.y + y, height - 1) * columns * kDepthTile;
-    for (uint x = first.x; x < first.x + kDepthTile; x += 2) {
-      const vec2 pair = uintBitsToFloat(unpack32(depth.at[(row + x) / 2]));
-      const float left = x < width ? pair.x : farthest, right = x + 1 < width ? pair.y : farthest;
-      farthest = reversed != 0 ? min(farthest, min(left, right)) : max(farthest, max(left, right));
-    }
-  }
-  tiles.at[tile] = farthest;
+  const uint lane = gl_LocalInvocationID.x;
+  const uvec2 size = tiles_in_image(), all_blocks = blocks_in_image();
+  if (workgroup() >= test.asked[kBlocks].count) return;
+  const uvec2 block = unpacked(blocks.at[all_blocks.x * all_blocks.y + workgroup()]);
+  const uvec2 tile = kBlock * block + uvec2(lane % kBlock, lane / kBlock);
+  if (any(greaterThanEqual(tile, size))) return;
+  // Four texels about each point, which lies where they meet.
+  const vec2 first = vec2(kDepthTile * tile), scale = 1 / vec2(image_size());
+  const vec4 a = textureGather(frame_depth, (first + vec2(1, 1)) * scale);
+  const vec4 b = textureGather(frame_depth, (first + vec2(3, 1)) * scale);
+  const vec4 c = textureGather(frame_depth, (first + vec2(1, 3)) * scale);
+  const vec4 d = textureGather(frame_depth, (first + vec2(3, 3)) * scale);
+  const vec4 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
+  const float lowest = min(min(low.x, low.y), min(low.z, low.w));
+  const float highest = max(max(high.x, high.y), max(high.z, high.w));
+  tiles.at[tile.y * size.x + tile.x] = view.reversed != 0 ? lowest : highest;
 }
