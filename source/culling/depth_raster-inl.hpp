@@ -180,7 +180,7 @@ HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::ui
 }
 #endif
 
-constexpr std::uint32_t kWide = 3;  // tiles
+constexpr std::uint32_t kWide = 1;  // tiles
 
 // Draws what `spans_from` says of sixteen lines from a pixel centre on, tile by tile.
 template <std::size_t kPlanes, class SpansFrom>

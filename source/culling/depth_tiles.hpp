@@ -111,12 +111,16 @@ struct OccluderTopology {
   /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
+  /// diagonal.
+  std::vector<std::uint8_t> first_half;
 
   /// Runs of triangles with a box that holds them: what is out of view or hidden as a whole is not set up.
   static constexpr std::uint32_t kGroup = 16;
   struct Group {
     /// A bit a triangle and edge: its second corner has the lower number.
     std::array<std::uint32_t, 3> turned{};
+    std::uint32_t first_half = 0;                    ///< a bit a triangle
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …
@@ -129,6 +133,10 @@ struct OccluderTopology {
   partition::AlignedVector<std::int32_t> neighbour;
   void lay_out();
 };
+
+/// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
+/// places.
+void pair_up(OccluderTopology& mesh);
 
 EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept;
 void draw_convex(DepthTiles& tiles, const Convex& polygon) noexcept;
@@ -155,6 +163,8 @@ struct TriangleBlock {
   /// Up to 16 of the triangles from `first` on, three corners each.
   void take(std::span<const Vec3> triangles, std::size_t first) noexcept;
 };
+/// Of blocks that are soon asked for the first, if there is one.
+void prefetch(std::span<const TriangleBlock> blocks) noexcept;
 /// The same of the first `count` triangles of whole blocks.
 bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
                      std::size_t count) noexcept;

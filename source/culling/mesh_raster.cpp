@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "culling/mesh_raster.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "culling/depth_raster-inl.hpp"
@@ -117,12 +118,14 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
   }
 }
 
-// A vector of triangles, ready to be drawn.
+// A group of triangles, ready to be drawn.
 struct Triangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
   alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
-  std::array<std::uint32_t, 3> on_right, steep;  // a bit a triangle: the edge bounds it to the right
+  std::array<std::uint32_t, 3> on_right{}, steep{};  // a bit a triangle: the edge bounds it to the right
   std::uint32_t drawn = 0, cut = 0;
+  // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
+  std::uint32_t sound = 0, to_right = 0, flat = 0;
 };
 
 // Those that lie wholly to one side of what is in view.
@@ -163,8 +166,8 @@ std::array<std::array<double, 3>, 3> about_eye(const EyeProjection& e, const Occ
   return out;
 }
 
-// Triangles 16·group + lane … of the mesh; false where there is nothing to draw.
-HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+// Triangles 16·group + lane … of the mesh.
+HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
                        std::size_t group, std::size_t lane, Triangles& out) {
   const F f;
   const I i32;
@@ -177,10 +180,9 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
     tiles.mesh.known[group] = tiles.mesh.turn;
   }
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f);
-  out.cut = bits_of(hn::Eq(facing, hn::Set(f, kCut)));
-  if (out.cut != 0) out.cut &= ~beyond_a_side(tiles, corners);
+  const std::uint32_t cut = bits_of(hn::Eq(facing, hn::Set(f, kCut)));
+  if (cut != 0) out.cut |= (cut & ~beyond_a_side(tiles, corners)) << lane;
   auto drawn = hn::Eq(hn::Abs(facing), one);
-  out.drawn = 0;
   const VF *x = image.x, *y = image.y;
   const VF left = hn::Min(hn::Min(x[0], x[1]), x[2]), right = hn::Max(hn::Max(x[0], x[1]), x[2]);
   VF top = hn::Min(hn::Min(y[0], y[1]), y[2]), bottom = hn::Max(hn::Max(y[0], y[1]), y[2]);
@@ -192,7 +194,7 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   };
   const VF x0 = first(left), x1 = last(right, tiles.width), y0 = first(top), y1 = last(bottom, tiles.height);
   drawn = hn::And(drawn, hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
-  if (hn::AllFalse(f, drawn)) return out.cut != 0;
+  if (hn::AllFalse(f, drawn)) return;
 
   // Nor behind the tiles of the corners, where those are all.
   const auto nearness = [&](std::size_t k) HWY_ATTR {
@@ -212,7 +214,7 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   const VF least_of_all = hn::Min(hn::Min(farthest(ty0, tx0), farthest(ty0, tx1)),
                                   hn::Min(farthest(ty1, tx0), farthest(ty1, tx1)));
   drawn = hn::And(drawn, hn::Or(hn::RebindMask(f, many), hn::Lt(least_of_all, nearest)));
-  if (hn::AllFalse(f, drawn)) return out.cut != 0;
+  if (hn::AllFalse(f, drawn)) return;
 
   const V3 &p = corners[0], &q = corners[1], &r = corners[2];
   const V3 normal = cross(minus(q, p), minus(r, p));
@@ -230,7 +232,9 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   // Seen too much edge on, the plane says nothing.
   const VF least =
       orthographic ? hn::Set(f, 1e-4f) : hn::Add(hn::Mul(hn::Set(f, 1e-5f), reach), hn::Set(f, 1e-6f));
-  drawn = hn::And(drawn, hn::And(hn::Gt(length, zero), hn::Gt(hn::Abs(scale), least)));
+  const auto sound =
+      hn::And(hn::Eq(hn::Abs(facing), one), hn::And(hn::Gt(length, zero), hn::Gt(hn::Abs(scale), least)));
+  drawn = hn::And(drawn, sound);
   const VF across = hn::Div(dot(unit, rays.across), scale), down = hn::Div(dot(unit, rays.down), scale);
   const VF ray_at = dot(unit, rays.at);
   const VF start = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
@@ -238,15 +242,16 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
   const VF sides = hn::Add(most(minus(q, p)), most(minus(r, p)));
   VF doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, 4.2e-7f), reach), sides), hn::Mul(length, hn::Abs(scale)));
   if (orthographic) doubt = hn::Mul(doubt, hn::Add(sides, sides));
-  hn::Store(hn::Sub(moved_back(start, across, down, nearest), doubt), f, out.at.data());
-  hn::Store(across, f, out.across.data());
-  hn::Store(down, f, out.down.data());
-  hn::Store(nearest, f, out.nearest.data());
+  hn::Store(hn::Sub(moved_back(start, across, down, nearest), doubt), f, &out.at[lane]);
+  hn::Store(across, f, &out.across[lane]);
+  hn::Store(down, f, &out.down[lane]);
+  hn::Store(nearest, f, &out.nearest[lane]);
 
   const VF farthest_out =
       hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
   const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
   const auto to_right = hn::Gt(facing, zero);
+  out.sound |= bits_of(sound) << lane, out.to_right |= bits_of(to_right) << lane;
   const auto from_middle = [&](VF at_x, VF at_y) HWY_ATTR {
     return hn::Add(hn::Abs(hn::Sub(at_x, hn::Set(f, 0.5f * static_cast<float>(tiles.width)))),
                    hn::Abs(hn::Sub(at_y, hn::Set(f, 0.5f * static_cast<float>(tiles.height)))));
@@ -275,25 +280,25 @@ HWY_INLINE bool set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Af
              edge_at = hn::Sub(ax, hn::Mul(ay, slope));
     const VF inwards = hn::Mul(by_seam, hn::Add(one, hn::Abs(slope)));
     const auto steep = hn::Ge(hn::Abs(rise), hn::Set(f, kFlat));
-    out.steep[k] = bits_of(steep);
-    out.on_right[k] = bits_of(on_right);
-    hn::Store(slope, f, out.slope[k].data());
+    out.steep[k] |= bits_of(steep) << lane;
+    out.on_right[k] |= bits_of(on_right) << lane;
+    hn::Store(slope, f, &out.slope[k][lane]);
     hn::Store(hn::IfThenElse(on_right, hn::Sub(edge_at, inwards), hn::Add(edge_at, inwards)), f,
-              out.edge_at[k].data());
+              &out.edge_at[k][lane]);
     // A flat edge that is no seam bounds the rows.
     const auto bounds = hn::AndNot(seam, hn::Not(steep));
+    out.flat |= bits_of(bounds) << lane;
     const auto above = hn::Gt(y[(k + 2) % 3], ay);
     top = hn::IfThenElse(hn::And(bounds, above), hn::Max(top, hn::Add(hn::Max(ay, by), inset)), top);
     bottom =
         hn::IfThenElse(hn::AndNot(above, bounds), hn::Min(bottom, hn::Sub(hn::Min(ay, by), inset)), bottom);
   }
   // Where only seams bound a corner of the outline, rounding may carry them beyond it.
-  hn::Store(hn::Add(left, inset), f, out.left.data());
-  hn::Store(hn::Sub(right, inset), f, out.right.data());
-  hn::Store(hn::Add(top, inset), f, out.top.data());
-  hn::Store(hn::Sub(bottom, inset), f, out.bottom.data());
-  out.drawn = bits_of(drawn);
-  return (out.drawn | out.cut) != 0;
+  hn::Store(hn::Add(left, inset), f, &out.left[lane]);
+  hn::Store(hn::Sub(right, inset), f, &out.right[lane]);
+  hn::Store(hn::Add(top, inset), f, &out.top[lane]);
+  hn::Store(hn::Sub(bottom, inset), f, &out.bottom[lane]);
+  out.drawn |= bits_of(drawn) << lane;
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
@@ -350,36 +355,89 @@ void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& 
   sort_by_high_bits(s.near_first, s.other, 48);
 }
 
+// Adds the first `count` edges of triangle i.
+HWY_INLINE void add_edges(const Triangles& ready, int i, std::size_t count, Convex& out) {
+  for (std::size_t k = 0; k < count; ++k) {
+    // Written to both lists and counted in one: no branch to guess.
+    const std::size_t l = out.left_edges, r = out.right_edges;
+    out.left_at[l] = out.right_at[r] = ready.edge_at[k][i];
+    out.left_slope[l] = out.right_slope[r] = ready.slope[k][i];
+    const std::uint32_t steep = ready.steep[k] >> i & 1, on_right = ready.on_right[k] >> i & 1;
+    out.right_edges += steep & on_right;
+    out.left_edges += steep & ~on_right & 1;
+  }
+}
+
+HWY_INLINE void draw_one_of(DepthTiles& tiles, const Triangles& ready, int i) {
+  const TileRange range = tiles_of(tiles, ready.left[i], ready.right[i], ready.top[i], ready.bottom[i]);
+  if (hidden_tiles(tiles, range, ready.nearest[i])) return;
+  Convex out;
+  out.left = ready.left[i], out.right = ready.right[i];
+  out.top = ready.top[i], out.bottom = ready.bottom[i];
+  out.at = ready.at[i], out.across = ready.across[i], out.down = ready.down[i];
+  add_edges(ready, i, 3, out);
+  draw_polygon(tiles, out, range);
+}
+
+// How far apart a quad's halves may lie, of their nearness, before they are drawn one by one.
+constexpr float kMostApart = 4e-5f;
+
+// Triangles i and i + 1 as one quad on the first one's plane, moved behind the second's wherever the image
+// may hold the quad; false where their planes differ by more than rounding. Whether the answer is true does
+// not depend on what is drawn already, for widths of vectors see that at different times.
+HWY_INLINE bool draw_quad(DepthTiles& tiles, const Triangles& ready, int i) {
+  Convex out;
+  out.left = std::min(ready.left[i], ready.left[i + 1]);
+  out.right = std::max(ready.right[i], ready.right[i + 1]);
+  out.top = std::min(ready.top[i], ready.top[i + 1]);
+  out.bottom = std::max(ready.bottom[i], ready.bottom[i + 1]);
+  out.across = ready.across[i], out.down = ready.down[i];
+  const float nearest = std::max(ready.nearest[i], ready.nearest[i + 1]);
+  const float across = out.across - ready.across[i + 1], down = out.down - ready.down[i + 1];
+  const float x0 = std::max(out.left, 0.0f), x1 = std::min(out.right, static_cast<float>(tiles.width)),
+              y0 = std::max(out.top, 0.0f), y1 = std::min(out.bottom, static_cast<float>(tiles.height));
+  const float apart = ready.at[i] - ready.at[i + 1];
+  const float before = apart + std::max(across * x0, across * x1) + std::max(down * y0, down * y1),
+              behind = -apart - std::min(across * x0, across * x1) - std::min(down * y0, down * y1);
+  const float rounding =
+      5e-7f * (std::fabs(ready.at[i]) + std::fabs(out.across) * x1 + std::fabs(out.down) * y1);
+  const float back = std::max(before, 0.0f) + rounding;
+  const float most = kMostApart * std::min(std::fabs(ready.nearest[i]), std::fabs(ready.nearest[i + 1]));
+  if (!(back + std::max(behind, 0.0f) <= most)) return false;
+  out.at = ready.at[i] - back;
+  const TileRange range = tiles_of(tiles, out.left, out.right, out.top, out.bottom);
+  if (hidden_tiles(tiles, range, nearest)) return true;
+  add_edges(ready, i, 2, out);
+  add_edges(ready, i + 1, 2, out);
+  draw_polygon(tiles, out, range);
+  return true;
+}
+
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
                            std::size_t group) {
   Triangles ready;
-  for (std::size_t lane = 0; lane < OccluderTopology::kGroup; lane += hn::Lanes(F())) {
-    if (!set_up(tiles, mesh, transform, group, lane, ready)) continue;
-    for (std::uint32_t rest = ready.drawn; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      const TileRange range = tiles_of(tiles, ready.left[i], ready.right[i], ready.top[i], ready.bottom[i]);
-      if (hidden_tiles(tiles, range, ready.nearest[i])) continue;
-      Convex out;
-      out.left = ready.left[i], out.right = ready.right[i];
-      out.top = ready.top[i], out.bottom = ready.bottom[i];
-      out.at = ready.at[i], out.across = ready.across[i], out.down = ready.down[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        // Written to both lists and counted in one: no branch to guess.
-        const std::size_t l = out.left_edges, r = out.right_edges;
-        out.left_at[l] = out.right_at[r] = ready.edge_at[k][i];
-        out.left_slope[l] = out.right_slope[r] = ready.slope[k][i];
-        const std::uint32_t steep = ready.steep[k] >> i & 1, on_right = ready.on_right[k] >> i & 1;
-        out.right_edges += steep & on_right;
-        out.left_edges += steep & ~on_right & 1;
-      }
-      draw_polygon(tiles, out, range);
-    }
-    for (std::uint32_t rest = ready.cut; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      draw_clipped_triangle(
-          tiles, about_eye(tiles.projection, mesh, transform, group, lane + static_cast<std::size_t>(i)));
-    }
+  for (std::size_t lane = 0; lane < OccluderTopology::kGroup; lane += hn::Lanes(F()))
+    set_up(tiles, mesh, transform, group, lane, ready);
+  const std::uint32_t alike = ready.sound & ready.sound >> 1 & ~(ready.to_right ^ ready.to_right >> 1) &
+                              ~(ready.flat | ready.flat >> 1);
+  std::uint32_t rest = ready.drawn;
+  for (std::uint32_t halves = mesh.groups[group].first_half & alike & (rest | rest >> 1); halves != 0;
+       halves &= halves - 1) {
+    const int i = std::countr_zero(halves);
+    if (draw_quad(tiles, ready, i)) rest &= ~(3u << i);
   }
+  for (; rest != 0; rest &= rest - 1) draw_one_of(tiles, ready, std::countr_zero(rest));
+  for (rest = ready.cut; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    draw_clipped_triangle(tiles, about_eye(tiles.projection, mesh, transform, group, i));
+  }
+}
+
+HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) {
+  constexpr std::size_t kGroup = OccluderTopology::kGroup;
+  hwy::Prefetch(&mesh.groups[group]);
+  for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.corners[(group * 9 + i) * kGroup]);
+  for (std::size_t i = 0; i < 3; ++i) hwy::Prefetch(&mesh.neighbour[(group * 3 + i) * kGroup]);
 }
 
 void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
@@ -398,6 +456,9 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affin
         tiles, tiles.projection,
         {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
         visible.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
+    }
     for (std::size_t i = 0; i < count; ++i) {
       if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)]);
     }

@@ -134,6 +134,8 @@ void draw_polygon(DepthTiles& tiles, Polygon polygon, const glm::dvec3& normal, 
   };
   for (const Vec4& plane : {tiles.rays.near_plane, beyond(e.x, 1, w), beyond(e.x, -1, 2 * w),
                             beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
+    const auto outside = [&](const glm::dvec3& p) { return !(dot(plane, p) >= 0); };
+    if (std::none_of(polygon.points.begin(), polygon.points.begin() + polygon.count, outside)) continue;
     polygon = clip(polygon, plane);
     if (polygon.count < 3) return;
   }
@@ -232,6 +234,7 @@ void OccluderTopology::lay_out() {
         out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
         low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p));
         if (first + i >= end) continue;
+        group.first_half |= std::uint32_t{first_half[first + i]} << i;
         group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
         const std::uint32_t other = neighbours[first + i][k];
         neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
@@ -439,6 +442,7 @@ OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std:
     t.neighbours[sides.triangle[0]][sides.edge[0]] = sides.triangle[1];
     t.neighbours[sides.triangle[1]][sides.edge[1]] = sides.triangle[0];
   }
+  culling::pair_up(t);
   t.lay_out();
 }
 

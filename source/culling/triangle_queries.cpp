@@ -69,6 +69,7 @@ bool clip_to_view(const DepthTiles& tiles, ClipPolygon& polygon) {
 #define HWY_TARGET_INCLUDE "culling/triangle_queries.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "culling/depth_query-inl.hpp"
@@ -355,6 +356,12 @@ void TriangleBlock::take(std::span<const Vec3> triangles, std::size_t first) noe
       corners[k][0][i] = c.x, corners[k][1][i] = c.y, corners[k][2][i] = c.z;
     }
   }
+}
+
+void prefetch(std::span<const TriangleBlock> blocks) noexcept {
+  const std::span<const std::byte> bytes =
+      std::as_bytes(blocks.first(std::min<std::size_t>(blocks.size(), 1)));
+  for (std::size_t at = 0; at < bytes.size(); at += 64) hwy::Prefetch(&bytes[at]);
 }
 
 bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,

@@ -116,7 +116,7 @@ void Renderer::sort_transparent(const View& view) {
   for (const std::uint64_t key : sort_keys_) *order++ = static_cast<ObjectId>(key);
 }
 
-FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)>& record) {
+FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)>& record, Timed timed) {
   resize(view.width, view.height);
   FrameTimes times;
   const auto start = std::chrono::steady_clock::now();
@@ -125,7 +125,7 @@ FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)
   unsorted_ = view;
   const vk::raii::CommandBuffer& commands = commands_[0];
   commands.begin(vk::CommandBufferBeginInfo{vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  timer_.reset(commands);
+  timer_.reset(commands, timed == Timed::passes);
   Recorder recorder(device_, commands, timer_, view, data.reversed != 0, *view_set_[0], *targets_);
   const auto before = std::chrono::steady_clock::now();
   record(recorder);

@@ -13,7 +13,7 @@
 namespace sightline::vulkan {
 
 struct FrameTimes {
-  std::vector<PassTime> passes;  ///< GPU, in order
+  std::vector<PassTime> passes;  ///< GPU, in order; none where they were not asked for
   double record_ms = 0;          ///< CPU, what the recording function took: culling on the CPU stands in it
   double frame_ms = 0;           ///< from the beginning of recording to the finished picture
 
@@ -40,9 +40,13 @@ public:
   /// Sends the new transforms of moved objects.
   void update(std::span<const ObjectId> moved);
 
+  /// What is timed besides the whole frame. On llvmpipe each timestamp is a round through all its threads, a
+  /// tenth of a short frame, so that a frame tells its own time best without.
+  enum class Timed : std::uint8_t { frame, passes };
   /// Records, submits and waits for a frame of the view's size. The view has passed check(). Depth and colour
   /// hold the last frame until they are cleared.
-  FrameTimes frame(const View& view, const std::function<void(Recorder&)>& record);
+  FrameTimes frame(const View& view, const std::function<void(Recorder&)>& record,
+                   Timed timed = Timed::frame);
 
   enum class Style : std::uint8_t { depth, lit };
   enum class Clear : std::uint8_t { nothing, colour, depth, both };

@@ -6,12 +6,15 @@ Timer::Timer(const Device& device)
     : device_(device),
       pool_(device.handle(), vk::QueryPoolCreateInfo{{}, vk::QueryType::eTimestamp, 2 * kMostPasses}) {}
 
-void Timer::reset(const vk::raii::CommandBuffer& commands) {
+void Timer::reset(const vk::raii::CommandBuffer& commands, bool on) {
   passes_.clear();
+  on_ = on;
+  if (!on_) return;
   commands.resetQueryPool(*pool_, 0, 2 * kMostPasses);
 }
 
 void Timer::begin(const vk::raii::CommandBuffer& commands, std::string_view name, PassKind kind) {
+  if (!on_) return;
   passes_.push_back({std::string(name), kind, 0});
   if (!device_.has_timestamps() || passes_.size() > kMostPasses) return;
   commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_,
@@ -19,7 +22,7 @@ void Timer::begin(const vk::raii::CommandBuffer& commands, std::string_view name
 }
 
 void Timer::end(const vk::raii::CommandBuffer& commands) {
-  if (!device_.has_timestamps() || passes_.size() > kMostPasses) return;
+  if (!on_ || !device_.has_timestamps() || passes_.size() > kMostPasses) return;
   commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_,
                            2 * static_cast<std::uint32_t>(passes_.size() - 1) + 1);
 }

@@ -20,8 +20,8 @@ class Timer {
 public:
   explicit Timer(const Device& device);
 
-  /// Forgets the last frame's passes.
-  void reset(const vk::raii::CommandBuffer& commands);
+  /// Forgets the last frame's passes; those of this frame count if it is `on`.
+  void reset(const vk::raii::CommandBuffer& commands, bool on);
   void begin(const vk::raii::CommandBuffer& commands, std::string_view name, PassKind kind);
   void end(const vk::raii::CommandBuffer& commands);
   /// Of the frame that was last submitted and waited for; 0 ms where the device has no timestamps.
@@ -30,6 +30,7 @@ public:
 private:
   static constexpr std::uint32_t kMostPasses = 128;  ///< passes after these go untimed
   const Device& device_;
+  bool on_ = false;
   vk::raii::QueryPool pool_;
   std::vector<PassTime> passes_;
 };

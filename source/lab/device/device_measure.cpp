@@ -9,6 +9,9 @@ namespace sightline::lab {
 
 namespace {
 
+// Frames of each method and view that tell their passes' times, and no others.
+constexpr std::size_t kTimedPasses = 3;
+
 struct Times {
   std::vector<double> cpu, gpu, frame;
 };
@@ -74,14 +77,20 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
         if (seen.pixels[o] > 0) told->visible.push_back(o);
       }
     }
-    for (std::size_t repeat = 0; repeat < measure.warm_up + measure.repeats; ++repeat) {
+    const std::size_t whole_frames = measure.warm_up + measure.repeats;
+    for (std::size_t repeat = 0; repeat < whole_frames + kTimedPasses; ++repeat) {
+      using Timed = vulkan::Renderer::Timed;
+      const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
       if (options.moving > 0) bench.update(mover.move());
       for (std::size_t k = 0; k < contestants.size(); ++k) {
         const std::size_t m = (k + v + repeat) % contestants.size();
-        const vulkan::FrameTimes times = bench.draw(*contestants[m].method, view);
+        const vulkan::FrameTimes times = bench.draw(*contestants[m].method, view, timed);
         if (repeat < measure.warm_up) continue;
+        if (timed == Timed::passes) {
+          samples[m].gpu.push_back(times.gpu_ms(vulkan::PassKind::cull));
+          continue;
+        }
         samples[m].cpu.push_back(times.record_ms);
-        samples[m].gpu.push_back(times.gpu_ms(vulkan::PassKind::cull));
         samples[m].frame.push_back(times.frame_ms);
       }
     }

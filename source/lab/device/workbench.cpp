@@ -17,9 +17,10 @@ Workbench::Workbench(vulkan::Device& device, Scene& scene, std::span<const std::
   }
 }
 
-vulkan::FrameTimes Workbench::draw(methods::DeviceMethod& method, const View& view) {
-  const vulkan::FrameTimes times =
-      renderer_.frame(view, [&](vulkan::Recorder& frame) { method.record(frame); });
+vulkan::FrameTimes Workbench::draw(methods::DeviceMethod& method, const View& view,
+                                   vulkan::Renderer::Timed timed) {
+  const vulkan::FrameTimes times = renderer_.frame(
+      view, [&](vulkan::Recorder& frame) { method.record(frame); }, timed);
   method.took(times.frame_ms);
   return times;
 }

@@ -29,7 +29,8 @@ public:
   [[nodiscard]] methods::DeviceMethod& reference() noexcept { return *reference_; }
 
   /// One frame of one method, which is told what it took.
-  vulkan::FrameTimes draw(methods::DeviceMethod& method, const View& view);
+  vulkan::FrameTimes draw(methods::DeviceMethod& method, const View& view,
+                          vulkan::Renderer::Timed timed = vulkan::Renderer::Timed::frame);
   /// The rasteriser's verdict. The next picture is drawn anew in any case.
   [[nodiscard]] ItemBuffer judge(const View& view);
   /// For a method that draws triangles of its own: what all of them look like to the rasteriser, opaque ones

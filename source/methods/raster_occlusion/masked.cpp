@@ -126,10 +126,14 @@ private:
     return corners_;
   }
 
+  std::span<culling::TriangleBlock> blocks_of(ObjectId o) noexcept {
+    return std::span(blocks_).subspan(first_block_[o], first_block_[o + 1] - first_block_[o]);
+  }
+
   void place_triangles(ObjectId o) {
     const std::span<const Vec3> corners = corners_of(o);
-    for (std::size_t b = first_block_[o]; b < first_block_[o + 1]; ++b)
-      blocks_[b].take(corners, (b - first_block_[o]) * culling::TriangleBlock::kSize);
+    const std::span<culling::TriangleBlock> its = blocks_of(o);
+    for (std::size_t b = 0; b < its.size(); ++b) its[b].take(corners, b * culling::TriangleBlock::kSize);
   }
 
   void find_blocks() {
@@ -157,11 +161,13 @@ private:
 
   // Of what its box leaves, an object's triangles may drop some more. Keeps the rest in front, in order.
   void drop_hidden_triangles(std::span<ObjectId> visible, CullResult& result) {
+    constexpr std::size_t kAhead = 3;
     std::size_t kept = 0;
-    for (const ObjectId o : visible) {
-      const auto its = std::span(blocks_).subspan(first_block_[o], first_block_[o + 1] - first_block_[o]);
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+      if (i + kAhead < visible.size()) culling::prefetch(blocks_of(visible[i + kAhead]));
+      const ObjectId o = visible[i];
       visible[kept] = o;
-      kept += culling::query_triangles(buffer_.tiles(), its, scene_.triangles(o));
+      kept += culling::query_triangles(buffer_.tiles(), blocks_of(o), scene_.triangles(o));
     }
     result.culled_occlusion += visible.size() - kept;
     result.count = kept;
