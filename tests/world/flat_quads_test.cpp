@@ -19,7 +19,7 @@ namespace {
 using scene::Random;
 using test::ExactRays;
 
-constexpr Box kAround{{-40, -20, -40}, {40, 20, 40}};
+constexpr Box kRoom{{-40, -20, -40}, {40, 20, 40}};
 using Quad = std::array<Vec3, 4>;  // its diagonal goes from corner 0 to corner 2
 
 Vec3 along(const Vec3& from, float s, const Vec3& u, float t, const Vec3& v) {
@@ -28,7 +28,7 @@ Vec3 along(const Vec3& from, float s, const Vec3& u, float t, const Vec3& v) {
 
 // Convex, of any shape; `bent` moves a corner out of the plane, as a part of the quad's size.
 Quad quad_of(Random& random, float bent) {
-  const Vec3 at = random.inside(kAround), u = random.direction(), d = random.direction();
+  const Vec3 at = random.inside(kRoom), u = random.direction(), d = random.direction();
   const Vec3 normal{u.y * d.z - u.z * d.y, u.z * d.x - u.x * d.z, u.x * d.y - u.y * d.x};
   const Vec3 v{normal.y * u.z - normal.z * u.y, normal.z * u.x - normal.x * u.z,
                normal.x * u.y - normal.y * u.x};
@@ -120,7 +120,7 @@ TEST(FlatQuads, AreNowhereDrawnNearerThanTheyAreAndAlmostEverywhereTheyAre) {
   Random random(23);
   std::size_t covered = 0, missed = 0, pairs = 0;
   for (int round = 0; round < 400; ++round) {
-    Camera camera = test::random_camera(random, kAround);
+    Camera camera = test::random_camera(random, kRoom);
     const Result<View> view = make_view(camera, 20 + random.below(80), 20 + random.below(60));
     if (!view) continue;
     std::vector<Quad> quads;

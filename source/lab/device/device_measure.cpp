@@ -9,9 +9,6 @@ namespace sightline::lab {
 
 namespace {
 
-// Frames of each method and view that tell their passes' times, and no others.
-constexpr std::size_t kTimedPasses = 3;
-
 struct Times {
   std::vector<double> cpu, gpu, frame;
 };
@@ -77,8 +74,9 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
         if (seen.pixels[o] > 0) told->visible.push_back(o);
       }
     }
+    // First frames that tell their own time, then as many that tell their passes'.
     const std::size_t whole_frames = measure.warm_up + measure.repeats;
-    for (std::size_t repeat = 0; repeat < whole_frames + kTimedPasses; ++repeat) {
+    for (std::size_t repeat = 0; repeat < whole_frames + measure.repeats; ++repeat) {
       using Timed = vulkan::Renderer::Timed;
       const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
       if (options.moving > 0) bench.update(mover.move());
