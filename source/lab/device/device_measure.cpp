@@ -74,9 +74,8 @@ Comparison compare_on_device(Workbench& bench, const CameraPath& path, const Dev
         if (seen.pixels[o] > 0) told->visible.push_back(o);
       }
     }
-    // First frames that tell their own time, then as many that tell their passes'.
     const std::size_t whole_frames = measure.warm_up + measure.repeats;
-    for (std::size_t repeat = 0; repeat < whole_frames + measure.repeats; ++repeat) {
+    for (std::size_t repeat = 0; repeat < whole_frames + options.timed_passes; ++repeat) {
       using Timed = vulkan::Renderer::Timed;
       const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
       if (options.moving > 0) bench.update(mover.move());

@@ -11,6 +11,9 @@ namespace sightline::lab {
 
 struct DeviceMeasureOptions {
   MeasureOptions measure;
+  /// Frames of each method and view that tell what their passes took on the GPU, and nothing else: they are
+  /// the slower for it.
+  std::size_t timed_passes = 5;
   double moving = 0;  ///< share of the objects that move before every frame
   /// One more contestant, kLimit: what the item buffer sees and nothing else, found for nothing. No culling
   /// of whole objects draws a frame faster. Not where objects move.

@@ -162,16 +162,16 @@ VertexChunkWorld reproduce_vertex_chunk(vulkan::Device& device, const std::strin
   DeviceMeasureOptions measure;
   measure.measure.width = options.quick ? 640 : 1280;
   measure.measure.height = options.quick ? 360 : 720;
-  measure.measure.repeats = 15;
+  measure.measure.repeats = measure.timed_passes = 15;
   VertexChunkWorld world;
   world.name = name;
   world.near = compare_on_device(bench, {"near", {vertex_chunk_near(scene)}}, measure);
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
   measure.measure.warm_up = 2;
-  measure.measure.repeats = 1;
+  measure.measure.repeats = 1, measure.timed_passes = 0;
   world.rising = compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
-  measure.measure.repeats = options.quick ? 7 : 5;
+  measure.measure.repeats = options.quick ? 7 : 5, measure.timed_passes = 3;
   world.far = compare_on_device(bench, {"far", {vertex_chunk_far(scene)}}, measure);
   world.tables = make_tables(world, name == "regular" ? kRegular : kIrregular);
   world.rising_fps = rising_table(world.rising);
