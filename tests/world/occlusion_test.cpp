@@ -12,29 +12,13 @@
 #include "scene/random.hpp"
 #include "scene/shapes.hpp"
 #include "support/exact_rays.hpp"
-#include "support/random_views.hpp"
+#include "support/small_scenes.hpp"
 
 namespace sightline {
 namespace {
 
 using scene::Random;
 using test::ExactRays;
-
-constexpr Box kAround{{-50, -20, -50}, {50, 20, 50}};
-
-View small_view(Random& random) {
-  for (;;) {
-    const Result<View> view =
-        make_view(test::random_camera(random, kAround), 20 + random.below(80), 20 + random.below(60));
-    if (view) return *view;
-  }
-}
-
-Box box_of(Random& random, float largest) {
-  const Vec3 at = random.inside(kAround),
-             half = random.inside({{0.05f, 0.05f, 0.05f}, {largest, largest, largest}});
-  return {{at.x - half.x, at.y - half.y, at.z - half.z}, {at.x + half.x, at.y + half.y, at.z + half.z}};
-}
 
 std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Box> occluders,
                                  bool front_only = false) {
@@ -52,9 +36,9 @@ TEST(Occlusion, DrawsBoxesNowhereNearerThanTheyAreAndAlmostEverywhereTheyAre) {
   Random random(3);
   std::size_t covered = 0, missed = 0;
   for (int round = 0; round < 150; ++round) {
-    const View view = small_view(random);
+    const View view = test::small_view(random);
     std::vector<Box> occluders;
-    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, round % 3 == 0 ? 30.0f : 6.0f));
+    for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, round % 3 == 0 ? 30.0f : 6.0f));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
@@ -78,18 +62,18 @@ TEST(Occlusion, NeverHidesWhatAPixelCentreSees) {
   Random random(4);
   std::size_t hidden = 0, could_be = 0;
   for (int round = 0; round < 150; ++round) {
-    const View view = small_view(random);
+    const View view = test::small_view(random);
     std::vector<Box> occluders;
-    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, 8));
+    for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, 8));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
     const ExactRays rays(view);
-    const Frustum frustum = make_frustum(view, kAround);
+    const Frustum frustum = make_frustum(view, test::kRoom);
     const std::vector<double> exact = exact_depths(rays, view, occluders);
     const std::vector<double> front = exact_depths(rays, view, occluders, true);
     Boxes queries;
-    for (int i = 0; i < 21; ++i) queries.push_back(box_of(random, 2));
+    for (int i = 0; i < 21; ++i) queries.push_back(test::box_of(random, 2));
     std::vector<std::uint8_t> visible(queries.size());
     buffer.may_see(span_of(queries), visible);
     for (std::size_t q = 0; q < queries.size(); ++q) {
@@ -180,93 +164,9 @@ TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
   }
 }
 
-Sphere ball_of(Random& random, float largest) {
-  return {random.inside(kAround), random.between(0.05f, largest)};
-}
-
-// Of those that the near plane does not cut.
-std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Sphere> balls) {
-  std::vector<double> nearness(std::size_t{view.width} * view.height, ExactRays::kMiss);
-  const Plane front = make_frustum(view, kAround).planes[Frustum::front];
-  for (const Sphere& ball : balls) {
-    if (signed_distance(front, ball.centre.x, ball.centre.y, ball.centre.z) < ball.radius) continue;
-    for (std::uint32_t i = 0; i < nearness.size(); ++i) {
-      nearness[i] = std::max(nearness[i], rays.hit(i % view.width + 0.5, i / view.width + 0.5, ball));
-    }
-  }
-  return nearness;
-}
-
-TEST(Occlusion, DrawsBallsNowhereNearerThanTheyAreAndFillsMostOfThem) {
-  Random random(13);
-  std::size_t covered = 0, drawn_at = 0;
-  for (int round = 0; round < 200; ++round) {
-    const View view = small_view(random);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 12; ++i) balls.push_back(ball_of(random, round % 3 == 0 ? 15.0f : 4.0f));
-    OcclusionBuffer buffer;
-    ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
-    std::vector<float> drawn(std::size_t{view.width} * view.height);
-    buffer.read_nearness(drawn);
-    const std::vector<double> exact = exact_depths(ExactRays(view), view, balls);
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
-      ASSERT_LE(drawn[i], exact[i]) << "round " << round << " pixel " << i % view.width << ' '
-                                    << i / view.width;
-      covered += exact[i] > ExactRays::kMiss;
-      drawn_at += drawn[i] > -std::numeric_limits<float>::infinity();
-    }
-  }
-  EXPECT_GT(covered, 20000u);
-  EXPECT_GT(static_cast<double>(drawn_at), 0.8 * static_cast<double>(covered));
-}
-
-TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
-  Random random(14);
-  std::size_t hidden = 0, dropped_by_sphere = 0;
-  for (int round = 0; round < 200; ++round) {
-    const View view = small_view(random);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 12; ++i) balls.push_back(ball_of(random, 8));
-    OcclusionBuffer buffer;
-    ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
-    const ExactRays rays(view);
-    const std::vector<double> exact = exact_depths(rays, view, balls);
-    std::vector<Sphere> queries;
-    std::array<std::vector<float>, 4> lanes;
-    Boxes boxes;
-    for (int i = 0; i < 21; ++i) {
-      const Sphere s = ball_of(random, 2);
-      queries.push_back(s);
-      lanes[0].push_back(s.centre.x), lanes[1].push_back(s.centre.y), lanes[2].push_back(s.centre.z);
-      lanes[3].push_back(s.radius);
-      boxes.push_back({{s.centre.x - s.radius, s.centre.y - s.radius, s.centre.z - s.radius},
-                       {s.centre.x + s.radius, s.centre.y + s.radius, s.centre.z + s.radius}});
-    }
-    std::vector<std::uint8_t> visible(queries.size()), by_box(queries.size());
-    buffer.may_see(SphereSpan{lanes[0].data(), lanes[1].data(), lanes[2].data(), lanes[3].data(), 21},
-                   visible);
-    buffer.may_see(span_of(boxes), by_box);
-    const Frustum frustum = make_frustum(view, kAround);
-    for (std::size_t q = 0; q < queries.size(); ++q) {
-      bool seen = false;
-      for (std::uint32_t i = 0; i < exact.size() && !seen; ++i) {
-        seen = rays.hit(i % view.width + 0.5, i / view.width + 0.5, queries[q]) > exact[i];
-      }
-      if (seen) ASSERT_TRUE(visible[q]) << "round " << round << " sphere " << q;
-      if (!overlaps(frustum, boxes[q])) continue;
-      hidden += !visible[q];
-      dropped_by_sphere += by_box[q] && !visible[q];
-    }
-  }
-  EXPECT_GT(hidden, 200u);
-  EXPECT_GT(dropped_by_sphere, 5u);
-}
-
 // Thick, thin, near and far, some across the near plane.
 std::array<Vec3, 3> triangle_of(Random& random) {
-  const Vec3 at = random.inside(kAround);
+  const Vec3 at = random.inside(test::kRoom);
   const float size = random.below(4) == 0 ? 30.0f : 3.0f, thin = random.below(4) == 0 ? 0.003f : 1.0f;
   std::array<Vec3, 3> out{at, at, at};
   for (std::size_t k = 1; k < 3; ++k) {
@@ -283,9 +183,9 @@ struct BoxesBeforeTriangles {
   OcclusionBuffer buffer;
   std::vector<double> exact, front;  // front: but for what lies within an occluder
 
-  BoxesBeforeTriangles(Random& random, float size) : view(small_view(random)) {
+  BoxesBeforeTriangles(Random& random, float size) : view(test::small_view(random)) {
     std::vector<Box> occluders;
-    for (int i = 0; i < 12; ++i) occluders.push_back(box_of(random, size));
+    for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, size));
     EXPECT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
     const ExactRays rays(view);
@@ -408,7 +308,7 @@ TEST(Occlusion, RectanglesOfAnySizeAreTestedByEachOfTheirPixels) {
   for (int round = 0; round < 60; ++round) {
     const View view = *make_view(Camera{.eye = {0, 0, 60}}, 203, 117);
     std::vector<Box> occluders;
-    for (int i = 0; i < 60; ++i) occluders.push_back(box_of(random, 12));
+    for (int i = 0; i < 60; ++i) occluders.push_back(test::box_of(random, 12));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
@@ -473,12 +373,12 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   Random random(6);
   const View view = *make_view(Camera{.eye = {0, 2, 60}}, 333, 217);
   std::vector<Box> occluders;
-  for (int i = 0; i < 200; ++i) occluders.push_back(box_of(random, 5));
+  for (int i = 0; i < 200; ++i) occluders.push_back(test::box_of(random, 5));
   occluders.push_back({{-3, -3, 55}, {-1, 5, 70}});  // crosses the near plane
   std::vector<Sphere> balls;
-  for (int i = 0; i < 100; ++i) balls.push_back(ball_of(random, 4));
+  for (int i = 0; i < 100; ++i) balls.push_back(test::ball_of(random, 4));
   Boxes queries;
-  for (int i = 0; i < 1000; ++i) queries.push_back(box_of(random, 1));
+  for (int i = 0; i < 1000; ++i) queries.push_back(test::box_of(random, 1));
   std::vector<std::array<Vec3, 3>> triangles;
   for (int i = 0; i < 1000; ++i) triangles.push_back(triangle_of(random));
   for (int i = 0; i < 100; ++i) {

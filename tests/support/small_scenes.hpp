@@ -1,0 +1,32 @@
+// Views of few pixels into a room, and boxes and balls in it: small enough to hold every pixel against exact
+// rays.
+#pragma once
+
+#include <sightline/scene.hpp>
+
+#include "scene/random.hpp"
+#include "support/random_views.hpp"
+
+namespace sightline::test {
+
+inline constexpr Box kRoom{{-50, -20, -50}, {50, 20, 50}};
+
+inline View small_view(scene::Random& random) {
+  for (;;) {
+    const Result<View> view =
+        make_view(random_camera(random, kRoom), 20 + random.below(80), 20 + random.below(60));
+    if (view) return *view;
+  }
+}
+
+inline Box box_of(scene::Random& random, float largest) {
+  const Vec3 at = random.inside(kRoom),
+             half = random.inside({{0.05f, 0.05f, 0.05f}, {largest, largest, largest}});
+  return {{at.x - half.x, at.y - half.y, at.z - half.z}, {at.x + half.x, at.y + half.y, at.z + half.z}};
+}
+
+inline Sphere ball_of(scene::Random& random, float largest) {
+  return {random.inside(kRoom), random.between(0.05f, largest)};
+}
+
+}  // namespace sightline::test
