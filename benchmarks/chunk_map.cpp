@@ -1,10 +1,10 @@
 // What keeping the chunk map right costs beside building it anew.
 #include <benchmark/benchmark.h>
 
-#include "partition/chunk_map.hpp"
-#include "scene/random.hpp"
+#include "library/world/chunk_map.hpp"
+#include "workbench/scene/random.hpp"
 
-namespace sightline::partition {
+namespace sightline::world {
 namespace {
 
 constexpr std::size_t kObjects = 1'000'000;
@@ -66,4 +66,4 @@ BENCHMARK_CAPTURE(move_objects, nearby, false)->Arg(1)->Arg(10)->Unit(benchmark:
 BENCHMARK_CAPTURE(move_objects, anywhere, true)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace sightline::partition
+}  // namespace sightline::world

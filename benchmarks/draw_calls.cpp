@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 namespace sightline {
 namespace {

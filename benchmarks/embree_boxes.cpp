@@ -52,7 +52,7 @@ EmbreeBoxes::~EmbreeBoxes() {
 }
 
 void EmbreeBoxes::cast(std::span<const Ray> rays, std::span<const PreparedRay> prepared,
-                       pvs::RayHits& hits) const {
+                       rays::RayHits& hits) const {
   hits.reset(rays.size());
   Context context;
   rtcInitIntersectContext(&context.embree);

@@ -6,9 +6,9 @@
 #include <span>
 
 #include <sightline/ray.hpp>
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
-#include "pvs/ray_hits.hpp"
+#include "library/rays/ray_hits.hpp"
 
 namespace sightline::benchmarks {
 
@@ -19,7 +19,7 @@ public:
   EmbreeBoxes(const EmbreeBoxes&) = delete;
   EmbreeBoxes& operator=(const EmbreeBoxes&) = delete;
 
-  void cast(std::span<const Ray> rays, std::span<const PreparedRay> prepared, pvs::RayHits& hits) const;
+  void cast(std::span<const Ray> rays, std::span<const PreparedRay> prepared, rays::RayHits& hits) const;
 
 private:
   const Boxes& boxes_;

@@ -8,7 +8,7 @@
 #include <sightline/culling.hpp>
 
 #include "scalar_cull.hpp"
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "../benchmarks/frustum_cull.cpp"

@@ -6,8 +6,8 @@
 
 #include <sightline/occlusion.hpp>
 
-#include "scene/random.hpp"
 #include "support/exact_rays.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline {
 namespace {

@@ -5,24 +5,24 @@
 #include <map>
 #include <memory>
 
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 #include "embree_boxes.hpp"
-#include "pvs/nearest_box.hpp"
-#include "pvs/ray_grid.hpp"
-#include "pvs/wide_rays.hpp"
-#include "scene/random.hpp"
+#include "library/rays/ray_grid.hpp"
+#include "library/rays/wide_rays.hpp"
+#include "workbench/methods/ray_pvs/nearest_box.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::benchmarks {
 namespace {
 
 struct Setting {
   Boxes boxes;
-  pvs::RayGrid grid;
-  partition::Bvh bvh;
-  partition::WideBvh wide;
+  rays::RayGrid grid;
+  rays::Bvh bvh;
+  rays::WideBvh wide;
   std::unique_ptr<EmbreeBoxes> fast, robust;
-  pvs::RayHits expected;
+  rays::RayHits expected;
 };
 
 void look_from(Setting& setting, const Vec3& eye, float side) {
@@ -57,14 +57,14 @@ const Setting& setting_of(std::int64_t count) {
   s.bvh.build(s.boxes), s.wide.build(s.boxes);
   s.fast = std::make_unique<EmbreeBoxes>(s.boxes, RTC_SCENE_FLAG_NONE);
   s.robust = std::make_unique<EmbreeBoxes>(s.boxes, RTC_SCENE_FLAG_ROBUST);
-  pvs::cast_by_skip_counts(s.bvh.nodes(), s.grid.prepared, s.expected);
+  methods::cast_by_skip_counts(s.bvh.nodes(), s.grid.prepared, s.expected);
   return s;
 }
 
 template <class Cast>
 void run(benchmark::State& state, Cast cast, bool is_embree = false) {
   const Setting& s = setting_of(state.range(0));
-  pvs::RayHits hits;
+  rays::RayHits hits;
   cast(s, hits);
   // Against the plain walk, which equals testing every box. Embree may leave out a box at the very distance
   // of the one it has (a tie; ours is the lower id), and by its own rounding one that a ray merely grazes.
@@ -89,32 +89,34 @@ void run(benchmark::State& state, Cast cast, bool is_embree = false) {
 
 void BM_EmbreeUserGeometry(benchmark::State& state) {
   run(
-      state, [](const Setting& s, pvs::RayHits& hits) { s.fast->cast(s.grid.rays, s.grid.prepared, hits); },
+      state, [](const Setting& s, rays::RayHits& hits) { s.fast->cast(s.grid.rays, s.grid.prepared, hits); },
       true);
 }
 void BM_EmbreeRobust(benchmark::State& state) {
   run(
-      state, [](const Setting& s, pvs::RayHits& hits) { s.robust->cast(s.grid.rays, s.grid.prepared, hits); },
+      state,
+      [](const Setting& s, rays::RayHits& hits) { s.robust->cast(s.grid.rays, s.grid.prepared, hits); },
       true);
 }
 void BM_WideRays(benchmark::State& state) {
-  run(state, [stack = pvs::WideStack()](const Setting& s, pvs::RayHits& hits) mutable {
-    pvs::cast_wide(s.wide, s.grid, stack, hits);
+  run(state, [stack = rays::WideStack()](const Setting& s, rays::RayHits& hits) mutable {
+    rays::cast_wide(s.wide, s.grid, stack, hits);
   });
 }
 void BM_WideRaysAllCores(benchmark::State& state) {
-  pvs::Crew crew(0);
-  std::vector<pvs::WideStack> stacks(crew.size());
+  rays::Crew crew(0);
+  std::vector<rays::WideStack> stacks(crew.size());
   run(state,
-      [&](const Setting& s, pvs::RayHits& hits) { pvs::cast_wide(s.wide, s.grid, crew, stacks, hits); });
+      [&](const Setting& s, rays::RayHits& hits) { rays::cast_wide(s.wide, s.grid, crew, stacks, hits); });
   state.counters["threads"] = crew.size();
 }
 void BM_Boca(benchmark::State& state) {
-  run(state, [](const Setting& s, pvs::RayHits& hits) { pvs::cast_down_bvh(s.bvh, s.grid.prepared, hits); });
+  run(state,
+      [](const Setting& s, rays::RayHits& hits) { methods::cast_down_bvh(s.bvh, s.grid.prepared, hits); });
 }
 void BM_SkipCounts(benchmark::State& state) {
-  run(state, [](const Setting& s, pvs::RayHits& hits) {
-    pvs::cast_by_skip_counts(s.bvh.nodes(), s.grid.prepared, hits);
+  run(state, [](const Setting& s, rays::RayHits& hits) {
+    methods::cast_by_skip_counts(s.bvh.nodes(), s.grid.prepared, hits);
   });
 }
 

@@ -10,7 +10,7 @@
 #include <sightline/world.hpp>
 
 #include "scalar_cull.hpp"
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 #include "world_case.hpp"
 
 namespace sightline::benchmarks {

@@ -10,7 +10,7 @@
 #include <sightline/culling.hpp>
 #include <sightline/world.hpp>
 
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::benchmarks {
 

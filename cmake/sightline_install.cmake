@@ -2,10 +2,10 @@
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
-install(TARGETS sightline_core sightline_c EXPORT sightline_targets)
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN workbench EXCLUDE)
+install(TARGETS sightline sightline_c EXPORT sightline_targets)
 install(FILES ${CMAKE_BINARY_DIR}/bindings/c/sightline.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-if(SIGHTLINE_TOOLS)
+if(SIGHTLINE_WORKBENCH)
   install(TARGETS sightline_app)
 endif()
 

@@ -1,5 +1,5 @@
 # sightline_shaders(TARGET FILES...): GLSL to SPIR-V by glslc, as C arrays that sources of the target include as
-# "shaders/NAME.STAGE.inc". Includes are resolved from source/, where the structs shared with C++ lie.
+# "shaders/NAME.STAGE.inc". Includes are resolved from the root, as in C++: structs that both share are written once.
 find_program(SIGHTLINE_GLSLC glslc)
 
 function(sightline_shaders target)
@@ -14,7 +14,7 @@ function(sightline_shaders target)
     add_custom_command(
       OUTPUT ${out}/${name}.inc
       COMMAND ${SIGHTLINE_GLSLC} -O -w --target-env=vulkan1.3 -mfmt=c -MD -MF ${out}/${name}.d
-              -I ${PROJECT_SOURCE_DIR}/source -o ${out}/${name}.inc ${CMAKE_CURRENT_SOURCE_DIR}/${file}
+              -I ${PROJECT_SOURCE_DIR} -o ${out}/${name}.inc ${CMAKE_CURRENT_SOURCE_DIR}/${file}
       DEPENDS ${file}
       DEPFILE ${out}/${name}.d
       VERBATIM)

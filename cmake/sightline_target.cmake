@@ -21,19 +21,32 @@ function(sightline_target name)
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/source)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
 endfunction()
 
-# sightline_module(NAME FILES...): one folder of the core, an object library of the folder's name.
-# The core serves engines and WebAssembly that build without exceptions and RTTI, so it does too.
+# sightline_module(FOLDER FILES...): one folder of the library, an object library of the folder's name.
+# The library serves engines and WebAssembly that build without exceptions and RTTI, so it does too.
 function(sightline_module folder)
-  add_library(sightline_${folder} OBJECT ${ARGN})
+  list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE files)
+  add_library(sightline_${folder} OBJECT ${files})
   sightline_target(sightline_${folder})
   target_compile_options(sightline_${folder} PRIVATE -fno-exceptions -fno-rtti)
   # Highway includes a source again for each vector target: it has to stand alone.
   set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
-  target_link_libraries(sightline_${folder} PRIVATE sightline_core_dependencies)
-  set_property(GLOBAL APPEND PROPERTY sightline_core_modules sightline_${folder})
+  target_link_libraries(sightline_${folder} PRIVATE sightline_dependencies)
+  set_property(GLOBAL APPEND PROPERTY sightline_modules sightline_${folder})
+endfunction()
+
+# sightline_workbench_module(FOLDER [UNITY] FILES...): one folder of the workbench, a static library of the folder's name.
+# UNITY: its sources may be compiled together.
+function(sightline_workbench_module folder)
+  cmake_parse_arguments(module "UNITY" "" "" ${ARGN})
+  add_library(sightline_${folder} STATIC ${module_UNPARSED_ARGUMENTS})
+  sightline_target(sightline_${folder})
+  if(NOT module_UNITY)
+    set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
+  endif()
+  target_link_libraries(sightline_${folder} PUBLIC sightline fmt::fmt PRIVATE sightline_dependencies)
 endfunction()
 
 # sightline_precompile(TARGET HEADERS...): parses what most sources of the target include once. Only headers of others:

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <sightline/sightline.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 #include "bytes.hpp"
 

@@ -2,7 +2,7 @@
 // place has a leaf, each leaf's objects exist.
 #include <cstdlib>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sightline;

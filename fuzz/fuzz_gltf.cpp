@@ -1,7 +1,7 @@
 // Any bytes as glTF, text or binary: a scene that passes its check, or an Error.
 #include <cstdlib>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sightline;

@@ -1,5 +1,5 @@
 // Any bytes as an archive: its entry unpacks within the limits and reads, or an Error.
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sightline;

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "bake/cell_coding.hpp"
-#include "bake/pvs_file.hpp"
-#include "bake/set_coding.hpp"
+#include "library/pvs/cell_coding.hpp"
+#include "library/pvs/pvs_file.hpp"
+#include "library/pvs/set_coding.hpp"
 
 namespace {
 
@@ -27,13 +27,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto bytes = std::as_bytes(std::span(data, size));
   try {
     std::vector<std::uint32_t> ids;
-    bake::unpack_set(bytes, 100000, "fuzz", ids);
+    pvs::unpack_set(bytes, 100000, "fuzz", ids);
   } catch (const Error&) {
   }
   CellPvs few;
   few.counts = {3, 2, 2}, few.objects = 60;
   try {
-    bake::decode_cells(bytes, "fuzz", few);
+    pvs::decode_cells(bytes, "fuzz", few);
     expect_sound(few);
   } catch (const Error&) {
   }
@@ -41,11 +41,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::byte> file(bytes.begin(), bytes.end());
   if (size >= kHeader) {
     const std::uint64_t sum =
-        bake::checksum(std::span(file).subspan(kHeader), bake::checksum(std::span(file).first(kChecksumAt)));
+        pvs::checksum(std::span(file).subspan(kHeader), pvs::checksum(std::span(file).first(kChecksumAt)));
     std::memcpy(file.data() + kChecksumAt, &sum, sizeof sum);
   }
   try {
-    expect_sound(bake::unpack_cells(file, "fuzz.pvs"));
+    expect_sound(pvs::unpack_cells(file, "fuzz.pvs"));
   } catch (const Error&) {
   }
   return 0;

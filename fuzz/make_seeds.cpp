@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <numeric>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "bake/cell_coding.hpp"
-#include "bake/pvs_file.hpp"
-#include "bake/set_coding.hpp"
+#include "library/pvs/cell_coding.hpp"
+#include "library/pvs/pvs_file.hpp"
+#include "library/pvs/set_coding.hpp"
 #include "sample_files.hpp"
 
 int main(int argc, char** argv) try {
@@ -46,17 +46,17 @@ int main(int argc, char** argv) try {
       cells.visible.push_back(o);
     cells.first.push_back(cells.visible.size());
   }
-  write(folder / "fuzz_pvs/twelve_cells.pvs", bake::pack_cells(cells));
-  const std::vector<std::uint32_t> order = bake::object_order(cells);
-  for (const bake::Layout layout : bake::kLayouts) {
+  write(folder / "fuzz_pvs/twelve_cells.pvs", pvs::pack_cells(cells));
+  const std::vector<std::uint32_t> order = pvs::object_order(cells);
+  for (const pvs::Layout layout : pvs::kLayouts) {
     write(folder / ("fuzz_pvs/layout_" + std::to_string(static_cast<int>(layout))),
-          bake::code_cells(cells, layout, order));
+          pvs::code_cells(cells, layout, order));
   }
   std::vector<std::uint32_t> members(90000);
   std::iota(members.begin(), members.end(), 5u);
-  write(folder / "fuzz_pvs/runs", bake::pack_set(members));
-  write(folder / "fuzz_pvs/bits", bake::pack_set(std::span(members).first(5000), bake::Runs::plain));
-  write(folder / "fuzz_pvs/few", bake::pack_set(std::span(members).first(3), bake::Runs::plain));
+  write(folder / "fuzz_pvs/runs", pvs::pack_set(members));
+  write(folder / "fuzz_pvs/bits", pvs::pack_set(std::span(members).first(5000), pvs::Runs::plain));
+  write(folder / "fuzz_pvs/few", pvs::pack_set(std::span(members).first(3), pvs::Runs::plain));
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "fuzz_seeds: %s\n", error.what());

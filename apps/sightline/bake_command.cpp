@@ -5,18 +5,41 @@
 #include <charconv>
 #include <memory>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "bake/bake.hpp"
-#include "bake/pvs_file.hpp"
 #include "command.hpp"
-#include "lab/bake_check.hpp"
-#include "lab/file.hpp"
-#include "lab/table.hpp"
+#include "library/pvs/pvs_file.hpp"
+#include "workbench/bake/bake.hpp"
+#include "workbench/bake/bake_check.hpp"
+#include "workbench/io/text_file.hpp"
+#include "workbench/report/table.hpp"
 
 namespace sightline::app {
 
 namespace {
+
+report::Table comparison_table(const std::vector<bake::CellComparison>& rows) {
+  report::Table table;
+  table.header = {"objects a cell", "mean", "least", "quarter", "half", "three quarters", "most"};
+  const auto add = [&](const char* what, const std::function<std::size_t(const bake::CellComparison&)>& of) {
+    std::vector<std::size_t> all;
+    double sum = 0;
+    for (const bake::CellComparison& row : rows)
+      all.push_back(of(row)), sum += static_cast<double>(all.back());
+    std::ranges::sort(all);
+    std::vector<std::string> cells{what, report::format_count(sum / static_cast<double>(all.size()))};
+    for (std::size_t quarter = 0; quarter <= 4; ++quarter) {
+      cells.push_back(std::to_string(all[(all.size() - 1) * quarter / 4]));
+    }
+    table.rows.push_back(std::move(cells));
+  };
+  if (rows.empty()) return table;
+  add("baked", [](const bake::CellComparison& row) { return row.baked; });
+  add("in the level's PVS", [](const bake::CellComparison& row) { return row.level; });
+  add("baked, not in the level's", [](const bake::CellComparison& row) { return row.only_baked.size(); });
+  add("in the level's, not baked", [](const bake::CellComparison& row) { return row.only_level.size(); });
+  return table;
+}
 
 struct BakeOptions {
   std::string scene, file, cells;
@@ -27,13 +50,13 @@ struct BakeOptions {
 };
 
 void print_level(const Scene& scene, const CellPvs& cells, const BakeOptions& options) {
-  const std::vector<lab::CellComparison> rows = lab::compare_with_level(scene, cells);
+  const std::vector<bake::CellComparison> rows = bake::compare_with_level(scene, cells);
   fmt::print("\nCell by cell against the level's own PVS, {} cells\n\n{}", rows.size(),
-             lab::render(lab::comparison_table(rows)));
+             report::render(comparison_table(rows)));
   if (options.cells.empty()) {
     fmt::print("--cells FILE.csv writes every cell's row, with the objects that only one of the two has.\n");
   } else {
-    lab::write_file(options.cells, lab::comparison_csv(cells, rows));
+    io::write_file(options.cells, bake::comparison_csv(cells, rows));
   }
 }
 
@@ -59,9 +82,9 @@ int run_bake(const BakeOptions& options) {
              raw);
   if (scene.level) print_level(scene, cells, options);
   if (options.check > 0) {
-    const lab::EmbreeJudge judge(scene);
-    const lab::BakeLoss loss =
-        lab::check_bake(scene, cells, judge, options.check, 320, 240, options.check_seed, progress("check"));
+    const oracle::EmbreeJudge judge(scene);
+    const bake::BakeLoss loss =
+        bake::check_bake(scene, cells, judge, options.check, 320, 240, options.check_seed, progress("check"));
     fmt::print(
         "\n{} random views inside cells: {} of {} pixels lost ({:.5f} %), {} objects; {:.1f} kept, {:.1f} "
         "seen\n",
@@ -88,7 +111,7 @@ Vec3 parse_point(const std::string& text) {
 
 int run_query(const std::string& file, const std::string& at) {
   const Vec3 point = parse_point(at);
-  const CellPvs cells = bake::read_pvs(file);
+  const CellPvs cells = pvs::read_pvs(file);
   const std::uint32_t cell = cells.cell_at(point);
   if (cell == kNoCell) {
     fmt::print("{},{},{}: in no open cell; everything may be seen\n", point.x, point.y, point.z);
@@ -106,8 +129,8 @@ int run_query(const std::string& file, const std::string& at) {
 
 void attach_pvs(Scene& scene, const std::string& file) {
   if (file.empty()) return;
-  auto cells = std::make_shared<CellPvs>(bake::read_pvs(file));
-  bake::check_belongs(*cells, file, scene);
+  auto cells = std::make_shared<CellPvs>(pvs::read_pvs(file));
+  pvs::check_belongs(*cells, file, scene);
   scene.cells = std::move(cells);
 }
 

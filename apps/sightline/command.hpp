@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
 namespace sightline::app {
 

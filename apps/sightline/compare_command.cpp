@@ -3,13 +3,13 @@
 
 #include <memory>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
 #include "device.hpp"
-#include "lab/summary.hpp"
-#include "lab/table.hpp"
 #include "page.hpp"
+#include "workbench/report/summary.hpp"
+#include "workbench/report/table.hpp"
 
 namespace sightline::app {
 
@@ -23,7 +23,7 @@ struct CompareOptions {
 };
 
 int run_compare(const CompareOptions& options) {
-  lab::MeasureOptions measure;
+  measure::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   if (options.device != "cpu") {
     if (!options.report.empty()) throw Error("--report: expected --device cpu");
@@ -44,18 +44,19 @@ int run_compare(const CompareOptions& options) {
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
-      options.methods.empty() ? lab::fitting_methods(scene) : split("--methods", options.methods);
-  const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
-  const std::string path_name = options.path.empty() ? std::string(lab::default_path(scene)) : options.path;
-  const lab::CameraPath path = lab::make_path(scene, path_name, options.frames);
+      options.methods.empty() ? measure::fitting_methods(scene) : split("--methods", options.methods);
+  const std::vector<measure::Contestant> contestants = measure::make_contestants(scene, names);
+  const std::string path_name =
+      options.path.empty() ? std::string(camera::default_path(scene)) : options.path;
+  const camera::CameraPath path = camera::make_path(scene, path_name, options.frames);
 
-  const lab::EmbreeJudge judge(scene);
-  const lab::Comparison comparison =
-      lab::compare(scene, judge, contestants, path, measure, progress("compare"));
+  const oracle::EmbreeJudge judge(scene);
+  const measure::Comparison comparison =
+      measure::compare(scene, judge, contestants, path, measure, progress("compare"));
   fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}\n\n", scene.name, scene.size(),
              triangle_count(scene), path.name, path.cameras.size(), options.size);
-  fmt::print("{}\n{}\n", lab::render(lab::summary_table(comparison)), lab::verdict(comparison));
-  if (!options.json.empty()) lab::write_json(options.json, comparison);
+  fmt::print("{}\n{}\n", report::render(report::summary_table(comparison)), report::verdict(comparison));
+  if (!options.json.empty()) measure::write_json(options.json, comparison);
   if (!options.report.empty()) write_page(options.report, scene, judge, contestants, comparison);
   return Exit::done;
 }

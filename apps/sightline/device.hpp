@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "vulkan/device.hpp"
+#include "workbench/device/device.hpp"
 
 namespace sightline::app {
 
@@ -23,9 +23,9 @@ struct DeviceCall {
 };
 
 /// Opens the device of `--device`. Validation is on where SIGHTLINE_VALIDATION is set.
-std::unique_ptr<vulkan::Device> open_device(const std::string& name);
+std::unique_ptr<device::Device> open_device(const std::string& name);
 /// Throws Error where validation complained.
-void expect_silence(const vulkan::Device& device);
+void expect_silence(const device::Device& device);
 
 int compare_on_device(const DeviceCall& call);
 int verify_on_device(const DeviceCall& call);

@@ -10,13 +10,13 @@
 #include <limits>
 #include <string_view>
 
-#include <sightline/error.hpp>
-#include <sightline/io.hpp>
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
-#include "lab/device/device_measure.hpp"
-#include "lab/device/device_table.hpp"
-#include "lab/random_views.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/measure/device_measure.hpp"
+#include "workbench/report/device_table.hpp"
 
 namespace sightline::app {
 
@@ -46,18 +46,18 @@ void keep_freed_memory() {
 
 }  // namespace
 
-std::unique_ptr<vulkan::Device> open_device(const std::string& name) {
+std::unique_ptr<device::Device> open_device(const std::string& name) {
   if (name.empty())
     throw Error("--device: it is empty, expected a device's index or part of its name, or any");
   keep_freed_memory();
-  vulkan::DeviceOptions options;
+  device::DeviceOptions options;
   options.choice = name == "any" ? "" : name;
   const char* const validation = std::getenv("SIGHTLINE_VALIDATION");
   options.validation = validation && *validation && std::string_view(validation) != "0";
-  return std::make_unique<vulkan::Device>(options);
+  return std::make_unique<device::Device>(options);
 }
 
-void expect_silence(const vulkan::Device& device) {
+void expect_silence(const device::Device& device) {
   if (device.messages() > 0) {
     throw Error(
         fmt::format("validation: {} messages, the first: {}", device.messages(), device.first_message()));
@@ -68,23 +68,25 @@ int compare_on_device(const DeviceCall& call) {
   const auto device = open_device(call.device);
   Scene scene = load_scene(call.scene);
   attach_pvs(scene, call.pvs);
-  const std::string path_name = call.path.empty() ? std::string(lab::default_path(scene)) : call.path;
-  const lab::CameraPath path = lab::make_path(scene, path_name, call.views);
-  lab::Workbench bench(*device, scene, methods_or(call, methods::methods_on_device(scene)));
-  lab::DeviceMeasureOptions options;
+  const std::string path_name = call.path.empty() ? std::string(camera::default_path(scene)) : call.path;
+  const camera::CameraPath path = camera::make_path(scene, path_name, call.views);
+  measure::Workbench bench(*device, scene, methods_or(call, methods::methods_on_device(scene)));
+  measure::DeviceMeasureOptions options;
   options.measure.width = call.width, options.measure.height = call.height;
   options.measure.repeats = 5;
   options.moving = call.moving;
   options.limit = call.limit;
-  const lab::Comparison comparison = lab::compare_on_device(bench, path, options, progress("compare"));
+  const measure::Comparison comparison =
+      measure::compare_on_device(bench, path, options, progress("compare"));
   expect_silence(*device);
   fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}x{} on {}\n\n", scene.name, scene.size(),
              triangle_count(scene), path.name, path.cameras.size(), call.width, call.height,
              comparison.device);
-  fmt::print("{}\n{}\n", lab::render(lab::device_table(comparison)), lab::device_verdict(comparison));
-  if (const lab::Table ratios = lab::device_ratios(comparison); !ratios.rows.empty())
-    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}", lab::render(ratios));
-  if (!call.json.empty()) lab::write_json(call.json, comparison);
+  fmt::print("{}\n{}\n", report::render(report::device_table(comparison)),
+             report::device_verdict(comparison));
+  if (const report::Table ratios = report::device_ratios(comparison); !ratios.rows.empty())
+    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}", report::render(ratios));
+  if (!call.json.empty()) measure::write_json(call.json, comparison);
   return Exit::done;
 }
 
@@ -92,18 +94,18 @@ int verify_on_device(const DeviceCall& call) {
   const auto device = open_device(call.device);
   Scene scene = load_scene(call.scene);
   attach_pvs(scene, call.pvs);
-  lab::Workbench bench(*device, scene, methods_or(call, methods_to_verify()));
-  const std::vector<Camera> cameras = lab::random_cameras(scene, call.views, call.seed);
-  const lab::DeviceVerification result =
-      lab::verify_on_device(bench, cameras, call.width, call.height, call.moving, progress("verify"));
+  measure::Workbench bench(*device, scene, methods_or(call, methods_to_verify()));
+  const std::vector<Camera> cameras = camera::random_cameras(scene, call.views, call.seed);
+  const measure::DeviceVerification result =
+      measure::verify_on_device(bench, cameras, call.width, call.height, call.moving, progress("verify"));
   expect_silence(*device);
   fmt::print(
       "{}: {} random views of {}x{}, seed {}, each as a camera cut and once more, {:g} of the objects "
       "moving, on {}\n\n",
       scene.name, result.views, call.width, call.height, call.seed, call.moving, device->info().name);
-  fmt::print("{}", lab::render(lab::verification_table(result)));
-  for (const lab::MethodVerdict& m : result.methods) {
-    for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
+  fmt::print("{}", report::render(report::verification_table(result)));
+  for (const measure::MethodVerdict& m : result.methods) {
+    for (const measure::LostObject& lost : m.examples) fmt::print("{}\n", measure::describe(m, lost));
   }
   return result.passed() ? Exit::done : Exit::check_failed;
 }

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include <sightline/io.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/io.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 #include "command.hpp"
 

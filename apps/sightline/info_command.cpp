@@ -5,7 +5,7 @@
 #include <memory>
 #include <set>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
 

@@ -10,8 +10,8 @@
 #include <new>
 #include <span>
 
-#include <sightline/error.hpp>
 #include <sightline/version.hpp>
+#include <sightline/workbench/error.hpp>
 
 #include "command.hpp"
 

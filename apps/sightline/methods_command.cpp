@@ -4,12 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include <sightline/method.hpp>
 #include <sightline/version.hpp>
+#include <sightline/workbench/method.hpp>
 
 #include "command.hpp"
-#include "lab/file.hpp"
-#include "methods/device_method.hpp"
+#include "workbench/io/text_file.hpp"
+#include "workbench/methods/device_method.hpp"
 
 namespace sightline::app {
 
@@ -56,7 +56,7 @@ void add_methods(CLI::App& app, int& exit) {
       ->check(output_file())
       ->type_name("FILE");
   on_run(command, exit, [json] {
-    const std::vector<vulkan::DeviceInfo> devices = vulkan::list_devices();
+    const std::vector<device::DeviceInfo> devices = device::list_devices();
     if (!json->empty()) {
       using Json = nlohmann::ordered_json;
       Json document{{"sightline", kVersion},
@@ -67,10 +67,10 @@ void add_methods(CLI::App& app, int& exit) {
       for (const methods::DeviceMethodInfo& info : methods::device_methods()) {
         document["device_methods"].push_back(to_json(info));
       }
-      for (const vulkan::DeviceInfo& info : devices) {
+      for (const device::DeviceInfo& info : devices) {
         document["devices"].push_back({{"name", info.name}, {"kind", info.kind}, {"driver", info.driver}});
       }
-      lab::write_file(*json, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+      io::write_file(*json, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     }
     fmt::print("On the CPU (--device cpu):\n");
     for (const MethodInfo& info : cpu_methods()) print(info);

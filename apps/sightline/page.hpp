@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "lab/fate.hpp"
-#include "lab/measure.hpp"
+#include "workbench/measure/measure.hpp"
+#include "workbench/report/outcome.hpp"
 
 namespace sightline::app {
 
 /// Writes index.html and its pictures into `folder`.
-void write_page(const std::string& folder, const Scene& scene, const lab::EmbreeJudge& judge,
-                std::span<const lab::Contestant> contestants, const lab::Comparison& comparison);
+void write_page(const std::string& folder, const Scene& scene, const oracle::EmbreeJudge& judge,
+                std::span<const measure::Contestant> contestants, const measure::Comparison& comparison);
 
 }  // namespace sightline::app

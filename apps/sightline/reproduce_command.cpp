@@ -5,11 +5,12 @@
 
 #include "command.hpp"
 #include "device.hpp"
-#include "lab/reproduce/draw_calls.hpp"
-#include "lab/reproduce/object_frustum.hpp"
-#include "lab/reproduce/vertex_chunk.hpp"
 #include "page.hpp"
 #include "reproduce_ray_pvs.hpp"
+#include "workbench/report/summary.hpp"
+#include "workbench/reproduce/draw_calls.hpp"
+#include "workbench/reproduce/object_frustum.hpp"
+#include "workbench/reproduce/vertex_chunk.hpp"
 
 namespace sightline::app {
 
@@ -23,36 +24,36 @@ struct ReproduceOptions {
 // Frame times of both methods, drawn by a device.
 void print_drawn_object_frustum(const std::string& name, bool quick) {
   const auto device = open_device(name);
-  Scene scene = lab::object_frustum_scene();
+  Scene scene = reproduce::object_frustum_scene();
   const std::vector<std::string> methods{"grid-cell", "object-frustum"};
-  lab::Workbench bench(*device, scene, methods);
-  lab::DeviceMeasureOptions measure;
+  measure::Workbench bench(*device, scene, methods);
+  measure::DeviceMeasureOptions measure;
   measure.measure.repeats = quick ? 2 : 5;
   measure.measure.warm_up = 1;
-  const lab::Comparison drawn =
-      lab::compare_on_device(bench, lab::object_frustum_path(scene), measure, progress("draw"));
+  const measure::Comparison drawn =
+      measure::compare_on_device(bench, reproduce::object_frustum_path(scene), measure, progress("draw"));
   expect_silence(*device);
   fmt::print("\nDrawn on {}, opaque front to back, then transparent back to front\n{}", drawn.device,
-             lab::render(lab::device_table(drawn)));
-  const auto all = lab::summarise_on_device(drawn);
+             report::render(report::device_table(drawn)));
+  const auto all = report::summarise_on_device(drawn);
   fmt::print("\nfps, object-frustum / grid-cell: {:.2f}, published {:.2f}\n", all[1].fps() / all[0].fps(),
-             lab::kPublishedObjectFrustum.fps / lab::kPublishedGridCell.fps);
+             reproduce::kPublishedObjectFrustum.fps / reproduce::kPublishedGridCell.fps);
 }
 
 int run_object_frustum(const ReproduceOptions& options) {
-  const Scene scene = lab::object_frustum_scene();
-  const lab::EmbreeJudge judge(scene);
-  const std::vector<lab::Contestant> contestants = lab::object_frustum_contestants(scene);
+  const Scene scene = reproduce::object_frustum_scene();
+  const oracle::EmbreeJudge judge(scene);
+  const std::vector<measure::Contestant> contestants = reproduce::object_frustum_contestants(scene);
   const auto result =
-      lab::reproduce_object_frustum(scene, judge, contestants, options.quick, progress("reproduce"));
+      reproduce::reproduce_object_frustum(scene, judge, contestants, options.quick, progress("reproduce"));
   fmt::print(
       "Le Hoang Minh et al. 2022, table 2: {} trees on 1 km², eye at 8.9 m in the middle, ten runs\n\n{}\n",
-      scene.size(), lab::render(result.runs));
+      scene.size(), report::render(result.runs));
   fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
-             100 * result.tested_share, lab::render(result.ratios));
-  fmt::print("{}", lab::render(lab::summary_table(result.comparison)));
+             100 * result.tested_share, report::render(result.ratios));
+  fmt::print("{}", report::render(report::summary_table(result.comparison)));
   if (!options.report.empty()) write_page(options.report, scene, judge, contestants, result.comparison);
-  if (options.device.empty() && vulkan::list_devices().empty()) {
+  if (options.device.empty() && device::list_devices().empty()) {
     fmt::print("\nThere is no Vulkan device: nothing was drawn.\n");
   } else if (options.device != "cpu") {
     print_drawn_object_frustum(options.device.empty() ? "any" : options.device, options.quick);
@@ -62,23 +63,23 @@ int run_object_frustum(const ReproduceOptions& options) {
 
 int run_vertex_chunk(const ReproduceOptions& options) {
   const auto device = open_device(options.device.empty() ? "any" : options.device);
-  std::vector<lab::VertexChunkWorld> worlds;
+  std::vector<reproduce::VertexChunkWorld> worlds;
   for (const char* name : {"regular", "irregular"}) {
-    worlds.push_back(
-        lab::reproduce_vertex_chunk(*device, name, {options.quick, !options.report.empty()}, progress(name)));
-    const lab::VertexChunkWorld& world = worlds.back();
+    worlds.push_back(reproduce::reproduce_vertex_chunk(
+        *device, name, {options.quick, !options.report.empty()}, progress(name)));
+    const reproduce::VertexChunkWorld& world = worlds.back();
     fmt::print(
         "Lee & Shin 2023, world {}: {} objects, {}x{} on {}; each cell is ours (ratio to vertex-chunk / "
         "published ratio)\n\n",
         name, world.near.rows.front().stats.objects, world.near.width, world.near.height, world.near.device);
-    for (const lab::Table& table : world.tables) fmt::print("{}\n", lab::render(table));
-    fmt::print("Figure 7\n{}\n", lab::render(world.rising_fps));
-    for (const lab::Comparison* view : {&world.near, &world.far}) {
-      fmt::print("{} view\n{}\n", view->path, lab::render(lab::device_table(*view)));
+    for (const report::Table& table : world.tables) fmt::print("{}\n", report::render(table));
+    fmt::print("Figure 7\n{}\n", report::render(world.rising_fps));
+    for (const measure::Comparison* view : {&world.near, &world.far}) {
+      fmt::print("{} view\n{}\n", view->path, report::render(report::device_table(*view)));
     }
   }
   expect_silence(*device);
-  if (!options.report.empty()) lab::write_vertex_chunk_report(options.report, worlds);
+  if (!options.report.empty()) reproduce::write_vertex_chunk_report(options.report, worlds);
   return Exit::done;
 }
 
@@ -96,24 +97,26 @@ void add_ray_pvs(CLI::App& command, int& exit) {
 
 int run_draw_calls(const ReproduceOptions& options) {
   const auto opened = open_device(options.device.empty() ? "any" : options.device);
-  vulkan::Device& device = *opened;
-  const lab::DrawCallOptions how{.quick = options.quick};
+  device::Device& device = *opened;
+  const reproduce::DrawCallOptions how{.quick = options.quick};
   fmt::print("Serpa, Serpa & Rodrigues on {} ({})\n\n", device.info().name, device.info().driver);
-  const lab::CallGrid grid = lab::measure_call_grid(device, how, progress("table 1"));
+  const reproduce::CallGrid grid = reproduce::measure_call_grid(device, how, progress("table 1"));
   fmt::print("Table 1: random triangles in draw calls, {}x{}\n\n{}\n", how.width, how.height,
-             render(lab::table_of(grid)));
-  fmt::print("{}", lab::findings(grid));
-  std::vector<lab::LevelWalk> walks;
-  for (const lab::LevelChoice& level : lab::kDrawCallLevels) {
-    walks.push_back(lab::walk_level(device, level, how, progress(level.kind)));
-    const lab::LevelWalk& walk = walks.back();
+             render(reproduce::table_of(grid)));
+  fmt::print("{}", reproduce::findings(grid));
+  std::vector<reproduce::LevelWalk> walks;
+  for (const reproduce::LevelChoice& level : reproduce::kDrawCallLevels) {
+    walks.push_back(reproduce::walk_level(device, level, how, progress(level.kind)));
+    const reproduce::LevelWalk& walk = walks.back();
     fmt::print("\n{}: {}, {} triangles, {} views of {}x{}\n\n{}\n{}\n{}\n{}\n{}", walk.level, walk.kind,
-               lab::format_count(static_cast<double>(walk.triangles)), walk.views, how.width, how.height,
-               render(lab::heights_table(walk)), render(lab::calls_table(walk)),
-               render(lab::methods_table(walk)), render(lab::submission_table(walk)), lab::findings(walk));
+               report::format_count(static_cast<double>(walk.triangles)), walk.views, how.width, how.height,
+               render(reproduce::heights_table(walk)), render(reproduce::calls_table(walk)),
+               render(reproduce::methods_table(walk)), render(reproduce::submission_table(walk)),
+               reproduce::findings(walk));
     std::fflush(stdout);
   }
-  if (!options.report.empty()) lab::write_draw_call_report(options.report, device.info().name, grid, walks);
+  if (!options.report.empty())
+    reproduce::write_draw_call_report(options.report, device.info().name, grid, walks);
   return Exit::done;
 }
 

@@ -3,25 +3,25 @@
 
 #include <algorithm>
 
-#include <sightline/error.hpp>
-#include <sightline/io.hpp>
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
 #include "device.hpp"
-#include "lab/reproduce/ray_pvs.hpp"
 #include "reproduce_ray_pvs.hpp"
+#include "workbench/reproduce/ray_pvs.hpp"
 
 namespace sightline::app {
 
 namespace {
 
 // The scenes that the five methods are held equal on.
-std::vector<lab::RayScene> measure_scenes(std::size_t views) {
+std::vector<reproduce::RayScene> measure_scenes(std::size_t views) {
   std::vector<std::string> names;
   for (int model = 1; model <= 5; ++model) names.push_back(fmt::format("world:strata?model={}", model));
   names.emplace_back("world:irregular");
   names.emplace_back("pak1-maps.pk3:maps/oa_dm1.bsp");
-  std::vector<lab::RayScene> scenes;
+  std::vector<reproduce::RayScene> scenes;
   const auto shown = progress("rays against triangles");
   for (const std::string& name : names) {
     Scene scene;
@@ -31,7 +31,7 @@ std::vector<lab::RayScene> measure_scenes(std::size_t views) {
       fmt::print("left out: {}\n", error.what());  // the levels are a package of their own
       continue;
     }
-    scenes.push_back(lab::measure_ray_scene(scene, views));
+    scenes.push_back(reproduce::measure_ray_scene(scene, views));
     if (shown) shown(scenes.size(), names.size());
   }
   return scenes;
@@ -40,34 +40,35 @@ std::vector<lab::RayScene> measure_scenes(std::size_t views) {
 }  // namespace
 
 int run_ray_pvs(bool quick, const std::string& device_name, const std::string& report) {
-  const std::unique_ptr<vulkan::Device> device = open_device(device_name);
-  lab::RayPvsOptions options;
+  const std::unique_ptr<device::Device> device = open_device(device_name);
+  reproduce::RayPvsOptions options;
   options.repeats = quick ? 2 : 9;
   options.pictures = report;
-  std::vector<lab::RayPvsModel> models;
+  std::vector<reproduce::RayPvsModel> models;
   const auto shown = progress("reproduce");
   for (int model = 1; model <= 5; ++model) {
-    models.push_back(lab::measure_ray_model(model, *device, options));
+    models.push_back(reproduce::measure_ray_model(model, *device, options));
     if (shown) shown(static_cast<std::size_t>(model), 5);
   }
   fmt::print(
       "Ye et al. 2023, table 6: 100 x 100 rays, one thread on the CPU, {} as the GPU; medians of {}\n\n{}\n",
-      device->info().name, options.repeats, lab::render(lab::ray_table(models)));
+      device->info().name, options.repeats, report::render(reproduce::ray_table(models)));
   double share = 0;
-  for (const lab::RayPvsModel& m : models) share = std::max(share, m.timing[2].total() / m.timing[0].total());
+  for (const reproduce::RayPvsModel& m : models)
+    share = std::max(share, m.timing[2].total() / m.timing[0].total());
   fmt::print("iwcpa takes at most {:.2f} of toca's time.\n\n", share);
-  fmt::print("Apart, ms:\n\n{}\n", lab::render(lab::ray_parts_table(models)));
+  fmt::print("Apart, ms:\n\n{}\n", report::render(reproduce::ray_parts_table(models)));
   fmt::print("Figure 12 in figures, against the item buffer at 1280x720:\n\n{}\n",
-             lab::render(lab::ray_loss_table(models)));
-  const std::vector<lab::RegionTime> regions = lab::measure_regions(1, *device, options);
+             report::render(reproduce::ray_loss_table(models)));
+  const std::vector<reproduce::RegionTime> regions = reproduce::measure_regions(1, *device, options);
   fmt::print("Figure 13: a frame of model 1 by region, everything drawn and the PVS alone\n\n{}\n",
-             lab::render(lab::region_table(regions)));
-  const std::vector<lab::RayScene> scenes = measure_scenes(quick ? 4 : 20);
+             report::render(reproduce::region_table(regions)));
+  const std::vector<reproduce::RayScene> scenes = measure_scenes(quick ? 4 : 20);
   fmt::print("Rays against triangles, against the item buffer at {}x{}; guided's target {:g} %\n\n{}",
-             lab::kRaySceneWidth, lab::kRaySceneHeight, 100 * lab::kGuidedTarget,
-             lab::render(lab::ray_scene_table(scenes)));
+             reproduce::kRaySceneWidth, reproduce::kRaySceneHeight, 100 * reproduce::kGuidedTarget,
+             report::render(reproduce::ray_scene_table(scenes)));
   if (!report.empty()) {
-    lab::write_ray_report(device->info().name, options, models, regions, scenes);
+    reproduce::write_ray_report(device->info().name, options, models, regions, scenes);
     fmt::print("\nThe report, with figure 12's pictures: {}/index.html\n", report);
   }
   expect_silence(*device);

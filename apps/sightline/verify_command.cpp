@@ -3,15 +3,14 @@
 
 #include <memory>
 
-#include <sightline/error.hpp>
-#include <sightline/io.hpp>
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
 #include "device.hpp"
-#include "lab/level_evidence.hpp"
-#include "lab/random_views.hpp"
-#include "lab/table.hpp"
-#include "lab/verify.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/measure/verify.hpp"
+#include "workbench/report/evidence_table.hpp"
 
 namespace sightline::app {
 
@@ -28,9 +27,10 @@ struct VerifyOptions {
 void print_level_evidence(const Scene& scene, std::uint64_t seed) {
   constexpr std::size_t kEyes = 100;
   constexpr std::uint32_t kSide = 96;
-  const lab::EmbreeJudge judge(scene);
+  const oracle::EmbreeJudge judge(scene);
   fmt::print("\nThe level's own PVS against what rays see from open leaves:\n{}",
-             lab::render(lab::evidence_table(lab::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
+             report::render(
+                 report::evidence_table(measure::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
 }
 
 int run_verify(const VerifyOptions& options) {
@@ -50,25 +50,25 @@ int run_verify(const VerifyOptions& options) {
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
   const std::vector<std::string> names =
-      options.methods.empty() ? lab::promising_methods(scene) : split("--methods", options.methods);
-  const std::vector<lab::Contestant> contestants = lab::make_contestants(scene, names);
-  const std::vector<Camera> cameras = lab::random_cameras(scene, options.views, options.seed);
-  const lab::Verification result =
-      lab::verify(scene, contestants, cameras, width, height, progress("verify"));
+      options.methods.empty() ? measure::promising_methods(scene) : split("--methods", options.methods);
+  const std::vector<measure::Contestant> contestants = measure::make_contestants(scene, names);
+  const std::vector<Camera> cameras = camera::random_cameras(scene, options.views, options.seed);
+  const measure::Verification result =
+      measure::verify(scene, contestants, cameras, width, height, progress("verify"));
 
   fmt::print("{}: {} random views of {}x{}, seed {}\n", scene.name, result.views, width, height,
              options.seed);
   fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  verdict\n", "method", "guarantee", "kept",
              "visible", "lost objs", "lost pixels", "excess objs");
-  for (const lab::MethodVerdict& m : result.methods) {
+  for (const measure::MethodVerdict& m : result.methods) {
     fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  {}\n", m.method, to_string(m.guarantee),
                m.kept, m.visible, m.lost_objects, m.lost_pixels, m.excess_objects,
                !m.holds()           ? "BROKEN"
                : m.lost_objects > 0 ? "approximate"
                                     : "holds");
   }
-  for (const lab::MethodVerdict& m : result.methods) {
-    for (const lab::LostObject& lost : m.examples) fmt::print("{}\n", lab::describe(m, lost));
+  for (const measure::MethodVerdict& m : result.methods) {
+    for (const measure::LostObject& lost : m.examples) fmt::print("{}\n", measure::describe(m, lost));
   }
   if (scene.level) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;

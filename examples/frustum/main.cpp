@@ -1,21 +1,25 @@
-// The whole use of a culling method: a scene, a method made for it, and a frame a view.
+// Flat culling: many boxes in the caller's own arrays against one camera, in one call.
 #include <cstdio>
+#include <vector>
 
-#include <sightline/sightline.hpp>
+#include <sightline/culling.hpp>
+#include <sightline/view.hpp>
 
 int main() {
-  // Your own objects go into a Scene by add_mesh and add_object; this one is generated.
-  const sightline::Result<sightline::Scene> forest = sightline::generate_world("forest");
-  if (!forest) return std::fprintf(stderr, "%s\n", forest.failure().message.c_str()), 2;
-
-  const auto method = sightline::create_method("object-frustum", *forest);
-  if (!method) return std::fprintf(stderr, "%s\n", method.failure().message.c_str()), 2;
-
+  sightline::Boxes trees;  // one array a coordinate; your own arrays do as well, by a BoxSpan
+  for (int z = 0; z < 150; ++z) {
+    for (int x = 0; x < 200; ++x) {
+      const float at_x = 5.0f * static_cast<float>(x - 100), at_z = 6.0f * static_cast<float>(z - 75);
+      trees.push_back({{at_x - 1.5f, 0, at_z - 1.5f}, {at_x + 1.5f, 8, at_z + 1.5f}});
+    }
+  }
   const auto view = sightline::make_view({.eye = {0, 8.9f, 0}, .forward = {0, 0, -1}}, 1280, 720);
   if (!view) return std::fprintf(stderr, "%s\n", view.failure().message.c_str()), 2;
 
-  sightline::Frame frame;  // keep it: it is reused without allocating
-  (*method)->cull(*view, frame);
-  std::printf("draw %zu of %zu trees in %zu calls; %llu were tested one by one\n", frame.visible.size(),
-              forest->size(), frame.draws.size(), static_cast<unsigned long long>(frame.stats.tested));
+  // The planes allow for the rounding of every coordinate within these bounds.
+  const sightline::Box extent{{-502, 0, -452}, {502, 8, 452}};
+  const sightline::Frustum frustum = sightline::make_frustum(*view, extent);
+  std::vector<sightline::ObjectId> visible(trees.size() + sightline::kCullPadding);
+  const std::size_t count = sightline::cull_boxes(frustum, sightline::span_of(trees), visible);
+  std::printf("draw %zu of %zu trees\n", count, trees.size());
 }

@@ -2,13 +2,29 @@
 // run-time dispatch. Order and answer are the same for every SIMD width.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <sightline/frustum.hpp>
-#include <sightline/scene.hpp>
+#include <sightline/types.hpp>
 
 namespace sightline {
+
+/// Many boxes, one array a coordinate, all of one length.
+struct Boxes {
+  std::vector<float> min_x, min_y, min_z, max_x, max_y, max_z;
+
+  [[nodiscard]] std::size_t size() const noexcept { return min_x.size(); }
+  [[nodiscard]] Box operator[](std::size_t i) const noexcept {
+    return {{min_x[i], min_y[i], min_z[i]}, {max_x[i], max_y[i], max_z[i]}};
+  }
+  void set(std::size_t i, const Box& box) noexcept;
+  void push_back(const Box& box);
+  void resize(std::size_t count);
+  void reserve(std::size_t count);
+};
 
 /// Views on `count` boxes, one array a coordinate.
 struct BoxSpan {

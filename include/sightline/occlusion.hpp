@@ -11,15 +11,15 @@
 
 #include <sightline/culling.hpp>
 #include <sightline/result.hpp>
-#include <sightline/scene.hpp>
+#include <sightline/types.hpp>
 #include <sightline/world.hpp>
 
 namespace sightline {
 
-namespace culling {
+namespace occlusion {
 struct DepthTiles;
 struct OccluderTopology;
-}  // namespace culling
+}  // namespace occlusion
 
 /// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
 /// the seams between triangles are tight while the outline is drawn a little smaller than it is.
@@ -33,10 +33,10 @@ public:
   OccluderMesh& operator=(OccluderMesh&&) noexcept;
 
   [[nodiscard]] std::size_t triangles() const noexcept;
-  [[nodiscard]] const culling::OccluderTopology& topology() const noexcept { return *topology_; }
+  [[nodiscard]] const occlusion::OccluderTopology& topology() const noexcept { return *topology_; }
 
 private:
-  std::unique_ptr<culling::OccluderTopology> topology_;
+  std::unique_ptr<occlusion::OccluderTopology> topology_;
 };
 
 /// One view's depth of occluders. Drawing is for one thread, queries for many at once.
@@ -85,10 +85,10 @@ public:
   /// where there is none. Pixels row by row, width × height.
   void read_nearness(std::span<float> pixels) const noexcept;
 
-  [[nodiscard]] const culling::DepthTiles& tiles() const noexcept { return *tiles_; }
+  [[nodiscard]] const occlusion::DepthTiles& tiles() const noexcept { return *tiles_; }
 
 private:
-  std::unique_ptr<culling::DepthTiles> tiles_;
+  std::unique_ptr<occlusion::DepthTiles> tiles_;
 };
 
 }  // namespace sightline

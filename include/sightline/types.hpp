@@ -8,6 +8,10 @@
 
 namespace sightline {
 
+/// An object's number: its place in the caller's arrays, or what a World gave it.
+using ObjectId = std::uint32_t;
+inline constexpr ObjectId kNoObject = 0xffffffffu;
+
 struct Vec3 {
   float x = 0, y = 0, z = 0;
   bool operator==(const Vec3&) const = default;
@@ -23,6 +27,14 @@ struct Mat4 {
   std::array<float, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   bool operator==(const Mat4&) const = default;
 };
+
+/// Affine transform, three rows of (linear part | translation).
+struct Affine {
+  std::array<Vec4, 3> rows{Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 0}, Vec4{0, 0, 1, 0}};
+  bool operator==(const Affine&) const = default;
+};
+
+Vec3 transform_point(const Affine& affine, const Vec3& point) noexcept;
 
 /// Axis-aligned bounding box, borders included. Valid iff finite and min <= max on each axis.
 struct Box {

@@ -11,15 +11,15 @@
 #include <memory>
 #include <span>
 
-#include <sightline/scene.hpp>
+#include <sightline/types.hpp>
 #include <sightline/view.hpp>
 
 namespace sightline {
 
-namespace culling {
+namespace world {
 struct CullerState;
 struct WorldState;
-}  // namespace culling
+}  // namespace world
 class OcclusionBuffer;
 
 /// A point in metres, in double precision.
@@ -72,11 +72,11 @@ public:
   /// All ids lie below this: the length of a caller's array by id. Ids of removed objects are given again.
   [[nodiscard]] std::size_t id_limit() const noexcept;
 
-  [[nodiscard]] const culling::WorldState& state() const noexcept { return *state_; }
-  [[nodiscard]] culling::WorldState& state() noexcept { return *state_; }
+  [[nodiscard]] const world::WorldState& state() const noexcept { return *state_; }
+  [[nodiscard]] world::WorldState& state() noexcept { return *state_; }
 
 private:
-  std::unique_ptr<culling::WorldState> state_;
+  std::unique_ptr<world::WorldState> state_;
 };
 
 /// A view from anywhere: `view` sees the world moved by -origin, so that its own matrices keep their
@@ -139,7 +139,7 @@ public:
                   std::span<ObjectId> visible, std::span<std::uint8_t> masks = {}) noexcept;
 
 private:
-  std::unique_ptr<culling::CullerState> state_;
+  std::unique_ptr<world::CullerState> state_;
 };
 
 /// Culls with a Culler that the world carries.

@@ -1,18 +1,18 @@
-#include "bake/bake.hpp"
+#include "workbench/bake/bake.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
-#include "bake/pvs_file.hpp"
-#include "io/files.hpp"
-#include "lab/embree_judge.hpp"
-#include "lab/loss.hpp"
-#include "scene/random.hpp"
+#include "library/pvs/pvs_file.hpp"
 #include "support/temporary_folder.hpp"
+#include "workbench/io/files.hpp"
+#include "workbench/oracle/embree_judge.hpp"
+#include "workbench/oracle/loss.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::bake {
 namespace {
@@ -71,9 +71,9 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   Scene scene = forest();
   const test::TemporaryFolder folder;
   const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3}, folder / "a.pvs", {});
-  scene.cells = std::make_shared<CellPvs>(read_pvs(folder / "a.pvs"));
+  scene.cells = std::make_shared<CellPvs>(pvs::read_pvs(folder / "a.pvs"));
   const auto method = *create_method("baked", scene);
-  const lab::EmbreeJudge judge(scene);
+  const oracle::EmbreeJudge judge(scene);
   scene::Random random(5);
   std::uint64_t lost = 0, pixels = 0;
   Frame frame;
@@ -82,7 +82,7 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
     const float turn = random.between(0, 6.28f);
     const View view = *make_view({.eye = eye, .forward = {std::sin(turn), 0.1f, std::cos(turn)}}, 160, 120);
     method->cull(view, frame);
-    lost += lab::compare_to_truth(judge.render(view), frame.visible).lost_pixels;
+    lost += oracle::compare_to_truth(judge.render(view), frame.visible).lost_pixels;
     pixels += 160 * 120;
   }
   EXPECT_LE(lost, pixels / 1000);
@@ -120,7 +120,7 @@ TEST(Bake, FindsWhatIsSeenFromANookAlone) {
   CellOptions many{.cell = 20}, few{.cell = 20, .rays = 400, .most_viewpoints = 600};
   const CellPvs cells = make_cells(scene, many);
   ASSERT_EQ(cells.size(), 1u);
-  const pvs::TriangleRays rays(scene);
+  const partition::TriangleRays rays(scene);
   std::vector<ObjectId> visible;
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {

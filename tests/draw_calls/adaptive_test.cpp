@@ -7,12 +7,12 @@
 #include <set>
 #include <utility>
 
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/worlds.hpp>
 
-#include "lab/random_views.hpp"
-#include "lab/triangle_judge.hpp"
-#include "methods/draw_calls/adaptive.hpp"
 #include "support/random_views.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/methods/draw_calls/adaptive.hpp"
+#include "workbench/oracle/triangle_judge.hpp"
 
 namespace sightline {
 namespace {
@@ -186,8 +186,8 @@ TEST(AdaptiveMethod, LosesNothingWhileItTries) {
   const auto method = *create_method("adaptive", scene);
   auto& adaptive = static_cast<Adaptive&>(*method);
   const auto* indices = method->geometry()->indices.data();
-  lab::TriangleJudge judge(scene);
-  const auto cameras = lab::random_cameras(scene, 40, 17);
+  oracle::TriangleJudge judge(scene);
+  const auto cameras = camera::random_cameras(scene, 40, 17);
   std::set<std::string> tried;
   Frame frame;
   for (int f = 0; f < 6000 && (f < 1000 || !adaptive.settled()); ++f) {

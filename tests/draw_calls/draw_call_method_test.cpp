@@ -6,14 +6,14 @@
 #include <set>
 
 #include <sightline/frustum.hpp>
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
-#include "lab/random_views.hpp"
-#include "lab/triangle_judge.hpp"
-#include "lab/verify.hpp"
 #include "support/random_views.hpp"
 #include "support/triangles.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/measure/verify.hpp"
+#include "workbench/oracle/triangle_judge.hpp"
 
 namespace sightline {
 namespace {
@@ -36,9 +36,9 @@ TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
   std::vector<std::string> names(kAll.begin(), kAll.end());
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     const Scene scene = test::scene_of(triangles);
-    const auto contestants = lab::make_contestants(scene, names);
-    const auto cameras = lab::random_cameras(scene, 25, 7);
-    const lab::Verification result = lab::verify(scene, contestants, cameras, 96, 64);
+    const auto contestants = measure::make_contestants(scene, names);
+    const auto cameras = camera::random_cameras(scene, 25, 7);
+    const measure::Verification result = measure::verify(scene, contestants, cameras, 96, 64);
     for (const auto& verdict : result.methods) {
       EXPECT_EQ(verdict.guarantee, Guarantee::exact);
       EXPECT_EQ(verdict.lost_pixels, 0u) << name << ' ' << verdict.method;
@@ -50,12 +50,13 @@ TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
 // Independent of the judge's own book-keeping: rays against a scene of only the submitted triangles.
 TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
   const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
-  const Scene triangles = lab::one_object_a_triangle(scene);
-  const auto cameras = lab::random_cameras(scene, 6, 9);
+  const Scene triangles = oracle::one_object_a_triangle(scene);
+  const auto cameras = camera::random_cameras(scene, 6, 9);
   for (const std::string& name : kAll) {
     const auto method = *create_method(name, scene);
-    const lab::Faces faces = method->geometry()->front_faces_only ? lab::Faces::front : lab::Faces::both;
-    const lab::EmbreeJudge judge(triangles, faces);
+    const oracle::Faces faces =
+        method->geometry()->front_faces_only ? oracle::Faces::front : oracle::Faces::both;
+    const oracle::EmbreeJudge judge(triangles, faces);
     for (const Camera& camera : cameras) {
       const View view = *make_view(camera, 120, 80);
       Frame frame;
@@ -72,12 +73,12 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
         only.add_object(added, {}, triangles.surface[t]);
         number.push_back(t);
       }
-      const lab::ItemBuffer truth = judge.render(view);
+      const oracle::ItemBuffer truth = judge.render(view);
       if (only.empty()) {
         EXPECT_EQ(truth.visible_count(), 0u);
         continue;
       }
-      const lab::ItemBuffer picture = lab::EmbreeJudge(only, faces).render(view);
+      const oracle::ItemBuffer picture = oracle::EmbreeJudge(only, faces).render(view);
       for (std::size_t p = 0; p < truth.ids.size(); ++p) {
         const ObjectId shown = picture.ids[p] == kNoObject ? kNoObject : number[picture.ids[p]];
         ASSERT_EQ(shown, truth.ids[p]) << name << " pixel " << p;
@@ -245,8 +246,8 @@ TEST(DrawCalls, DrawMovedObjectsWhereTheyAre) {
         moved.push_back(object);
       }
       method->update(moved);
-      lab::TriangleJudge judge(scene);
-      const Scene triangles = lab::one_object_a_triangle(scene);
+      oracle::TriangleJudge judge(scene);
+      const Scene triangles = oracle::one_object_a_triangle(scene);
       for (int v = 0; v < 4; ++v) {
         const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
         Frame frame;
@@ -298,8 +299,8 @@ TEST(DrawCalls, MovingAnObjectLeavesTheOthersAlone) {
 TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
   const Scene scene = *generate_world("soup?triangles=5000&size=60");
   const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
-  const auto contestants = lab::make_contestants(scene, names);
-  const auto result = lab::verify(scene, contestants, lab::random_cameras(scene, 20, 3), 96, 64);
+  const auto contestants = measure::make_contestants(scene, names);
+  const auto result = measure::verify(scene, contestants, camera::random_cameras(scene, 20, 3), 96, 64);
   EXPECT_EQ(result.methods[0].guarantee, Guarantee::approximate);
   EXPECT_GT(result.methods[0].lost_pixels, 0u);
   EXPECT_EQ(result.methods[1].lost_pixels, 0u);

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/linear.hpp"
-#include "methods/draw_calls/facing.hpp"
-#include "methods/draw_calls/flat_triangles.hpp"
+#include "library/geometry/linear.hpp"
 #include "support/random_views.hpp"
 #include "support/triangles.hpp"
+#include "workbench/methods/draw_calls/facing.hpp"
+#include "workbench/methods/draw_calls/flat_triangles.hpp"
 
 namespace sightline::methods {
 namespace {

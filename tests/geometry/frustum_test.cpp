@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "geometry/linear.hpp"
+#include "library/geometry/linear.hpp"
 #include "support/random_views.hpp"
 
 namespace sightline {

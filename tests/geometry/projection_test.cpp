@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/linear.hpp"
+#include "library/geometry/linear.hpp"
 #include "support/random_views.hpp"
 
 namespace sightline {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/linear.hpp"
+#include "library/geometry/linear.hpp"
 #include "support/random_views.hpp"
 
 namespace sightline {

@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "io/gltf_transform.hpp"
 #include "sample_files.hpp"
+#include "workbench/io/gltf_transform.hpp"
 
 namespace sightline {
 namespace {

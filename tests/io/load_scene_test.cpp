@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
 #include "sample_files.hpp"
 

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <zip.h>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "lab/reproduce/draw_call_levels.hpp"
+#include "workbench/reproduce/draw_call_levels.hpp"
 
 namespace sightline {
 namespace {
@@ -55,12 +55,13 @@ TEST_F(OpenArena, AllLevelsLoadWithPlacesInFreeSpace) {
   }
 
   // The levels of `reproduce draw-calls` are what their rule makes of all fifty.
-  std::erase_if(by_triangles, [](const auto& level) { return level.first < lab::kLeastLevelTriangles; });
+  std::erase_if(by_triangles,
+                [](const auto& level) { return level.first < reproduce::kLeastLevelTriangles; });
   std::ranges::sort(by_triangles);
   for (std::size_t choice = 0; choice < 3; ++choice) {
     const std::array deciles{1, 5, 9};
     EXPECT_EQ(by_triangles[(by_triangles.size() - 1) * deciles[choice] / 10].second,
-              lab::kDrawCallLevels[choice].specification);
+              reproduce::kDrawCallLevels[choice].specification);
   }
 }
 

@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "io/pk3.hpp"
 #include "sample_files.hpp"
+#include "workbench/io/pk3.hpp"
 
 namespace sightline {
 namespace {

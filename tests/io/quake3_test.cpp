@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "io/quake3_patch.hpp"
 #include "sample_files.hpp"
+#include "workbench/io/quake3_patch.hpp"
 
 namespace sightline {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/quake3_format.hpp"
+#include "workbench/io/quake3_format.hpp"
 
 namespace sightline::samples {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 #include "support/random_views.hpp"
 

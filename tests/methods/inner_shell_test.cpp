@@ -1,12 +1,12 @@
-#include "methods/raster_occlusion/inner_shell.hpp"
+#include "workbench/methods/raster_occlusion/inner_shell.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "culling/depth_tiles.hpp"
-#include "geometry/linear.hpp"
-#include "scene/shapes.hpp"
+#include "library/geometry/linear.hpp"
+#include "library/occlusion/depth_tiles.hpp"
+#include "workbench/scene/shapes.hpp"
 
 namespace sightline::methods {
 namespace {

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <set>
 
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
-#include "partition/object_grid.hpp"
 #include "support/random_views.hpp"
+#include "workbench/partition/object_grid.hpp"
 
 namespace sightline {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include <sightline/method.hpp>
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 namespace sightline {
 namespace {

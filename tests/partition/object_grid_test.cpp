@@ -1,4 +1,4 @@
-#include "partition/object_grid.hpp"
+#include "workbench/partition/object_grid.hpp"
 
 #include <gtest/gtest.h>
 

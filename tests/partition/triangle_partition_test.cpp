@@ -6,10 +6,10 @@
 #include <numeric>
 #include <set>
 
-#include "partition/triangle_box.hpp"
-#include "partition/triangle_partition.hpp"
 #include "support/random_views.hpp"
 #include "support/triangles.hpp"
+#include "workbench/partition/triangle_box.hpp"
+#include "workbench/partition/triangle_partition.hpp"
 
 namespace sightline::partition {
 namespace {

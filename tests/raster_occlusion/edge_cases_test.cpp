@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "raster_occlusion/examine.hpp"
-#include "scene/shapes.hpp"
+#include "workbench/scene/shapes.hpp"
 
 namespace sightline {
 namespace {
@@ -201,10 +201,10 @@ TEST_F(EdgeCases, FlatObjectsFarFromTheOriginAndANearPlaneCloseToTheEye) {
 }
 
 TEST_F(EdgeCases, DispatchesWiderThanADeviceAllows) {
-  vulkan::DeviceOptions options;
+  device::DeviceOptions options;
   options.validation = true;
   options.widest_dispatch = 3;
-  vulkan::Device narrow(options);
+  device::Device narrow(options);
   Scene scene = or_throw(generate_world("irregular?detail=0"));
   {
     Examination examination(narrow, scene, kOcclusionMethods);

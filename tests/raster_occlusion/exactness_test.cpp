@@ -1,7 +1,7 @@
 #include <cstdio>
 
-#include "lab/random_views.hpp"
 #include "raster_occlusion/examine.hpp"
+#include "workbench/camera/random_views.hpp"
 
 namespace sightline {
 namespace {
@@ -20,7 +20,7 @@ TEST_P(Exactness, NothingIsLostAfterACameraCut) {
   Scene scene = or_throw(generate_world(GetParam()));
   Examination examination(device(), scene, kOcclusionMethods);
   std::size_t index = 0;
-  for (const Camera& camera : lab::random_cameras(scene, 24, 3)) {
+  for (const Camera& camera : camera::random_cameras(scene, 24, 3)) {
     examination.look(view_of(camera, 192, 108), "in view " + std::to_string(index++));
   }
   std::printf("kept %.2f times the visible\n",
@@ -32,7 +32,7 @@ TEST_P(Exactness, NothingIsLostWithTheExactContributionTest) {
   Scene scene = or_throw(generate_world(GetParam()));
   Examination examination(device(), scene, with_exact_contribution());
   std::size_t index = 0;
-  for (const Camera& camera : lab::random_cameras(scene, 8, 4)) {
+  for (const Camera& camera : camera::random_cameras(scene, 8, 4)) {
     examination.look(view_of(camera, 96, 54), "in view " + std::to_string(index++));
   }
 }

@@ -4,22 +4,22 @@
 #include <string>
 #include <vector>
 
-#include "methods/device_method.hpp"
-#include "scene/random.hpp"
-#include "vulkan/fixtures.hpp"
+#include "device/fixtures.hpp"
+#include "workbench/methods/device_method.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline {
 
 class Examination {
 public:
-  Examination(vulkan::Device& device, Scene& scene, const std::vector<std::string>& specifications)
+  Examination(device::Device& device, Scene& scene, const std::vector<std::string>& specifications)
       : scene_(scene), renderer_(device, scene), judge_(renderer_), reference_(make("none")) {
     for (const std::string& specification : specifications) {
       methods_.push_back({specification, make(specification)});
     }
   }
 
-  vulkan::Renderer& renderer() { return renderer_; }
+  device::Renderer& renderer() { return renderer_; }
 
   /// Moves that share of the objects a little.
   void move(double share, scene::Random& random) {
@@ -40,13 +40,13 @@ public:
 
   /// Every method's frame from the view: nothing lost, the same picture to the bit.
   void look(const View& view, const std::string& where) {
-    const vulkan::ItemBuffer truth = judge_.render(view);
+    const device::ItemBuffer truth = judge_.render(view);
     visible_ += static_cast<std::uint64_t>(std::ranges::count(truth.visible, 1));
-    renderer_.frame(view, [&](vulkan::Recorder& frame) { reference_->record(frame); });
-    const vulkan::Picture expected = renderer_.picture();
+    renderer_.frame(view, [&](device::Recorder& frame) { reference_->record(frame); });
+    const device::Picture expected = renderer_.picture();
     for (auto& [name, method] : methods_) {
-      renderer_.frame(view, [&](vulkan::Recorder& frame) { method->record(frame); });
-      const vulkan::Picture picture = renderer_.picture();
+      renderer_.frame(view, [&](device::Recorder& frame) { method->record(frame); });
+      const device::Picture picture = renderer_.picture();
       std::size_t different = 0;
       for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         different += picture.pixels[i] != expected.pixels[i];
@@ -77,8 +77,8 @@ private:
   };
 
   Scene& scene_;
-  vulkan::Renderer renderer_;
-  vulkan::ItemBufferPass judge_;
+  device::Renderer renderer_;
+  device::ItemBufferPass judge_;
   std::unique_ptr<methods::DeviceMethod> reference_;
   std::vector<Examined> methods_;
   std::vector<ObjectId> moved_;

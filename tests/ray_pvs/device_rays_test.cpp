@@ -1,14 +1,14 @@
 // The invariant of paper B on the device: iwcpa, bvha and saa hit what toca hits, to the id and to the bit.
-#include "methods/ray_pvs/device_rays.hpp"
+#include "workbench/methods/ray_pvs/device_rays.hpp"
 
 #include <filesystem>
 
-#include <sightline/io.hpp>
+#include <sightline/workbench/io.hpp>
 
-#include "methods/device_method.hpp"
-#include "pvs/nearest_box.hpp"
+#include "device/fixtures.hpp"
 #include "support/nasty_boxes.hpp"
-#include "vulkan/fixtures.hpp"
+#include "workbench/methods/device_method.hpp"
+#include "workbench/methods/ray_pvs/nearest_box.hpp"
 
 namespace sightline {
 namespace {
@@ -30,17 +30,17 @@ Scene scene_of(const Boxes& boxes) {
 struct Casters {
   std::vector<std::pair<const char*, std::unique_ptr<methods::DeviceRays>>> all;
 
-  Casters(vulkan::Device& device, const Scene& scene) {
+  Casters(device::Device& device, const Scene& scene) {
     all.emplace_back("iwcpa", methods::make_iwcpa(device, scene));
     all.emplace_back("bvha", methods::make_bvha(device, scene));
     all.emplace_back("saa", methods::make_saa(device, scene));
   }
 };
 
-std::uint64_t compare(const Scene& scene, Casters& casters, const pvs::RayGrid& grid,
+std::uint64_t compare(const Scene& scene, Casters& casters, const rays::RayGrid& grid,
                       const std::string& where) {
-  pvs::RayHits expected, found;
-  pvs::cast_at_all_boxes(scene.bounds, grid.prepared, expected);
+  rays::RayHits expected, found;
+  methods::cast_at_all_boxes(scene.bounds, grid.prepared, expected);
   for (auto& [name, caster] : casters.all) {
     caster->cast(grid, found);
     for (std::size_t r = 0; r < grid.size(); ++r) {
@@ -59,8 +59,8 @@ std::uint64_t compare(const Scene& scene, Casters& casters, const pvs::RayGrid& 
   return expected.stats.hits;
 }
 
-pvs::RayGrid grid_of(std::vector<PreparedRay> rays) {
-  pvs::RayGrid grid;
+rays::RayGrid grid_of(std::vector<PreparedRay> rays) {
+  rays::RayGrid grid;
   grid.prepared = std::move(rays);
   grid.rays.resize(grid.prepared.size());
   return grid;
@@ -72,7 +72,7 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsOnNastyScenes) {
   for (int round = 0; round < 200; ++round) {
     Scene scene = scene_of(test::nasty_boxes(random, 1 + random.below(300)));
     Casters casters(device(), scene);
-    const pvs::RayGrid grid = grid_of(test::nasty_rays(random, scene.bounds, 500));
+    const rays::RayGrid grid = grid_of(test::nasty_rays(random, scene.bounds, 500));
     hits += compare(scene, casters, grid, "scene " + std::to_string(round));
     ASSERT_FALSE(HasFailure());
     if (round % 20 != 0) continue;
@@ -92,7 +92,7 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsOnTheFiveModelsAndTheIrregularWorld) {
         "strata?triangles=20000&model=4", "strata?triangles=20000&model=5", "irregular?detail=0"}) {
     const Scene scene = or_throw(generate_world(world));
     Casters casters(device(), scene);
-    pvs::RayGrid grid;
+    rays::RayGrid grid;
     grid.make(view_of(camera_at(scene, "far")), 100, 100);
     compare(scene, casters, grid, world);
     ASSERT_FALSE(HasFailure());
@@ -106,7 +106,7 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsInAGameLevel) {
   const Scene scene = load_scene("pak1-maps.pk3:maps/oa_dm1.bsp");
   Casters casters(device(), scene);
   for (std::size_t i = 0; i < std::min<std::size_t>(4, scene.viewpoints.size()); ++i) {
-    pvs::RayGrid grid;
+    rays::RayGrid grid;
     grid.make(view_of({.eye = scene.viewpoints[i].eye, .forward = scene.viewpoints[i].forward}), 100, 100);
     EXPECT_GT(compare(scene, casters, grid, scene.viewpoints[i].name), 5000u);
   }
@@ -119,14 +119,14 @@ TEST_F(DeviceRaysTest, RoundsOfManyBoxesLeaveNothingOut) {
   for (int i = 0; i < 14000; ++i) boxes.push_back(test::random_box(random, {{-90, -90, -90}, {90, 90, 90}}));
   const Scene scene = scene_of(boxes);
   Casters casters(device(), scene);
-  pvs::RayGrid grid;
+  rays::RayGrid grid;
   grid.make(view_of({.eye = {0, 0, 200}}), 100, 100);
   EXPECT_GT(compare(scene, casters, grid, "many boxes"), 3000u);
 }
 
 TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   const Scene scene = or_throw(generate_world("strata?triangles=40000"));
-  vulkan::Renderer renderer(device(), scene);
+  device::Renderer renderer(device(), scene);
   const View view = view_of(camera_at(scene, "far"));
   const auto boca = or_throw(create_method("boca", scene));
   Frame expected;
@@ -135,7 +135,7 @@ TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   EXPECT_GT(expected.visible.size(), 50u);
   for (const char* name : {"iwcpa", "bvha", "saa"}) {
     const auto method = methods::create_device_method(name, renderer);
-    renderer.frame(view, [&](vulkan::Recorder& frame) { method->record(frame); });
+    renderer.frame(view, [&](device::Recorder& frame) { method->record(frame); });
     Frame frame;
     method->read_back(frame);
     EXPECT_EQ(frame.visible, expected.visible) << name;

@@ -1,4 +1,4 @@
-#include <sightline/level_pvs.hpp>
+#include <sightline/workbench/level_pvs.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <sightline/parameters.hpp>
+#include <sightline/workbench/parameters.hpp>
 
 #include <gmock/gmock.h>
 

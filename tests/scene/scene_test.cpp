@@ -1,11 +1,11 @@
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 namespace sightline {
 namespace {

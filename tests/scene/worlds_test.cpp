@@ -1,4 +1,4 @@
-#include <sightline/worlds.hpp>
+#include <sightline/workbench/worlds.hpp>
 
 #include <gtest/gtest.h>
 

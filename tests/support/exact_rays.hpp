@@ -10,7 +10,7 @@
 
 #include <sightline/view.hpp>
 
-#include "geometry/linear.hpp"
+#include "library/geometry/linear.hpp"
 
 namespace sightline::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <sightline/ray.hpp>
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
 #include "support/random_views.hpp"
 

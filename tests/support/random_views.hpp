@@ -7,7 +7,7 @@
 
 #include <sightline/view.hpp>
 
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::test {
 

@@ -2,10 +2,10 @@
 // rays.
 #pragma once
 
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
-#include "scene/random.hpp"
 #include "support/random_views.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::test {
 

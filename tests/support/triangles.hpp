@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <sightline/scene.hpp>
+#include <sightline/workbench/scene.hpp>
 
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::test {
 

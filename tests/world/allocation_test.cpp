@@ -8,7 +8,7 @@
 #include <sightline/occlusion.hpp>
 #include <sightline/world.hpp>
 
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 // ThreadSanitizer brings its own operators, which cannot be replaced.
 #if defined(__has_feature)

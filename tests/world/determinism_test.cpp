@@ -8,8 +8,8 @@
 
 #include <sightline/world.hpp>
 
-#include "scene/random.hpp"
 #include "support/run_threads.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline {
 namespace {

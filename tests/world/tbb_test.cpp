@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/random.hpp"
+#include "workbench/scene/random.hpp"
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)

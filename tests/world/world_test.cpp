@@ -7,12 +7,12 @@
 #include <cmath>
 #include <map>
 
-#include "culling/sector_test.hpp"
-#include "culling/world_state.hpp"
-#include "geometry/linear.hpp"
-#include "scene/random.hpp"
+#include "library/geometry/linear.hpp"
+#include "library/world/sector_test.hpp"
+#include "library/world/world_state.hpp"
 #include "support/random_views.hpp"
 #include "support/run_threads.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline {
 namespace {
@@ -178,16 +178,16 @@ TEST(World, TidiesOnlyTheSectorsItTouches) {
   World world;
   std::vector<WorldBox> boxes;
   for (int i = 0; i < 1000; ++i)
-    boxes.push_back(wide({{0, 0, 0}, {1, 1, 1}}, {culling::kSectorSide * i, 0, 0}));
+    boxes.push_back(wide({{0, 0, 0}, {1, 1, 1}}, {world::kSectorSide * i, 0, 0}));
   std::vector<Handle> handles(boxes.size());
   ASSERT_FALSE(world.insert(boxes, handles));
-  const culling::WorldState& state = world.state();
+  const world::WorldState& state = world.state();
   ASSERT_EQ(state.sectors.size(), 1000u);
   const auto tidied_by = [&](auto&& change) {
     const std::uint64_t before = state.tidied;
     EXPECT_FALSE(change());
     EXPECT_TRUE(state.touched.empty());
-    for (const culling::Sector& sector : state.sectors) {
+    for (const world::Sector& sector : state.sectors) {
       EXPECT_FALSE(sector.touched);
       if (sector.map) EXPECT_EQ(sector.bounds, sector.map->nodes()[0].bounds);
     }
@@ -208,7 +208,7 @@ TEST(World, TidiesOnlyTheSectorsItTouches) {
 }
 
 // The sector's bounds against the frustum that its view has.
-bool frustum_misses(const WorldView& view, const culling::Sector& sector) {
+bool frustum_misses(const WorldView& view, const world::Sector& sector) {
   using namespace geometry;
   glm::dmat4 moved(1.0);
   moved[3] = {sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
@@ -247,10 +247,10 @@ TEST(World, LeavesOutFarSectorsThatTheirOwnFrustumsMiss) {
       if (step % 8 == 0) view.origin.x -= 1e6, view.origin.z += 1e6;
       orthographic += camera.orthographic_height > 0, infinite += std::isinf(camera.far_plane);
       reversed += camera.depth == Depth::reversed;
-      for (const culling::Sector& sector : world.state().sectors) {
+      for (const world::Sector& sector : world.state().sectors) {
         const bool its_own = frustum_misses(view, sector);
         outside += its_own;
-        if (!culling::SectorTest(view).misses(sector.origin, sector.bounds)) continue;
+        if (!world::SectorTest(view).misses(sector.origin, sector.bounds)) continue;
         ++missed;
         ASSERT_TRUE(its_own) << "step " << step;
       }
@@ -263,7 +263,7 @@ TEST(World, LeavesOutFarSectorsThatTheirOwnFrustumsMiss) {
             std::pair{rows[3] - rows[1], glm::dvec4(0, 1, 0.5, 1)},
             std::pair{camera.depth == Depth::reversed ? rows[3] - rows[2] : rows[2],
                       glm::dvec4(0, 0, camera.depth == Depth::reversed ? 1 : 0, 1)}}) {
-        const culling::Sector& sector = sectors[random.below(static_cast<std::uint32_t>(sectors.size()))];
+        const world::Sector& sector = sectors[random.below(static_cast<std::uint32_t>(sectors.size()))];
         const glm::dvec3 n = glm::normalize(glm::dvec3(plane));
         const glm::dvec4 on_plane = back * middle;
         const Box& b = sector.bounds;
@@ -274,7 +274,7 @@ TEST(World, LeavesOutFarSectorsThatTheirOwnFrustumsMiss) {
         const WorldView touching{*made, {at.x, at.y, at.z}};
         if (frustum_misses(touching, sector)) continue;
         ++kept;
-        ASSERT_FALSE(culling::SectorTest(touching).misses(sector.origin, sector.bounds)) << "step " << step;
+        ASSERT_FALSE(world::SectorTest(touching).misses(sector.origin, sector.bounds)) << "step " << step;
       }
       if (step % 20 != 0) continue;
       expect_right(world, culler, twin, {&view, 1}, 0.5);

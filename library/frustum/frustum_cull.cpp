@@ -1,0 +1,153 @@
+#include <sightline/culling.hpp>
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "library/frustum/frustum_cull.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::frustum::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::ScalableTag<float>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+
+// A plane spread over the lanes, held in registers through a loop.
+struct WidePlane {
+  VF x, y, z, distance;
+};
+
+HWY_INLINE WidePlane spread(const Plane& plane) {
+  const F f;
+  return {hn::Set(f, plane.normal.x), hn::Set(f, plane.normal.y), hn::Set(f, plane.normal.z),
+          hn::Set(f, plane.distance)};
+}
+
+// signed_distance() of a vector of points: mul and add apart, in its order, so that it rounds alike.
+HWY_INLINE VF distance(const WidePlane& plane, VF x, VF y, VF z) {
+  const VF xy = hn::Add(hn::Mul(plane.x, x), hn::Mul(plane.y, y));
+  return hn::Add(hn::Add(xy, hn::Mul(plane.z, z)), plane.distance);
+}
+
+// Calls test(first) -> mask for each vector and packs the indices that pass; the rest that fills no vector
+// goes through `test_one`.
+template <class Test, class TestOne>
+HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY_RESTRICT out,
+                            const Test& test, const TestOne& test_one) {
+  const F f;
+  const U u;
+  const std::size_t lanes = hn::Lanes(f);
+  std::size_t kept = 0, i = 0;
+  const auto one_by_one = [&](std::size_t end) {
+    for (; i < end; ++i) {
+      out[kept] = static_cast<ObjectId>(i);
+      kept += test_one(i) ? 1 : 0;
+    }
+  };
+  // Large arrays start alike within a cache line: from the next line on no load crosses two.
+  const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
+  one_by_one(std::min(count, (lanes - behind_line) % lanes));
+  for (; i + lanes <= count; i += lanes) {
+    const auto mask = test(i);
+    if (hn::AllFalse(f, mask)) continue;
+    const auto ids = hn::Iota(u, static_cast<std::uint32_t>(i));
+    const auto keep = hn::RebindMask(u, mask);
+    // Packed in a register and stored whole: the packing store is microcoded on some processors.
+    hn::StoreU(hn::Compress(ids, keep), u, out + kept);
+    kept += hn::CountTrue(u, keep);
+  }
+  one_by_one(count);
+  return kept;
+}
+
+// The corner of each box that lies farthest along a plane's normal: one choice for all boxes.
+struct Nearest {
+  const float *x, *y, *z;
+
+  Nearest(const Plane& plane, const BoxSpan& b)
+      : x(plane.normal.x >= 0 ? b.max_x : b.min_x),
+        y(plane.normal.y >= 0 ? b.max_y : b.min_y),
+        z(plane.normal.z >= 0 ? b.max_z : b.min_z) {}
+};
+
+std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
+  const F f;
+  const auto& p = frustum.planes;
+  const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
+                  p4 = spread(p[4]), p5 = spread(p[5]);
+  const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
+      n5(p[5], boxes);
+  const auto at = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
+    return distance(plane, hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i));
+  };
+  return pack(
+      boxes.count, boxes.min_x, out,
+      [&](std::size_t i) HWY_ATTR {
+        // The smallest distance of all planes decides: one comparison instead of six.
+        const VF a = hn::Min(at(p0, n0, i), at(p1, n1, i)), b = hn::Min(at(p2, n2, i), at(p3, n3, i)),
+                 c = hn::Min(at(p4, n4, i), at(p5, n5, i));
+        return hn::Ge(hn::Min(hn::Min(a, b), c), hn::Zero(f));
+      },
+      [&](std::size_t i) {
+        return overlaps(frustum, Box{{boxes.min_x[i], boxes.min_y[i], boxes.min_z[i]},
+                                     {boxes.max_x[i], boxes.max_y[i], boxes.max_z[i]}});
+      });
+}
+
+std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* out) {
+  const F f;
+  const auto& p = frustum.planes;
+  const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
+                  p4 = spread(p[4]), p5 = spread(p[5]);
+  return pack(
+      s.count, s.x, out,
+      [&](std::size_t i) HWY_ATTR {
+        const VF x = hn::LoadU(f, s.x + i), y = hn::LoadU(f, s.y + i), z = hn::LoadU(f, s.z + i);
+        const VF a = hn::Min(distance(p0, x, y, z), distance(p1, x, y, z)),
+                 b = hn::Min(distance(p2, x, y, z), distance(p3, x, y, z)),
+                 c = hn::Min(distance(p4, x, y, z), distance(p5, x, y, z));
+        return hn::Ge(hn::Min(hn::Min(a, b), c), hn::Neg(hn::LoadU(f, s.radius + i)));
+      },
+      [&](std::size_t i) {
+        return overlaps(frustum, Sphere{{s.x[i], s.y[i], s.z[i]}, s.radius[i]});
+      });
+}
+
+}  // namespace sightline::frustum::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+namespace frustum {
+HWY_EXPORT(cull_boxes);
+HWY_EXPORT(cull_spheres);
+
+static std::size_t flat_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
+  return HWY_DYNAMIC_DISPATCH(cull_boxes)(frustum, boxes, out);
+}
+
+static std::size_t flat_spheres(const Frustum& frustum, const SphereSpan& spheres, ObjectId* out) {
+  return HWY_DYNAMIC_DISPATCH(cull_spheres)(frustum, spheres, out);
+}
+}  // namespace frustum
+
+BoxSpan span_of(const Boxes& b) noexcept {
+  return {b.min_x.data(), b.min_y.data(), b.min_z.data(), b.max_x.data(),
+          b.max_y.data(), b.max_z.data(), b.size()};
+}
+
+std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, std::span<ObjectId> visible) noexcept {
+  return frustum::flat_boxes(frustum, boxes, visible.data());
+}
+
+std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& spheres,
+                         std::span<ObjectId> visible) noexcept {
+  return frustum::flat_spheres(frustum, spheres, visible.data());
+}
+
+}  // namespace sightline
+#endif

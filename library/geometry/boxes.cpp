@@ -1,0 +1,28 @@
+#include <sightline/culling.hpp>
+
+namespace sightline {
+
+void Boxes::set(std::size_t i, const Box& box) noexcept {
+  min_x[i] = box.min.x, min_y[i] = box.min.y, min_z[i] = box.min.z;
+  max_x[i] = box.max.x, max_y[i] = box.max.y, max_z[i] = box.max.z;
+}
+
+void Boxes::push_back(const Box& box) {
+  resize(size() + 1);
+  set(size() - 1, box);
+}
+
+void Boxes::resize(std::size_t count) {
+  for (auto* array : {&min_x, &min_y, &min_z, &max_x, &max_y, &max_z}) array->resize(count);
+}
+
+void Boxes::reserve(std::size_t count) {
+  for (auto* array : {&min_x, &min_y, &min_z, &max_x, &max_y, &max_z}) array->reserve(count);
+}
+
+Vec3 transform_point(const Affine& affine, const Vec3& p) noexcept {
+  const auto row = [&](const Vec4& r) { return r.x * p.x + r.y * p.y + r.z * p.z + r.w; };
+  return {row(affine.rows[0]), row(affine.rows[1]), row(affine.rows[2])};
+}
+
+}  // namespace sightline

@@ -1,0 +1,225 @@
+// Occluding boxes into the tiles.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "library/occlusion/depth_tiles.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "library/occlusion/box_raster.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include "library/occlusion/depth_raster-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion::HWY_NAMESPACE {
+
+template <std::size_t kCount>
+using Vectors = std::array<std::array<float, 16>, kCount>;
+
+// A vector of boxes, ready to be drawn. Corner c of a box has the greater x, y, z where bit 0, 1, 2 is set.
+struct ProjectedBoxes {
+  alignas(64) Vectors<6> sides;  // about the eye
+  alignas(64) Vectors<8> x, y;   // of the corners
+  // The outline, two edges along each axis: x = at + slope·y; what does not bound a side lies at infinity.
+  alignas(64) Vectors<6> slope, left_at, right_at;
+  alignas(64) Vectors<3> at, across, down;  // of the plane that looks at the eye, by axis
+  alignas(64) std::array<float, 16> left, right, top, bottom, nearest;
+  alignas(64) std::array<std::int32_t, 16> begin_x, end_x, begin_y, end_y;  // tiles
+  std::uint32_t drawn, cut;  // a bit a box: to be drawn as it stands; face by face
+};
+
+// Which faces surely look at the eye, by axis: the one of the lesser coordinate, or of the greater.
+struct Facing {
+  std::array<hn::Mask<F>, 3> low, high;
+};
+
+// The faces and their planes; `grazing` is set where one looks at the eye, but not surely.
+HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t& grazing,
+                             ProjectedBoxes& out) {
+  const F f;
+  const PixelRays& rays = tiles.rays;
+  const bool orthographic = tiles.projection.orthographic;
+  const VF zero = hn::Zero(f);
+  Facing facing;
+  grazing = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const VF low = hn::Load(f, out.sides[a].data()), high = hn::Load(f, out.sides[a + 3].data());
+    const VF margin =
+        hn::Add(hn::Set(f, 1e-6f), hn::Mul(hn::Set(f, 1e-5f), hn::Max(hn::Abs(low), hn::Abs(high))));
+    const VF forward = hn::Set(f, rays.forward[a]);
+    facing.low[a] = orthographic ? hn::Gt(forward, hn::Set(f, 1e-5f)) : hn::Gt(low, margin);
+    facing.high[a] = orthographic ? hn::Lt(forward, hn::Set(f, -1e-5f)) : hn::Lt(high, hn::Neg(margin));
+    const auto any = orthographic ? hn::Ne(forward, zero) : hn::Or(hn::Gt(low, zero), hn::Lt(high, zero));
+    const auto sure = hn::Or(facing.low[a], facing.high[a]);
+    grazing |= bits_of(hn::AndNot(sure, any));
+    const VF at = hn::IfThenElse(facing.low[a], low, high);
+    const VF scale = hn::Div(hn::Set(f, 1.0f), orthographic ? forward : at);
+    const VF across = hn::Mul(hn::Set(f, rays.across[a]), scale),
+             along = hn::Mul(hn::Set(f, rays.down[a]), scale);
+    const VF start = orthographic ? hn::Sub(hn::Set(f, rays.at[a]), at) : hn::Set(f, rays.at[a]);
+    const VF moved = moved_back(hn::Mul(start, scale), across, along, nearest);
+    // A plane that does not look at the eye is in front of all others.
+    hn::Store(hn::IfThenElseZero(sure, across), f, out.across[a].data());
+    hn::Store(hn::IfThenElseZero(sure, along), f, out.down[a].data());
+    hn::Store(hn::IfThenElse(sure, moved, hn::Set(f, kInfinity)), f, out.at[a].data());
+  }
+  return facing;
+}
+
+// The outline of a box by which faces look at the eye (after Schmalstieg & Tobler 1999): the edges between a
+// face that does and one that does not. Along an axis a there are two or none, and which ones, the faces of
+// the other axes b and c tell: edge (j, k) lies between the low or high face of b, as j says, and that of c.
+// Returns a bit a box: it has an edge on either side.
+HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF inset, ProjectedBoxes& out) {
+  const F f;
+  std::uint32_t right = 0, left = 0;
+  const auto turns = hn::MaskFromVec(hn::BitCast(f, hn::Set(hn::RebindToSigned<F>(), turns_right ? -1 : 0)));
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    const auto looks_b = hn::Or(facing.low[b], facing.high[b]),
+               looks_c = hn::Or(facing.low[c], facing.high[c]), looks = hn::Or(looks_b, looks_c);
+    for (std::size_t e = 0; e < 2; ++e) {
+      // The first edge lies at the face of b that looks and away from that of c, the second the other way
+      // round; where only one of both looks, both edges lie at it.
+      const auto j = e == 0 ? facing.high[b] : hn::Xor(facing.high[b], looks_c);
+      const auto k = e == 0 ? hn::Or(hn::And(looks_b, facing.low[c]), hn::AndNot(looks_b, facing.high[c]))
+                            : hn::Or(facing.high[c], hn::Not(looks_c));
+      const auto corner = [&](const Vectors<8>& of, std::size_t along) HWY_ATTR {
+        const auto at = [&](std::size_t at_b, std::size_t at_c)
+                            HWY_ATTR { return hn::Load(f, of[along << a | at_b << b | at_c << c].data()); };
+        return hn::IfThenElse(j, hn::IfThenElse(k, at(1, 1), at(1, 0)),
+                              hn::IfThenElse(k, at(0, 1), at(0, 0)));
+      };
+      const VF ax = corner(out.x, 0), ay = corner(out.y, 0), bx = corner(out.x, 1), by = corner(out.y, 1);
+      const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
+               at = hn::Sub(ax, hn::Mul(ay, slope));
+      const VF inwards = hn::Mul(inset, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
+      // Counterclockwise round the face that looks, the outline runs up the axis at one side of it.
+      const auto by_b = e == 0 ? looks_b : hn::Not(looks_c);
+      const auto up = hn::Xor(by_b, hn::Xor(j, k));
+      const auto interior_left = hn::Xor(hn::Xor(hn::Gt(rise, hn::Zero(f)), up), turns);
+      const auto steep = hn::And(looks, hn::Ge(hn::Abs(rise), hn::Set(f, kFlat)));
+      const VF none = hn::Set(f, kInfinity);
+      const std::size_t edge = 2 * a + e;
+      hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[edge].data());
+      const auto on_right = hn::And(steep, interior_left), on_left = hn::AndNot(interior_left, steep);
+      hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), none), f, out.right_at[edge].data());
+      hn::Store(hn::IfThenElse(on_left, hn::Add(at, inwards), hn::Neg(none)), f, out.left_at[edge].data());
+      right |= bits_of(on_right), left |= bits_of(on_left);
+    }
+  }
+  return right & left;
+}
+
+HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::size_t count,
+                              ProjectedBoxes& out) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
+    const Box& box = boxes[std::min(i, count - 1)];
+    out.sides[0][i] = box.min.x, out.sides[1][i] = box.min.y, out.sides[2][i] = box.min.z;
+    out.sides[3][i] = box.max.x, out.sides[4][i] = box.max.y, out.sides[5][i] = box.max.z;
+  }
+  const float high[3] = {e.eye_high.x, e.eye_high.y, e.eye_high.z},
+              low[3] = {e.eye_low.x, e.eye_low.y, e.eye_low.z};
+  VF q[6];
+  for (std::size_t side = 0; side < 6; ++side) {
+    q[side] = hn::Sub(hn::Sub(hn::Load(f, out.sides[side].data()), hn::Set(f, high[side % 3])),
+                      hn::Set(f, low[side % 3]));
+    hn::Store(q[side], f, out.sides[side].data());
+  }
+  const auto valid = hn::And(hn::And(hn::Le(q[0], q[3]), hn::Le(q[1], q[4])), hn::Le(q[2], q[5]));
+  VF left = hn::Set(f, kInfinity), top = left, clear = left;
+  VF right = hn::Set(f, -kInfinity), bottom = right, nearest = right;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const VF qx = q[c & 1 ? 3 : 0], qy = q[c & 2 ? 4 : 1], qz = q[c & 4 ? 5 : 2];
+    const auto dot = [&](const Vec4& row) HWY_ATTR { return dot_row(row, qx, qy, qz); };
+    clear = hn::Min(clear, dot(tiles.rays.near_plane));
+    const VF over_w = hn::Div(hn::Set(f, 1.0f), dot(e.w));
+    const VF x = hn::Mul(dot(e.x), over_w), y = hn::Mul(dot(e.y), over_w);
+    nearest = hn::Max(nearest, e.orthographic ? dot(e.nearness) : over_w);
+    left = hn::Min(left, x), right = hn::Max(right, x), top = hn::Min(top, y), bottom = hn::Max(bottom, y);
+    hn::Store(x, f, out.x[c].data());
+    hn::Store(y, f, out.y[c].data());
+  }
+  const VF farthest_out =
+      hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
+  const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
+  std::uint32_t grazing = 0;
+  const Facing facing = find_faces(tiles, nearest, grazing, out);
+  const std::uint32_t bounded = find_edges(facing, tiles.rays.turns_right, inset, out);
+
+  left = hn::Add(left, inset), right = hn::Sub(right, inset);
+  top = hn::Add(top, inset), bottom = hn::Sub(bottom, inset);
+  hn::Store(left, f, out.left.data());
+  hn::Store(right, f, out.right.data());
+  hn::Store(top, f, out.top.data());
+  hn::Store(bottom, f, out.bottom.data());
+  hn::Store(nearest, f, out.nearest.data());
+  // The tiles that hold the pixel centres between the sides.
+  const hn::RebindToSigned<F> i32;
+  const VF half = hn::Set(f, 0.5f);
+  const auto first = [&](VF at) HWY_ATTR { return hn::Ceil(hn::Sub(hn::Max(at, half), half)); };
+  const auto last = [&](VF at, std::uint32_t size) HWY_ATTR {
+    return hn::Floor(hn::Sub(hn::Min(at, hn::Set(f, static_cast<float>(size) - 0.5f)), half));
+  };
+  const VF x0 = first(left), x1 = last(right, tiles.width), y0 = first(top), y1 = last(bottom, tiles.height);
+  const auto tile = [&](VF pixel) HWY_ATTR { return hn::ShiftRight<3>(hn::ConvertTo(i32, pixel)); };
+  const auto one = hn::Set(i32, 1);
+  hn::Store(tile(x0), i32, out.begin_x.data());
+  hn::Store(tile(y0), i32, out.begin_y.data());
+  hn::Store(hn::Add(tile(x1), one), i32, out.end_x.data());
+  hn::Store(hn::Add(tile(y1), one), i32, out.end_y.data());
+  const std::uint32_t some = bits_of(valid) & ((1u << count) - 1);
+  const std::uint32_t before = bits_of(hn::Ge(clear, hn::Zero(f)));
+  const std::uint32_t holds_pixels = bits_of(hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
+  // Without numbers there is no saying where a box ends.
+  const std::uint32_t numbers = bits_of(hn::Lt(farthest_out, hn::Set(f, kInfinity)));
+  out.drawn = some & before & ~grazing & holds_pixels & numbers & bounded;
+  out.cut = some & ~(before & ~grazing);
+}
+
+void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
+  const F f;
+  const auto width = static_cast<float>(tiles.width);
+  ProjectedBoxes b;
+  for (std::size_t first = 0; first < boxes.size(); first += hn::Lanes(f)) {
+    project_boxes(tiles, &boxes[first], std::min(hn::Lanes(f), boxes.size() - first), b);
+    for (std::uint32_t rest = b.cut; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
+                       {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
+    }
+    for (std::uint32_t rest = b.drawn; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const TileRange range{static_cast<std::uint32_t>(b.begin_x[i]), static_cast<std::uint32_t>(b.end_x[i]),
+                            static_cast<std::uint32_t>(b.begin_y[i]), static_cast<std::uint32_t>(b.end_y[i])};
+      // A box behind what is drawn already changes nothing.
+      if (hidden_tiles(tiles, range, b.nearest[i])) continue;
+      draw_spans<3>(tiles,
+                    {{b.at[0][i], b.at[1][i], b.at[2][i]},
+                     {b.across[0][i], b.across[1][i], b.across[2][i]},
+                     {b.down[0][i], b.down[1][i], b.down[2][i]}},
+                    range, [&](float first_y) HWY_ATTR { return spans_of<6>(b, i, first_y, width); });
+    }
+  }
+}
+
+}  // namespace sightline::occlusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion {
+HWY_EXPORT(draw_all_boxes);
+
+void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept {
+  HWY_DYNAMIC_DISPATCH(draw_all_boxes)(tiles, boxes);
+}
+
+}  // namespace sightline::occlusion
+#endif

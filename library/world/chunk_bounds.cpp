@@ -1,0 +1,317 @@
+// Bounds above the chunks: blocks and the quadtree's nodes, and what others read of a chunk.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "library/world/chunk_map.hpp"
+
+namespace sightline::world {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Box kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+
+Box united(const Box& a, const Box& b) {
+  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
+}
+
+bool holds(const Box& outer, const Box& inner) {
+  return outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
+         outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z;
+}
+
+// Whether taking `inner` away can make `outer` smaller.
+bool touches(const Box& outer, const Box& inner) {
+  return outer.min.x >= inner.min.x || outer.min.y >= inner.min.y || outer.min.z >= inner.min.z ||
+         outer.max.x <= inner.max.x || outer.max.y <= inner.max.y || outer.max.z <= inner.max.z;
+}
+
+// Eight partial results, so that the compiler can keep them in a register.
+template <class Better>
+float reduce(const float* values, std::uint32_t count, Better better) {
+  constexpr std::uint32_t kParts = 8;
+  if (count < kParts) {
+    float best = values[0];
+    for (std::uint32_t i = 1; i < count; ++i) best = better(values[i], best) ? values[i] : best;
+    return best;
+  }
+  std::array<float, kParts> part;
+  std::copy_n(values, kParts, part.begin());
+  const auto fold = [&](const float* from) {
+    for (std::uint32_t j = 0; j < kParts; ++j) part[j] = better(from[j], part[j]) ? from[j] : part[j];
+  };
+  std::uint32_t i = kParts;
+  for (; i + kParts <= count; i += kParts) fold(values + i);
+  fold(values + count - kParts);  // some twice, which does not matter
+  float best = part[0];
+  for (std::uint32_t j = 1; j < kParts; ++j) best = better(part[j], best) ? part[j] : best;
+  return best;
+}
+
+template <class Side>
+Box bounds_of(const Side& side, std::uint32_t count) {
+  const auto less = [](float a, float b) { return a < b; };
+  const auto greater = [](float a, float b) { return a > b; };
+  return {
+      {reduce(side(0), count, less), reduce(side(1), count, less), reduce(side(2), count, less)},
+      {reduce(side(3), count, greater), reduce(side(4), count, greater), reduce(side(5), count, greater)}};
+}
+
+}  // namespace
+
+Box ChunkMap::tight(const Chunk& c) const noexcept {
+  return world::bounds_of([&](std::uint32_t side) { return lanes(c, side); }, c.count);
+}
+
+Box ChunkMap::tight(const Block& block) const noexcept {
+  return world::bounds_of([&](std::uint32_t side) { return block.bounds[side].data(); }, block.count);
+}
+
+Box ChunkMap::chunk_bounds(std::uint32_t chunk) const noexcept {
+  const Chunk& c = chunks_[chunk];
+  const auto& b = blocks_[c.block].bounds;
+  const std::uint32_t i = c.index_in_block;
+  return {{b[0][i], b[1][i], b[2][i]}, {b[3][i], b[4][i], b[5][i]}};
+}
+
+void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
+  const Chunk& c = chunks_[chunk];
+  auto& b = blocks_[c.block].bounds;
+  const std::uint32_t i = c.index_in_block;
+  b[0][i] = box.min.x, b[1][i] = box.min.y, b[2][i] = box.min.z;
+  b[3][i] = box.max.x, b[4][i] = box.max.y, b[5][i] = box.max.z;
+}
+
+void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
+  const Box bounds = chunk_bounds(chunk);
+  if (holds(bounds, box)) return;
+  set_bounds(chunk, world::united(bounds, box));
+  extend_block(chunks_[chunk].block, box);
+}
+
+// Where the chunk's objects lie and how many they are, for those who read the block.
+void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
+  const Chunk& c = chunks_[chunk];
+  if (c.block == kNone) return;
+  Block& b = blocks_[c.block];
+  b.first_lane[c.index_in_block] = c.first_lane;
+  b.count_and_size[c.index_in_block] = c.count | (c.capacity == kSmallCapacity ? Block::kSmall : 0);
+}
+
+void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {
+  sides[0][i] = box.min.x, sides[1][i] = box.min.y, sides[2][i] = box.min.z;
+  sides[3][i] = box.max.x, sides[4][i] = box.max.y, sides[5][i] = box.max.z;
+}
+
+void ChunkMap::BoxRows::resize(std::size_t count) {
+  for (auto& side : sides) side.resize((count + 15) / 16 * 16);
+}
+
+void ChunkMap::set_box(std::uint32_t block, const Box& box) noexcept {
+  Block& b = blocks_[block];
+  b.box = box;
+  nodes_[b.node].block_boxes.set(b.index_in_node, box);
+}
+
+void ChunkMap::extend_block(std::uint32_t block, const Box& box) noexcept {
+  Block& b = blocks_[block];
+  if (holds(b.box, box)) return;
+  set_box(block, world::united(b.box, box));
+  for (std::uint32_t n = b.node; n != kNone && !holds(nodes_[n].bounds, box); n = nodes_[n].parent) {
+    nodes_[n].bounds = world::united(nodes_[n].bounds, box);
+  }
+}
+
+// After `gone` has left the chunk, which is not empty.
+void ChunkMap::shrink(std::uint32_t chunk, const Box& gone) noexcept {
+  const Box before = chunk_bounds(chunk);
+  if (!touches(before, gone)) return;
+  const Box now = tight(chunks_[chunk]);
+  if (now == before) return;
+  set_bounds(chunk, now);
+  shrink_block(chunks_[chunk].block, before);
+}
+
+void ChunkMap::shrink_block(std::uint32_t block, const Box& gone) noexcept {
+  Block& b = blocks_[block];
+  if (!touches(b.box, gone)) return;
+  const Box before = b.box;
+  set_box(block, tight(b));
+  if (b.box != before) loosen(b.node, before);
+}
+
+void ChunkMap::loosen(std::uint32_t node, const Box& gone) noexcept {
+  for (; node != kNone && touches(nodes_[node].bounds, gone); node = nodes_[node].parent) {
+    loose_[node] = 1;
+    any_loose_ = true;
+  }
+}
+
+void ChunkMap::tighten() {
+  arrange();
+  if (!any_loose_) return;
+  any_loose_ = false;
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents
+    if (!loose_[n]) continue;
+    loose_[n] = 0;
+    Box box = kNothing;
+    for (const std::uint32_t block : nodes_[n].blocks) box = world::united(box, blocks_[block].box);
+    if (nodes_[n].first_child != kNone) {
+      for (int i = 0; i < 4; ++i) box = world::united(box, nodes_[nodes_[n].first_child + i].bounds);
+    }
+    nodes_[n].bounds = box;
+  }
+}
+
+// --- blocks ---
+
+void ChunkMap::add_objects(std::uint32_t block, std::int32_t change) noexcept {
+  if (block == kNone) return;
+  blocks_[block].objects += static_cast<std::uint32_t>(change);
+  for (std::uint32_t n = blocks_[block].node; n != kNone; n = nodes_[n].parent) {
+    nodes_[n].objects += static_cast<std::uint32_t>(change);
+  }
+}
+
+std::uint32_t ChunkMap::add_block(std::uint32_t node) {
+  std::uint32_t block;
+  if (free_blocks_.empty()) {
+    block = static_cast<std::uint32_t>(blocks_.size());
+    blocks_.emplace_back();
+  } else {
+    block = free_blocks_.back();
+    free_blocks_.pop_back();
+    blocks_[block] = {};
+  }
+  blocks_[block].node = node;
+  blocks_[block].index_in_node = static_cast<std::uint32_t>(nodes_[node].blocks.size());
+  nodes_[node].blocks.push_back(block);
+  nodes_[node].block_boxes.resize(nodes_[node].blocks.size());
+  set_box(block, kNothing);
+  return block;
+}
+
+// Puts a chunk and its objects into `block`, or into any of its region where that is kNone.
+void ChunkMap::put_in_block(std::uint32_t chunk, std::uint32_t block, const Box& bounds) {
+  const std::uint32_t node = keys_[chunks_[chunk].key].node;
+  if (block == kNone) {
+    const auto& all = nodes_[node].blocks;
+    block = !all.empty() && blocks_[all.back()].count < kBlockCapacity ? all.back() : add_block(node);
+  } else if (blocks_[block].count == kBlockCapacity) {
+    split_block(block, bounds);
+    block = keep_in_;
+  }
+  Chunk& c = chunks_[chunk];
+  Block& b = blocks_[block];
+  c.block = block;
+  c.index_in_block = b.count;
+  b.chunks[b.count++] = chunk;
+  set_bounds(chunk, bounds);
+  note_shape(chunk);
+  add_objects(block, static_cast<std::int32_t>(c.count));
+  extend_block(block, bounds);
+}
+
+void ChunkMap::take_from_block(std::uint32_t chunk) {
+  Chunk& c = chunks_[chunk];
+  const std::uint32_t block = c.block;
+  Block& b = blocks_[block];
+  const Box before = chunk_bounds(chunk);
+  const std::uint32_t last = --b.count;
+  if (c.index_in_block != last) {
+    for (auto& side : b.bounds) side[c.index_in_block] = side[last];
+    b.chunks[c.index_in_block] = b.chunks[last];
+    b.first_lane[c.index_in_block] = b.first_lane[last];
+    b.count_and_size[c.index_in_block] = b.count_and_size[last];
+    chunks_[b.chunks[last]].index_in_block = c.index_in_block;
+  }
+  c.block = kNone;
+  if (b.count > 0) return shrink_block(block, before);
+  auto& all = nodes_[b.node].blocks;
+  all[b.index_in_node] = all.back();
+  blocks_[all.back()].index_in_node = b.index_in_node;
+  if (all.back() != block) set_box(all.back(), blocks_[all.back()].box);
+  all.pop_back();
+  nodes_[b.node].block_boxes.resize(all.size());
+  loosen(b.node, b.box);
+  free_blocks_.push_back(block);
+}
+
+// Moves the upper half of a full block's chunks, along the longest axis of their centres, to a new block, and
+// leaves in keep_in_ the one nearer to `newcomer`.
+void ChunkMap::split_block(std::uint32_t block, const Box& newcomer) {
+  const std::uint32_t added = add_block(blocks_[block].node);
+  Block &low = blocks_[block], &high = blocks_[added];
+  std::uint32_t axis = 0;
+  float longest = -1;
+  std::array<float, kBlockCapacity> centre{};
+  const auto middle = [&](std::uint32_t a, std::uint32_t i) {
+    return 0.5f * low.bounds[a][i] + 0.5f * low.bounds[a + 3][i];
+  };
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    float least = kInfinity, most = -kInfinity;
+    for (std::uint32_t i = 0; i < kBlockCapacity; ++i) {
+      least = std::min(least, middle(a, i)), most = std::max(most, middle(a, i));
+    }
+    if (most - least > longest) longest = most - least, axis = a;
+  }
+  std::array<std::uint32_t, kBlockCapacity> order{};
+  for (std::uint32_t i = 0; i < kBlockCapacity; ++i) order[i] = i, centre[i] = middle(axis, i);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return centre[a] != centre[b] ? centre[a] < centre[b] : a < b;
+  });
+  const Block old = low;
+  low.count = high.count = 0;
+  std::uint32_t moved_objects = 0;
+  for (std::uint32_t k = 0; k < kBlockCapacity; ++k) {
+    const std::uint32_t from = order[k], chunk = old.chunks[from];
+    const bool up = k >= kBlockCapacity / 2;
+    Block& to = up ? high : low;
+    const std::uint32_t i = to.count++;
+    for (std::uint32_t side = 0; side < 6; ++side) to.bounds[side][i] = old.bounds[side][from];
+    to.chunks[i] = chunk;
+    to.first_lane[i] = old.first_lane[from];
+    to.count_and_size[i] = old.count_and_size[from];
+    chunks_[chunk].block = up ? added : block;
+    chunks_[chunk].index_in_block = i;
+    if (up) moved_objects += chunks_[chunk].count;
+  }
+  set_box(block, tight(low));
+  set_box(added, tight(high));
+  low.objects -= moved_objects;
+  high.objects += moved_objects;
+  const float at = centre[order[kBlockCapacity / 2]];
+  const float to = axis == 0   ? 0.5f * newcomer.min.x + 0.5f * newcomer.max.x
+                   : axis == 1 ? 0.5f * newcomer.min.y + 0.5f * newcomer.max.y
+                               : 0.5f * newcomer.min.z + 0.5f * newcomer.max.z;
+  keep_in_ = to >= at ? added : block;
+}
+
+// --- what others read ---
+
+RegionSet ChunkMap::chunk_regions(std::uint32_t chunk) const noexcept {
+  return keys_[chunks_[chunk].key].regions;
+}
+
+std::uint32_t ChunkMap::write_vertices(std::uint32_t chunk, std::span<ChunkVertex> out) const noexcept {
+  const ChunkView c = this->chunk(chunk);
+  // centre and half extent each round once, and the sum that restores the box once more.
+  constexpr float kRounding = 2 * std::numeric_limits<float>::epsilon();
+  const auto half = [](float low, float high, float middle) {
+    return std::max(high - middle, middle - low) + kRounding * (std::fabs(low) + std::fabs(high));
+  };
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Vec3 centre{0.5f * c.min_x[i] + 0.5f * c.max_x[i], 0.5f * c.min_y[i] + 0.5f * c.max_y[i],
+                      0.5f * c.min_z[i] + 0.5f * c.max_z[i]};
+    out[i] = {centre,
+              c.objects[i],
+              {half(c.min_x[i], c.max_x[i], centre.x), half(c.min_y[i], c.max_y[i], centre.y),
+               half(c.min_z[i], c.max_z[i], centre.z)},
+              chunk};
+  }
+  return c.count;
+}
+
+}  // namespace sightline::world

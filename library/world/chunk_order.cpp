@@ -1,0 +1,29 @@
+// Where chunks stand in memory: those that are read together, side by side.
+#include "library/world/chunk_map.hpp"
+
+namespace sightline::world {
+
+void ChunkMap::arrange() {
+  constexpr std::size_t kFew = 64;
+  if (misplaced_ < kFew || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
+  misplaced_ = 0;
+  geometry::LargeVector<float> lanes;
+  geometry::LargeVector<ObjectId> ids;
+  lanes.reserve(lanes_.size()), ids.reserve(ids_.size());
+  for (const Node& node : nodes_) {
+    for (const std::uint32_t block : node.blocks) {
+      Block& b = blocks_[block];
+      for (std::uint32_t i = 0; i < b.count; ++i) {
+        Chunk& c = chunks_[b.chunks[i]];
+        const auto from = static_cast<std::ptrdiff_t>(c.first_lane), to = from + c.capacity;
+        c.first_lane = b.first_lane[i] = static_cast<std::uint32_t>(ids.size());
+        lanes.insert(lanes.end(), lanes_.begin() + 6 * from, lanes_.begin() + 6 * to);
+        ids.insert(ids.end(), ids_.begin() + from, ids_.begin() + to);
+      }
+    }
+  }
+  lanes_ = std::move(lanes), ids_ = std::move(ids);
+  free_small_.clear(), free_large_.clear();
+}
+
+}  // namespace sightline::world

@@ -1,0 +1,68 @@
+// The inner passes of culling a world: blocks -> chunks -> objects, in SIMD.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <sightline/frustum.hpp>
+#include <sightline/world.hpp>
+
+#include "library/occlusion/depth_tiles.hpp"
+#include "library/world/chunk_map.hpp"
+
+namespace sightline::world {
+
+/// Bit p: the box crosses plane p of the view's frustum. No bit: it is inside. kOutside: the view misses it.
+using PlaneSet = std::uint8_t;
+inline constexpr PlaneSet kAllPlanes = 0x3f;
+inline constexpr PlaneSet kOutside = 0x80;
+
+/// One view as a sector sees it: relative to the sector's origin.
+struct SectorView {
+  Frustum frustum;
+  /// For each plane the sides of a box (as ChunkMap::Block orders them) farthest along its normal, and their
+  /// opposites.
+  std::array<std::array<std::uint8_t, 3>, Frustum::sides> near_side{}, far_side{};
+  Vec3 eye;
+  float area_scale = 0;  ///< π·(pixels per metre)² / min_area; 0: contribution is not tested
+  bool orthographic = false;
+  const occlusion::DepthTiles* occluders = nullptr;  ///< null: occlusion is not tested
+  occlusion::EyeProjection projection;               ///< of the occluders' view, about the sector's origin
+};
+
+/// A block that some view may see.
+struct BlockEntry {
+  std::uint32_t sector = 0, block = 0;  ///< the sector as PassInput counts them
+  std::array<PlaneSet, kMaxViews> planes{};
+};
+
+struct PassCounts {
+  std::size_t written = 0;
+  std::uint64_t tested = 0, chunks = 0, occluded = 0;
+};
+
+/// The maps and the views of a cull, of the sectors that some view may see; views lie sector by sector.
+struct PassInput {
+  std::span<const world::ChunkMap* const> maps;  ///< one a sector
+  std::span<const SectorView> views;             ///< sectors × view_count
+  std::size_t view_count = 1;
+  /// Of each view, the bits of a mask: several where the caller's views are the same.
+  std::array<std::uint8_t, kMaxViews> bits{};
+};
+
+/// Sorts the blocks of a node: adds those that some view may see to `entries`. `views` are the sector's,
+/// `planes` what each has still to be tested against.
+void find_blocks(const world::ChunkMap::Node& node, std::span<const SectorView> views,
+                 std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
+                 std::vector<BlockEntry>& entries) noexcept;
+
+/// Writes the visible objects of the entries; `out` and, where masks are wanted, `masks` have room for all
+/// objects of the entries' blocks and kCullPadding more.
+PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+                       std::uint8_t* masks) noexcept;
+/// The same with all tests; cull_blocks() calls it where some view has more than a frustum.
+PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+                                std::uint8_t* masks) noexcept;
+
+}  // namespace sightline::world

@@ -1,0 +1,74 @@
+// What stands behind sightline::World: sectors, each a chunk map around a double-precision origin.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include <sightline/world.hpp>
+
+#include "library/world/chunk_map.hpp"
+
+namespace sightline::world {
+
+/// Metres. A float within half of it keeps 0.12 mm; and 10⁷ m are a whole number of sectors, as are all round
+/// decimal distances from there on, so that a world shifted by one keeps its bits.
+inline constexpr double kSectorSide = 3200;
+
+using world::ChunkMap;
+
+struct SectorCell {
+  std::int64_t x = 0, y = 0, z = 0;
+  bool operator==(const SectorCell&) const = default;
+};
+
+struct SectorCellHash {
+  std::size_t operator()(const SectorCell& c) const noexcept {
+    std::uint64_t h = 0;
+    for (const std::int64_t v : {c.x, c.y, c.z}) {
+      h = (h ^ static_cast<std::uint64_t>(v)) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+    return h;
+  }
+};
+
+struct Sector {
+  WorldPoint origin;
+  std::unique_ptr<ChunkMap> map;  ///< relative to the origin; null: the sector is free
+  Box bounds;                     ///< the map's, kept here so that a cull need not fetch it from there
+  bool touched = false;           ///< stands in WorldState::touched
+};
+
+/// In WorldState::objects, one an id.
+struct WorldObject {
+  std::uint32_t sector = ChunkMap::kNone;  ///< kNone: the id is free
+  std::uint32_t generation = 0;
+};
+
+struct WorldState {
+  std::vector<Sector> sectors;
+  std::vector<std::uint32_t> free_sectors;
+  std::unordered_map<SectorCell, std::uint32_t, SectorCellHash> sector_of_cell;
+  ChunkMap::Locations locations;  ///< shared by all sectors' maps
+  std::vector<WorldObject> objects;
+  std::vector<ObjectId> free_ids;
+  std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
+  std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
+  std::size_t size = 0;
+  Culler culler;  ///< of the free function cull()
+
+  std::uint32_t sector_at(const SectorCell& cell);
+  /// To be called of every sector whose map changes.
+  void touch(std::uint32_t sector);
+  /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty.
+  void tidy();
+};
+
+/// The sector that holds a box's centre.
+SectorCell sector_cell(const WorldBox& box) noexcept;
+/// The box seen from an origin, rounded outwards.
+Box relative_box(const WorldBox& box, const WorldPoint& origin) noexcept;
+
+}  // namespace sightline::world

@@ -1,0 +1,189 @@
+// Camera paths, path files, ways through a level, and files on a full disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/worlds.hpp>
+
+#include "support/full_disk.hpp"
+#include "support/temporary_folder.hpp"
+#include "workbench/camera/camera_path.hpp"
+#include "workbench/camera/navigation_graph.hpp"
+#include "workbench/camera/path_file.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/io/text_file.hpp"
+#include "workbench/scene/level_space.hpp"
+
+namespace sightline::camera {
+namespace {
+
+using test::FullDisk;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+std::string refusal_of(const std::string& text) {
+  try {
+    parse_path("views.json", text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(PathFile, ComesBackToTheBit) {
+  const Scene scene = or_throw(generate_world("regular?columns=4&rows=4"));
+  const std::vector<Camera> cameras = random_cameras(scene, 200, 1);
+  const TemporaryFolder folder;
+  save_path(folder / "path.json", cameras);
+  const std::vector<Camera> read = load_path(folder / "path.json");
+  ASSERT_EQ(read.size(), cameras.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(or_throw(make_view(read[i], 640, 360)), or_throw(make_view(cameras[i], 640, 360))) << i;
+  }
+}
+
+TEST(PathFile, OnlyTheEyeIsRequired) {
+  const std::vector<Camera> cameras = parse_path("text", R"({"views": [{"eye": [1, 2, 3]}]})");
+  ASSERT_EQ(cameras.size(), 1u);
+  EXPECT_EQ(cameras[0].eye, (Vec3{1, 2, 3}));
+  EXPECT_EQ(cameras[0].forward, Camera{}.forward);
+}
+
+TEST(PathFile, SaysWhatIsWrongAndWhere) {
+  EXPECT_THAT(refusal_of("{\"views\": ["), HasSubstr("views.json: not JSON from byte"));
+  EXPECT_THAT(refusal_of(""), HasSubstr("not JSON"));
+  EXPECT_THAT(refusal_of("[1]"), HasSubstr("an array \"views\""));
+  EXPECT_THAT(refusal_of(R"({"views": []})"), HasSubstr("0 views, expected 1 to 100000"));
+  EXPECT_THAT(refusal_of(R"({"views": [3]})"), HasSubstr("view 0: expected an object"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"forward": [0,0,1]}]})"), HasSubstr("view 0: \"eye\""));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0]}, {"eye": [0,0]}]})"),
+              HasSubstr("view 1: \"eye\": expected an array of 3 numbers"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,"up"]}]})"), HasSubstr("expected a number"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0], "fov": 60}]})"), HasSubstr("unknown member \"fov\""));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0], "fov_degrees": 180}]})"), HasSubstr("field of view"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0], "near": -1}]})"), HasSubstr("0 < near < far"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [1e300,0,0]}]})"), HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [1e999,0,0]}]})"), HasSubstr("out of range"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0], "reversed": 1}]})"), HasSubstr("true or false"));
+}
+
+TEST(PathFile, MissingFileAndUnknownNameAreRefused) {
+  const Scene scene = or_throw(generate_world("regular?columns=2&rows=2"));
+  EXPECT_THROW(load_path("/nowhere/at/all.json"), Error);
+  EXPECT_THROW(load_path("/"), Error);
+  EXPECT_THROW(make_path(scene, "sideways", 3), Error);
+}
+
+TEST(CameraPath, NamedPathsMakeViewsInEveryWorld) {
+  for (const char* world : {"regular", "irregular", "forest?trees=500", "soup?triangles=1000"}) {
+    const Scene scene = or_throw(generate_world(world));
+    EXPECT_EQ(default_path(scene), "near");
+    for (const char* name : {"near", "far", "rising", "walk"}) {
+      for (const std::size_t frames : {1, 2, 17}) {
+        const CameraPath path = make_path(scene, name, frames);
+        ASSERT_EQ(path.cameras.size(), frames);
+        for (const Camera& camera : path.cameras) EXPECT_TRUE(make_view(camera, 320, 180)) << world << name;
+      }
+    }
+    EXPECT_EQ(make_path(scene, "rising", 9).cameras.front().eye, make_path(scene, "near", 1).cameras[0].eye);
+    EXPECT_EQ(make_path(scene, "rising", 9).cameras.back().eye, make_path(scene, "far", 1).cameras[0].eye);
+  }
+}
+
+TEST(CameraPath, StandsWhereTheSceneSays) {
+  const Scene scene = or_throw(generate_world("regular?columns=4&rows=4"));
+  for (const Viewpoint& viewpoint : scene.viewpoints) {
+    const Camera camera = make_path(scene, viewpoint.name, 1).cameras[0];
+    EXPECT_EQ(camera.eye, viewpoint.eye);
+    EXPECT_EQ(camera.forward, viewpoint.forward);
+  }
+}
+
+/// Two rooms, x < -1 and x > 1, joined by a door 0 < z < 2 through the wall between; all else is open.
+Scene walled_scene() {
+  Scene scene;
+  const std::vector<Vec3> corners{{-20, 0, -20}, {20, 0, -20}, {20, 0, 20}, {-20, 0, 20}};
+  const std::vector<Vec3> normals(4, Vec3{0, 1, 0});
+  const std::vector<std::uint32_t> indices{0, 2, 1, 0, 3, 2};
+  scene.add_object(scene.add_mesh(corners, normals, indices), {});
+  LevelPvs level;
+  level.nodes = {
+      {{{1, 0, 0}, 1}, 1, -1}, {{{1, 0, 0}, -1}, -2, 2}, {{{0, 0, 1}, 0}, 3, -3}, {{{0, 0, 1}, -2}, -4, -5}};
+  const auto leaf = [](std::int32_t cluster, Vec3 low, Vec3 high) {
+    return LevelPvs::Leaf{cluster, {low, high}, 0, 0};
+  };
+  level.leaves = {leaf(0, {-20, 0, -20}, {-1, 3, 20}), leaf(1, {1, 0, -20}, {20, 3, 20}),
+                  leaf(-1, {-1, 0, -20}, {1, 3, 0}), leaf(-1, {-1, 0, 2}, {1, 3, 20}),
+                  leaf(2, {-1, 0, 0}, {1, 3, 2})};
+  level.clusters = 3;
+  level.in_some_leaf = {0}, level.in_world_model = {1};
+  scene.level = level;
+  scene.viewpoints = {{"spawn", {-10, 1.5f, -10}, {1, 0, 0}}, {"spawn", {10, 1.5f, -10}, {1, 0, 0}}};
+  return scene;
+}
+
+TEST(LevelSpace, MeasuresSolidAlongASegment) {
+  const Scene scene = walled_scene();
+  const LevelPvs& level = *scene.level;
+  EXPECT_DOUBLE_EQ(scene::solid_length(level, {-5, 1, 1}, {5, 1, 1}), 0);
+  EXPECT_NEAR(scene::solid_length(level, {-5, 1, -5}, {5, 1, -5}), 2, 1e-6);
+  EXPECT_NEAR(scene::solid_length(level, {5, 1, 5}, {-5, 1, 5}), 2, 1e-6);
+  EXPECT_NEAR(scene::solid_length(level, {0, 1, -4}, {0, 1, 6}), 8, 1e-6);
+  EXPECT_EQ(scene::solid_length(level, {0, 1, 1}, {0, 1, 1}), 0);
+  EXPECT_EQ(scene::open_leaves(level), (std::vector<std::uint32_t>{0, 1, 4}));
+}
+
+TEST(CameraPath, WalkGoesThroughTheDoor) {
+  const Scene scene = walled_scene();
+  EXPECT_EQ(default_path(scene), "walk");
+  EXPECT_FALSE(is_clear(*scene.level, scene.viewpoints[0].eye, scene.viewpoints[1].eye));
+  const CameraPath path = make_path(scene, "walk", 50);
+  for (const Camera& camera : path.cameras) {
+    EXPECT_TRUE(scene::is_open(*scene.level, camera.eye)) << camera.eye.x << " " << camera.eye.z;
+    EXPECT_TRUE(make_view(camera, 64, 64));
+  }
+  EXPECT_EQ(path.cameras.front().eye, scene.viewpoints[0].eye);
+  EXPECT_NEAR(path.cameras.back().eye.x, 10, 1e-4);
+  EXPECT_NEAR(path.cameras.back().eye.z, -10, 1e-4);
+}
+
+TEST(CameraPath, LevelWithoutAnythingButARoomStands) {
+  Scene scene = walled_scene();
+  scene.viewpoints.clear();
+  EXPECT_EQ(make_path(scene, "walk", 5).cameras.size(), 5u);
+}
+
+TEST(File, FullDiskIsAnErrorAndLeavesWhatWas) {
+  const TemporaryFolder folder;
+  io::write_file(folder / "old.json", "what was");
+  {
+    const FullDisk full(1000);
+    EXPECT_THROW(io::write_file(folder / "old.json", std::string(100'000, 'x')), Error);
+    EXPECT_THROW(io::write_file(folder / "new.json", std::string(100'000, 'x')), Error);
+  }
+  EXPECT_EQ(io::read_file(folder / "old.json", 100), "what was");
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(File, DevicesAreWrittenToAndNeverReplaced) {
+  EXPECT_THROW(io::write_file("/dev/full", "text"), Error);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+  EXPECT_NO_THROW(io::write_file("/dev/null", "text"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(File, FolderAndMissingFolderAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(io::write_file(folder.path(), "text"), Error);
+  EXPECT_THROW(io::write_file(folder / "none/file", "text"), Error);
+  EXPECT_THROW(io::read_file(folder / "file", 100), Error);
+  io::write_file(folder / "file", "long text");
+  EXPECT_THROW(io::read_file(folder / "file", 4), Error);
+}
+
+}  // namespace
+}  // namespace sightline::camera

@@ -1,0 +1,131 @@
+#include "workbench/device/renderer.hpp"
+
+#include <cstdlib>
+#include <numeric>
+
+#include "device/fixtures.hpp"
+#include "workbench/camera/random_views.hpp"
+#include "workbench/oracle/embree_judge.hpp"
+
+namespace sightline {
+namespace {
+
+using RendererTest = DeviceTest;
+using ItemBufferTest = DeviceTest;
+
+device::Picture draw_all(device::Renderer& renderer, const View& view) {
+  const auto draws = renderer.draws().make_buffers(renderer.device());
+  const device::Buffer flags(renderer.device(), renderer.scene().size() * 4, device::Memory::upload, "flags");
+  renderer.frame(view, [&](device::Recorder& frame) {
+    renderer.draws().build(frame, flags.address(), device::VisibleDraws::kAll, renderer.transparent_order(),
+                           draws);
+    renderer.draw_opaque(frame, draws, device::Renderer::Style::lit, device::Renderer::Clear::both);
+    renderer.draw_transparent(frame, draws);
+  });
+  return renderer.picture();
+}
+
+TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
+  const Scene scene = or_throw(generate_world("forest?trees=300&size=120"));
+  device::Renderer renderer(device(), scene);
+  const View view = view_of(camera_at(scene, "near"));
+  const device::Picture expected = draw_all(renderer, view);
+  // All objects one by one: opaque in slot order, then transparent as the renderer sorts them.
+  std::vector<ObjectId> list;
+  for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+    for (ObjectId o = 0; o < scene.size(); ++o) {
+      if (scene.mesh[o] == mesh && scene.surface[o] == Surface::opaque) list.push_back(o);
+    }
+  }
+  std::vector<std::pair<float, ObjectId>> blended;
+  for (ObjectId o = 0; o < scene.size(); ++o) {
+    if (scene.surface[o] == Surface::transparent) blended.push_back({scene.sphere(o).centre.z, o});
+  }
+  std::ranges::sort(blended);
+  for (const auto& [z, o] : blended) list.push_back(o);
+  std::vector<DrawCommand> draws;
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    const Mesh& mesh = scene.meshes[scene.mesh[list[i]]];
+    draws.push_back({mesh.index_count, 1, mesh.first_index, static_cast<std::int32_t>(mesh.first_vertex), i});
+  }
+  renderer.frame(view, [&](device::Recorder& frame) { renderer.draw(frame, list, draws); });
+  const device::Picture picture = renderer.picture();
+  EXPECT_TRUE(picture == expected);
+  EXPECT_GT(std::ranges::count_if(picture.pixels, [&](auto p) { return p != picture.pixels[0]; }), 1000);
+  if (const char* folder = std::getenv("SIGHTLINE_TEST_PICTURES"))
+    device::save_png(picture, std::string(folder) + "/forest.png");
+}
+
+TEST_F(RendererTest, UpIsUpAndNearerHidesFartherWithEitherDepth) {
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<Vec3> normals(3, Vec3{0, 0, 1});
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  const std::uint32_t mesh = scene.add_mesh(corners, normals, indices);
+  Affine above, before;
+  above.rows = {Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 3}, Vec4{0, 0, 1, -10}};
+  before.rows = {Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 3}, Vec4{0, 0, 1, -8}};
+  scene.add_object(mesh, before);
+  scene.add_object(mesh, above);
+  device::Renderer renderer(device(), scene);
+  device::ItemBufferPass judge(renderer);
+  for (const Depth depth : {Depth::standard, Depth::reversed}) {
+    Camera camera;
+    camera.depth = depth;
+    const device::ItemBuffer items = judge.render(view_of(camera, 64, 64));
+    const auto first = std::ranges::find_if(items.ids, [](ObjectId id) { return id != kNoObject; });
+    ASSERT_NE(first, items.ids.end());
+    EXPECT_LT((first - items.ids.begin()) / 64, 20) << "the triangles stand above the middle";
+    EXPECT_EQ(items.ids[64 * 16 + 32], 0u);
+  }
+}
+
+TEST_F(RendererTest, MovedObjectsAreDrawnWhereTheyStand) {
+  Scene scene = or_throw(generate_world("irregular?spheres=200&size=60&detail=1"));
+  device::Renderer renderer(device(), scene);
+  const View view = view_of(camera_at(scene, "near"));
+  std::vector<ObjectId> moved;
+  for (ObjectId o = 0; o < scene.size(); o += 3) {
+    Affine transform = scene.transform[o];
+    transform.rows[0].w += 2;
+    scene.move_object(o, transform);
+    moved.push_back(o);
+  }
+  renderer.update(moved);
+  device::Renderer fresh(device(), scene);
+  EXPECT_TRUE(draw_all(renderer, view) == draw_all(fresh, view));
+}
+
+TEST_F(ItemBufferTest, AgreesWithRaysThroughPixelCentresButForSilhouettes) {
+  std::uint64_t pixels = 0, different = 0, objects = 0, disputed = 0;
+  for (const char* world : {"regular?columns=12&rows=12&detail=2", "irregular?spheres=400&size=60&detail=2",
+                            "forest?trees=300&size=120"}) {
+    const Scene scene = or_throw(generate_world(world));
+    device::Renderer renderer(device(), scene);
+    device::ItemBufferPass pass(renderer);
+    const oracle::EmbreeJudge embree(scene);
+    for (const Camera& camera : camera::random_cameras(scene, 12, 5)) {
+      const View view = view_of(camera, 160, 120);
+      const device::ItemBuffer ours = pass.render(view);
+      const oracle::ItemBuffer rays = embree.render(view);
+      std::uint64_t here = 0;
+      for (std::size_t i = 0; i < ours.ids.size(); ++i) here += ours.ids[i] != rays.ids[i];
+      different += here;
+      pixels += ours.ids.size();
+      for (ObjectId o = 0; o < scene.size(); ++o) {
+        objects += rays.sees(o);
+        disputed += (ours.visible[o] != 0) != rays.sees(o);
+      }
+    }
+  }
+  RecordProperty("different_pixels", static_cast<int>(different));
+  RecordProperty("disputed_objects", static_cast<int>(disputed));
+  std::printf("%llu of %llu pixels, %llu of %llu objects differ\n",
+              static_cast<unsigned long long>(different), static_cast<unsigned long long>(pixels),
+              static_cast<unsigned long long>(disputed), static_cast<unsigned long long>(objects));
+  EXPECT_LT(different * 1000, pixels);
+  EXPECT_LT(disputed * 100, objects);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,192 @@
+// The report: its files, that the page needs nothing else, and that no name breaks it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/worlds.hpp>
+
+#include "support/exact_methods.hpp"
+#include "support/full_disk.hpp"
+#include "support/temporary_folder.hpp"
+#include "workbench/io/text_file.hpp"
+#include "workbench/report/canvas.hpp"
+#include "workbench/report/page.hpp"
+#include "workbench/report/pictures.hpp"
+#include "workbench/report/report.hpp"
+
+namespace sightline::report {
+namespace {
+
+using report::Canvas;
+using report::escape;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Material {
+  Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
+  oracle::EmbreeJudge judge{scene};
+  std::vector<measure::Contestant> contestants = measure::make_contestants(scene, test::kExactMethods);
+  measure::Comparison comparison;
+  Snapshot snapshot;
+
+  Material() {
+    measure::MeasureOptions options;
+    options.width = 96, options.height = 54, options.repeats = 1, options.warm_up = 0;
+    comparison = measure::compare(scene, judge, contestants, camera::make_path(scene, "near", 3), options);
+    const std::size_t view = picture_view(comparison);
+    snapshot = take_snapshot(scene, judge, contestants, comparison.cameras[view], view, 192, 108);
+  }
+};
+
+TEST(Report, WritesAPageThatLoadsNothingFromElsewhere) {
+  const Material m;
+  const TemporaryFolder folder;
+  write_report(folder / "new/report", m.comparison, m.scene, m.snapshot);
+  const std::string page = io::read_file(folder / "new/report/index.html", 10'000'000);
+  const std::regex reference(R"((src|href|action|data)\s*=\s*"([^"]*)\")");
+  std::size_t pictures = 0;
+  const std::string markup = page.substr(0, page.find("<script"));
+  for (std::sregex_iterator it(markup.begin(), markup.end(), reference), end; it != end; ++it) {
+    const std::string target = (*it)[2];
+    EXPECT_THAT(target, Not(HasSubstr(":"))) << target;
+    const std::string bytes = io::read_file(folder / ("new/report/" + target), 10'000'000);
+    EXPECT_EQ(bytes.substr(1, 3), "PNG");
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 1 + m.contestants.size());
+  for (const char* loader :
+       {"<link", "@import", "url(", "<script src", "<iframe", "fetch(", "XMLHttpRequest"}) {
+    EXPECT_THAT(page, Not(HasSubstr(loader)));
+  }
+  EXPECT_THAT(page, HasSubstr("Chart.js v3"));
+  EXPECT_THAT(page, HasSubstr("This scene wants"));
+  for (const measure::Contestant& contestant : m.contestants)
+    EXPECT_THAT(page, HasSubstr("<td>" + contestant.name + "<td>"));
+}
+
+TEST(Report, NamesAreEscapedEverywhere) {
+  Material m;
+  const std::string evil = "</script><script>alert(1)</script>&\"'";
+  m.comparison.scene = m.comparison.path = evil;
+  m.comparison.methods[0] = m.snapshot.methods[0].name = evil;
+  for (measure::Row& row : m.comparison.rows) {
+    if (row.method == "none") row.method = evil;
+  }
+  const std::string page = report::make_page({m.comparison, m.scene, m.snapshot, "i.png",
+                                              std::vector<std::string>(m.snapshot.methods.size(), "t.png")});
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(page, Not(HasSubstr("</script><script>a")));
+  EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;&amp;&quot;&#39;"));
+  EXPECT_THAT(page, HasSubstr("\\u003c/script>"));
+}
+
+TEST(Report, EscapeKeepsTextAndReplacesWhatIsNotUtf8) {
+  EXPECT_EQ(escape("grün – 日本 😀"), "grün – 日本 😀");
+  EXPECT_EQ(escape("a\xff"
+                   "b"),
+            "a\xef\xbf\xbd"
+            "b");
+  EXPECT_EQ(escape("\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(escape("\xc0\xaf"), "\xef\xbf\xbd\xef\xbf\xbd");
+}
+
+TEST(Report, FullDiskOrAFileInTheWayIsAnError) {
+  const Material m;
+  const TemporaryFolder folder;
+  {
+    const test::FullDisk full(2000);
+    EXPECT_THROW(write_report(folder / "full", m.comparison, m.scene, m.snapshot), Error);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "full/index.html"));
+  io::write_file(folder / "file", "in the way");
+  EXPECT_THROW(write_report(folder / "file", m.comparison, m.scene, m.snapshot), Error);
+  EXPECT_THROW(write_report(folder / "file/below", m.comparison, m.scene, m.snapshot), Error);
+}
+
+TEST(Snapshot, FatesAddUpAndAgreeWithTheTruth) {
+  const Material m;
+  for (const Snapshot::Method& method : m.snapshot.methods) {
+    ASSERT_EQ(method.fates.size(), m.scene.size());
+    std::array<std::size_t, kFates> counts{};
+    for (ObjectId object = 0; object < m.scene.size(); ++object) {
+      const Fate fate = method.fates[object];
+      ++counts[static_cast<std::size_t>(fate)];
+      EXPECT_EQ(m.snapshot.truth.sees(object), fate == Fate::visible || fate == Fate::lost);
+    }
+    EXPECT_EQ(counts, method.counts);
+    EXPECT_EQ(counts[static_cast<std::size_t>(Fate::lost)], 0u);
+  }
+  EXPECT_EQ(m.snapshot.methods[0].counts[static_cast<std::size_t>(Fate::culled)], 0u);
+}
+
+TEST(PictureView, ShowsTheLossWhereThereIsOne) {
+  Material m;
+  const std::size_t calm = picture_view(m.comparison);
+  const std::size_t other = (calm + 1) % 3;
+  for (measure::Row& row : m.comparison.rows) {
+    if (row.view == other) row.lost_pixels = 3;
+  }
+  EXPECT_EQ(picture_view(m.comparison), other);
+}
+
+bool same(report::Colour a, report::Colour b) {
+  return a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a;
+}
+
+TEST(Pictures, ItemBufferIsClearWhereNothingIsAndColouredByObject) {
+  const Material m;
+  const Canvas picture = report::draw_item_buffer(m.snapshot.view, m.snapshot.truth);
+  EXPECT_EQ(picture.width(), 96u);
+  EXPECT_EQ(picture.height(), 54u);
+  std::size_t clear = 0, solid = 0;
+  for (std::uint32_t y = 0; y < 54; ++y) {
+    for (std::uint32_t x = 0; x < 96; ++x) {
+      bool any = false, all = true;
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const bool hit = m.snapshot.truth.ids[(2 * y + i / 2) * 192 + 2 * x + i % 2] != kNoObject;
+        any |= hit, all &= hit;
+      }
+      EXPECT_EQ(picture.at(x, y).a == 0, !any);
+      EXPECT_EQ(picture.at(x, y).a == 255, all);
+      clear += !any, solid += all;
+    }
+  }
+  EXPECT_GT(clear, 100u);
+  EXPECT_GT(solid, 100u);
+}
+
+TEST(Pictures, TopViewShowsALostObjectInItsColour) {
+  Scene scene = or_throw(generate_world("regular?columns=3&rows=3&spacing=10"));
+  Snapshot snapshot;
+  snapshot.camera.eye = {0, 1, 30};
+  snapshot.view = or_throw(make_view(snapshot.camera, 64, 36));
+  Snapshot::Method method{"m", std::vector<Fate>(9, Fate::culled), {}};
+  const auto lost_pixels = [&] {
+    const Canvas picture = report::draw_top_view(scene, snapshot, method, 300);
+    std::size_t count = 0;
+    for (std::uint32_t y = 0; y < picture.height(); ++y) {
+      for (std::uint32_t x = 0; x < picture.width(); ++x)
+        count += same(picture.at(x, y), report::fate_colour(Fate::lost));
+    }
+    return count;
+  };
+  EXPECT_EQ(lost_pixels(), 0u);
+  method.fates[0] = Fate::lost;
+  EXPECT_GT(lost_pixels(), 20u);
+}
+
+TEST(Canvas, CutsOffWhatLiesOutside) {
+  Canvas canvas(8, 8);
+  canvas.fill_rectangle(-100, -100, -50, -50, {255, 0, 0, 255});
+  canvas.line(-1e6f, 4, 1e6f, 4, 2, {0, 255, 0, 255});
+  canvas.disc(1e9f, 1e9f, 10, {0, 0, 255, 255});
+  EXPECT_EQ(canvas.at(0, 0).a, 0);
+  EXPECT_EQ(canvas.at(7, 4).g, 255);
+  EXPECT_EQ(canvas.at(7, 7).a, 0);
+}
+
+}  // namespace
+}  // namespace sightline::report

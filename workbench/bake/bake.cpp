@@ -1,0 +1,210 @@
+#include "workbench/bake/bake.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <sightline/workbench/error.hpp>
+
+#include "library/pvs/pvs_file.hpp"
+#include "library/pvs/set_coding.hpp"
+#include "workbench/bake/journal.hpp"
+#include "workbench/io/byte_reader.hpp"
+
+#ifdef SIGHTLINE_MPI
+#include <mpi.h>
+#endif
+
+namespace sightline::bake {
+
+namespace {
+
+std::uint64_t key_of(const CellPvs& cells, const CellOptions& options) {
+  std::uint64_t key = pvs::checksum(std::as_bytes(std::span(&cells.scene, 1)));
+  key = pvs::checksum(std::as_bytes(std::span(cells.counts)), key);
+  key = pvs::checksum(std::as_bytes(std::span(&options.target, 1)), key);
+  key = pvs::checksum(std::as_bytes(std::span(&options.seed, 1)), key);
+  const std::uint32_t sampling[] = {options.rays, options.most_viewpoints};
+  return pvs::checksum(std::as_bytes(std::span(sampling)), key);
+}
+
+// All journals beside the file, whoever wrote them: a bake may go on with another number of ranks.
+std::vector<std::filesystem::path> journals_of(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> found;
+  const std::string prefix = file.filename().string() + ".part.";
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    if (entry.path().filename().string().starts_with(prefix)) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::byte> flatten(const PackedCells& done) {
+  std::vector<std::byte> bytes;
+  for (const auto& [cell, set] : done) {
+    const std::uint32_t head[] = {cell, static_cast<std::uint32_t>(set.size())};
+    const auto raw = std::as_bytes(std::span(head));
+    bytes.insert(bytes.end(), raw.begin(), raw.end());
+    bytes.insert(bytes.end(), set.begin(), set.end());
+  }
+  return bytes;
+}
+
+void take_in(const std::vector<std::byte>& bytes, PackedCells& done) {
+  for (std::size_t at = 0; io::fits(at, 8, bytes.size());) {
+    const auto cell = io::read_at<std::uint32_t>(bytes, at),
+               length = io::read_at<std::uint32_t>(bytes, at + 4);
+    if (!io::fits(at + 8, length, bytes.size())) throw Error("bake: a rank sent broken sets");
+    const auto* set = bytes.data() + at + 8;
+    done[cell].assign(set, set + length);
+    at += 8 + std::size_t{length};
+  }
+}
+
+}  // namespace
+
+BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
+                const Ranks& ranks, int threads,
+                const std::function<bool(std::size_t done, std::size_t all)>& progress) {
+  BakeResult result;
+  CellPvs cells = make_cells(scene, options);
+  const std::uint64_t key = key_of(cells, options);
+  PackedCells done;
+  const std::filesystem::path mine = file.string() + ".part." + std::to_string(ranks.rank());
+  std::uint64_t whole = 0;
+  for (const auto& journal : journals_of(file)) {
+    const std::uint64_t length = read_journal(journal, key, cells.size(), done);
+    if (journal.filename() == mine.filename()) whole = length;
+  }
+  ranks.wait();  // nobody appends while another reads
+  Journal journal(mine, key, whole);
+
+  std::vector<std::uint32_t> share;
+  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+    if (cell % static_cast<std::uint32_t>(ranks.count()) == static_cast<std::uint32_t>(ranks.rank())) {
+      share.push_back(cell);
+    }
+  }
+  std::vector<std::uint32_t> waiting;
+  for (const std::uint32_t cell : share) {
+    if (!done.contains(cell)) waiting.push_back(cell);
+  }
+  result.resumed = static_cast<std::uint32_t>(share.size() - waiting.size());
+  const partition::TriangleRays rays(scene);
+  tbb::enumerable_thread_specific<CellBaker> bakers([&] { return CellBaker(scene, rays, options); });
+  tbb::enumerable_thread_specific<std::vector<ObjectId>> sets;
+  std::mutex one_at_a_time;
+  std::size_t finished = result.resumed;
+  bool stopped = progress && finished > 0 && !progress(finished, share.size());
+  const auto bake_cell = [&](std::size_t i) {
+    {
+      const std::scoped_lock lock(one_at_a_time);
+      if (stopped) return;
+    }
+    std::vector<ObjectId>& visible = sets.local();
+    std::vector<std::byte> set;
+    if (bakers.local().bake(cells, waiting[i], visible)) set = pvs::pack_set(visible);
+    const std::scoped_lock lock(one_at_a_time);
+    journal.add(waiting[i], set);
+    done[waiting[i]] = std::move(set);
+    ++finished;
+    if (progress && !progress(finished, share.size())) stopped = true;
+  };
+  // More threads than cores are allowed if asked for.
+  std::optional<tbb::global_control> allowed;
+  if (threads > 0) {
+    allowed.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
+  tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, waiting.size(), 1),
+        [&](const auto& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) bake_cell(i);
+        },
+        tbb::simple_partitioner());
+  });
+  for (const CellBaker& baker : bakers) result.rays += baker.rays_cast();
+  const std::vector<std::byte> all = ranks.gather(flatten(done));
+  if (ranks.rank() != 0) {
+    result.finished = !stopped;
+    return result;
+  }
+  take_in(all, done);
+  if (done.size() != cells.size()) return result;
+  cells.first.assign(1, 0);
+  for (const auto& [cell, set] : done) {
+    cells.open[cell] = !set.empty();
+    if (!set.empty())
+      pvs::unpack_set(set, cells.objects, "bake: cell " + std::to_string(cell), cells.visible);
+    cells.first.push_back(cells.visible.size());
+  }
+  pvs::write_pvs(cells, file);
+  for (const auto& old : journals_of(file)) {
+    std::error_code ignored;
+    std::filesystem::remove(old, ignored);
+  }
+  result.finished = true;
+  result.cells = std::move(cells);
+  return result;
+}
+
+Ranks Ranks::join() {
+  Ranks ranks;
+#ifdef SIGHTLINE_MPI
+  // Only under mpirun: alone, MPI would start helpers of its own for nothing.
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE") || std::getenv("PMIX_RANK")) {
+    MPI_Init(nullptr, nullptr);
+    MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks.count_);
+    ranks.joined_ = true;
+  }
+#endif
+  return ranks;
+}
+
+Ranks::Ranks(Ranks&& other) noexcept : rank_(other.rank_), count_(other.count_), joined_(other.joined_) {
+  other.joined_ = false;
+}
+
+Ranks::~Ranks() {
+#ifdef SIGHTLINE_MPI
+  if (joined_) MPI_Finalize();
+#endif
+}
+
+void Ranks::wait() const {
+#ifdef SIGHTLINE_MPI
+  if (joined_) MPI_Barrier(MPI_COMM_WORLD);
+#endif
+}
+
+std::vector<std::byte> Ranks::gather(const std::vector<std::byte>& mine) const {
+  std::vector<std::byte> all = mine;
+#ifdef SIGHTLINE_MPI
+  if (joined_) {
+    if (mine.size() > 0x7fffffff) throw Error("bake: one rank's sets exceed 2 GiB, use more ranks");
+    const int size = static_cast<int>(mine.size());
+    std::vector<int> sizes(static_cast<std::size_t>(count_)), starts(sizes.size());
+    MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) starts[i] = static_cast<int>(total), total += sizes[i];
+    if (total > 0x7fffffff) throw Error("bake: all sets together exceed 2 GiB, use larger cells");
+    all.resize(rank_ == 0 ? static_cast<std::size_t>(total) : 0);
+    MPI_Gatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
+                MPI_COMM_WORLD);
+  }
+#endif
+  return all;
+}
+
+}  // namespace sightline::bake

@@ -1,0 +1,170 @@
+#include "workbench/camera/path_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <sightline/workbench/error.hpp>
+
+#include "workbench/io/text_file.hpp"
+
+namespace sightline::camera {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxViews = 100'000;
+constexpr std::size_t kMaxBytes = 64 << 20;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// The double that prints as shortly as the float does and rounds back to it.
+double shortest(float value) {
+  return std::stod(fmt::format("{}", value));
+}
+
+Json vector_json(const Vec3& v) {
+  return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)});
+}
+
+/// The fewest digits of degrees that come back as the same radians.
+double shortest_degrees(float radians) {
+  const double degrees = static_cast<double>(radians) * kDegrees;
+  for (int digits = 1; digits < 17; ++digits) {
+    const double rounded = std::stod(fmt::format("{:.{}g}", degrees, digits));
+    if (static_cast<float>(rounded / kDegrees) == radians) return rounded;
+  }
+  return degrees;
+}
+
+/// Reads the members of one view, naming view and member where one is wrong.
+class ViewReader {
+public:
+  ViewReader(const std::string& where, const Json& view) : where_(where), view_(view) {
+    if (!view.is_object()) throw Error(where + ": expected an object with at least \"eye\": [x, y, z]");
+    static constexpr std::array kKnown{"eye",  "forward", "up",    "fov_degrees", "orthographic_height",
+                                       "near", "far",     "shift", "reversed"};
+    for (const auto& [key, value] : view.items()) {
+      bool known = false;
+      for (const char* name : kKnown) known |= key == name;
+      if (!known) throw Error(where + ": unknown member \"" + key + "\"");
+    }
+  }
+
+  [[nodiscard]] bool has(const char* name) const { return view_.contains(name); }
+
+  void number(const char* name, float& out) const {
+    if (has(name)) out = as_number(view_[name], name);
+  }
+  void flag(const char* name, bool& out) const {
+    if (!has(name)) return;
+    if (!view_[name].is_boolean()) wrong(name, "true or false");
+    out = view_[name].get<bool>();
+  }
+  template <std::size_t N>
+  void numbers(const char* name, const std::array<float*, N>& out) const {
+    if (!has(name)) return;
+    const Json& list = view_[name];
+    if (!list.is_array() || list.size() != N) wrong(name, fmt::format("an array of {} numbers", N));
+    for (std::size_t i = 0; i < N; ++i) *out[i] = as_number(list[i], name);
+  }
+  void far_plane(float& out) const {
+    if (has("far") && view_["far"] == "infinite") {
+      out = std::numeric_limits<float>::infinity();
+    } else {
+      number("far", out);
+    }
+  }
+  [[noreturn]] void wrong(const char* name, const std::string& expected) const {
+    throw Error(fmt::format("{}: \"{}\": expected {}", where_, name, expected));
+  }
+
+private:
+  [[nodiscard]] float as_number(const Json& value, const char* name) const {
+    if (!value.is_number()) wrong(name, "a number");
+    return static_cast<float>(value.get<double>());
+  }
+
+  const std::string& where_;
+  const Json& view_;
+};
+
+Camera read_camera(const std::string& where, const Json& view) {
+  const ViewReader read(where, view);
+  Camera camera;
+  if (!read.has("eye")) read.wrong("eye", "it to be there, an array of 3 numbers");
+  read.numbers<3>("eye", {&camera.eye.x, &camera.eye.y, &camera.eye.z});
+  read.numbers<3>("forward", {&camera.forward.x, &camera.forward.y, &camera.forward.z});
+  read.numbers<3>("up", {&camera.up.x, &camera.up.y, &camera.up.z});
+  read.numbers<2>("shift", {&camera.shift_x, &camera.shift_y});
+  if (read.has("fov_degrees")) {
+    if (!view["fov_degrees"].is_number()) read.wrong("fov_degrees", "a number");
+    camera.vertical_fov = static_cast<float>(view["fov_degrees"].get<double>() / kDegrees);
+  }
+  read.number("near", camera.near_plane);
+  read.far_plane(camera.far_plane);
+  read.number("orthographic_height", camera.orthographic_height);
+  bool reversed = false;
+  read.flag("reversed", reversed);
+  camera.depth = reversed ? Depth::reversed : Depth::standard;
+  if (const auto made = make_view(camera, 64, 64); !made) throw Error(where + ": " + made.failure().message);
+  return camera;
+}
+
+}  // namespace
+
+Json camera_json(const Camera& camera) {
+  Json view;
+  view["eye"] = vector_json(camera.eye);
+  view["forward"] = vector_json(camera.forward);
+  view["up"] = vector_json(camera.up);
+  view["fov_degrees"] = shortest_degrees(camera.vertical_fov);
+  view["near"] = shortest(camera.near_plane);
+  if (std::isinf(camera.far_plane)) {
+    view["far"] = "infinite";
+  } else {
+    view["far"] = shortest(camera.far_plane);
+  }
+  view["orthographic_height"] = shortest(camera.orthographic_height);
+  view["shift"] = Json::array({shortest(camera.shift_x), shortest(camera.shift_y)});
+  view["reversed"] = camera.depth == Depth::reversed;
+  return view;
+}
+
+std::vector<Camera> parse_path(const std::string& source, const std::string& text) {
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw Error(fmt::format("{}: not JSON from byte {} on, expected {{\"views\": […]}}", source, error.byte));
+  } catch (const Json::exception&) {
+    throw Error(source + ": holds a number that is out of range");
+  }
+  if (!document.is_object() || !document.contains("views") || !document["views"].is_array()) {
+    throw Error(source + ": expected an object with an array \"views\"");
+  }
+  const Json& views = document["views"];
+  if (views.empty() || views.size() > kMaxViews) {
+    throw Error(fmt::format("{}: {} views, expected 1 to {}", source, views.size(), kMaxViews));
+  }
+  std::vector<Camera> cameras;
+  for (const Json& view : views) {
+    cameras.push_back(read_camera(fmt::format("{}: view {}", source, cameras.size()), view));
+  }
+  return cameras;
+}
+
+std::vector<Camera> load_path(const std::filesystem::path& file) {
+  return parse_path(file.string(), io::read_file(file, kMaxBytes));
+}
+
+void save_path(const std::filesystem::path& file, std::span<const Camera> cameras) {
+  Json document;
+  document["views"] = Json::array();
+  for (const Camera& camera : cameras) document["views"].push_back(camera_json(camera));
+  io::write_file(file, document.dump(1) + "\n");
+}
+
+}  // namespace sightline::camera

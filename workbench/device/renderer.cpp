@@ -1,0 +1,227 @@
+#include "workbench/device/renderer.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "workbench/device/view_data.hpp"
+
+namespace sightline::device {
+
+namespace {
+
+constexpr std::uint32_t kObjectVert[] =
+#include "shaders/object.vert.inc"
+    ;
+constexpr std::uint32_t kShadeFrag[] =
+#include "shaders/shade.frag.inc"
+    ;
+
+constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
+
+struct DrawPush {
+  vk::DeviceAddress objects, list, extra;
+};
+
+std::array<std::uint32_t, 4> background() {
+  return {std::bit_cast<std::uint32_t>(0.62f), std::bit_cast<std::uint32_t>(0.70f),
+          std::bit_cast<std::uint32_t>(0.80f), std::bit_cast<std::uint32_t>(1.0f)};
+}
+
+vk::raii::DescriptorPool make_pool(const Device& device) {
+  const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, 1},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eCombinedImageSampler, 1}};
+  return {device.handle(),
+          vk::DescriptorPoolCreateInfo{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes}};
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void grow(Box& box, const Box& other, float by) {
+  box.min = {std::min(box.min.x, other.min.x - by), std::min(box.min.y, other.min.y - by),
+             std::min(box.min.z, other.min.z - by)};
+  box.max = {std::max(box.max.x, other.max.x + by), std::max(box.max.y, other.max.y + by),
+             std::max(box.max.z, other.max.z + by)};
+}
+
+}  // namespace
+
+double FrameTimes::gpu_ms(PassKind kind) const noexcept {
+  double sum = 0;
+  for (const PassTime& pass : passes) sum += pass.kind == kind ? pass.milliseconds : 0;
+  return sum;
+}
+
+Renderer::Renderer(Device& device, const Scene& scene)
+    : device_(device),
+      scene_(scene),
+      buffers_(device, scene),
+      draws_(device, buffers_),
+      extent_(extent(scene)),
+      timer_(device),
+      commands_(device.handle(), {*device.command_pool(), vk::CommandBufferLevel::ePrimary, 1}),
+      view_buffer_(device, sizeof(shared::ViewData), Memory::upload, "the view"),
+      transparent_order_(device, buffers_.transparent_ids.size() * 4, Memory::upload,
+                         "the transparent objects' order"),
+      descriptors_(make_pool(device)),
+      view_set_(device.handle(), {*descriptors_, *device.set_layout()}),
+      depth_pipeline_(device, {.vertex = kObjectVert, .input = Input::mesh}),
+      lit_pipeline_(
+          device,
+          {.vertex = kObjectVert, .fragment = kShadeFrag, .input = Input::mesh, .colour = kColourFormat}),
+      blend_pipeline_(device, {.vertex = kObjectVert,
+                               .fragment = kShadeFrag,
+                               .input = Input::mesh,
+                               .colour = kColourFormat,
+                               .blend = true,
+                               .depth_write = false}) {
+  const vk::DescriptorBufferInfo view{view_buffer_.handle(), 0, sizeof(shared::ViewData)};
+  device.handle().updateDescriptorSets(
+      vk::WriteDescriptorSet{*view_set_[0], 0, 0, vk::DescriptorType::eUniformBuffer, {}, view}, {});
+  for (ObjectId object = 0; object < scene.size(); ++object)
+    grow(extent_, scene.bounds[object], scene.radius[object]);
+}
+
+void Renderer::update(std::span<const ObjectId> moved) {
+  for (const ObjectId object : moved) grow(extent_, scene_.bounds[object], scene_.radius[object]);
+  buffers_.update(device_, scene_, moved);
+}
+
+void Renderer::resize(std::uint32_t width, std::uint32_t height) {
+  if (targets_ && targets_->depth.width() == width && targets_->depth.height() == height) return;
+  targets_.reset();
+  targets_.emplace(device_, width, height);
+  const vk::DescriptorImageInfo depth{{}, targets_->depth.view(), kReadLayout};
+  device_.handle().updateDescriptorSets(
+      vk::WriteDescriptorSet{*view_set_[0], 1, 0, vk::DescriptorType::eCombinedImageSampler, depth}, {});
+}
+
+void Renderer::sort_transparent(const View& view) {
+  if (buffers_.transparent_ids.empty()) return;
+  const Vec3 eye = eye_position(view), forward = view_direction(view);
+  sort_keys_.clear();
+  for (const ObjectId object : buffers_.transparent_ids) {
+    const Vec3 c = scene_.sphere(object).centre;
+    const float depth = (c.x - eye.x) * forward.x + (c.y - eye.y) * forward.y + (c.z - eye.z) * forward.z;
+    // IEEE floats compare as integers once negative ones are turned round; inverted for farthest first.
+    const auto bits = std::bit_cast<std::uint32_t>(depth);
+    const std::uint32_t rising = bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+    sort_keys_.push_back(std::uint64_t{~rising} << 32 | object);
+  }
+  std::ranges::sort(sort_keys_);
+  auto* order = transparent_order_.mapped<ObjectId>();
+  for (const std::uint64_t key : sort_keys_) *order++ = static_cast<ObjectId>(key);
+}
+
+FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)>& record, Timed timed) {
+  resize(view.width, view.height);
+  FrameTimes times;
+  const auto start = std::chrono::steady_clock::now();
+  auto& data = *view_buffer_.mapped<shared::ViewData>();
+  data = device::view_data(view, extent_);
+  unsorted_ = view;
+  const vk::raii::CommandBuffer& commands = commands_[0];
+  commands.begin(vk::CommandBufferBeginInfo{vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  timer_.reset(commands, timed == Timed::passes);
+  Recorder recorder(device_, commands, timer_, view, data.reversed != 0, *view_set_[0], *targets_);
+  const auto before = std::chrono::steady_clock::now();
+  record(recorder);
+  times.record_ms = milliseconds_since(before);
+  full_barrier(commands);
+  commands.end();
+  device_.submit_and_wait(commands);
+  times.frame_ms = milliseconds_since(start);
+  times.passes = timer_.read();
+  return times;
+}
+
+vk::DeviceAddress Renderer::transparent_order() {
+  if (unsorted_) sort_transparent(*unsorted_);
+  unsorted_.reset();
+  return buffers_.transparent_ids.empty() ? 0 : transparent_order_.address();
+}
+
+void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
+                             std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
+                             Recorder::Compare compare, vk::DeviceAddress extra) const {
+  if (count == 0) return;
+  frame.bind(pipeline, compare);
+  frame.push(DrawPush{buffers_.object_data.address(), list, extra});
+  frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
+  frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
+  frame.commands.drawIndexedIndirect(commands, first * kCommandSize, count, kCommandSize);
+}
+
+void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
+                           Recorder::Compare compare) const {
+  const bool lit = style == Style::lit;
+  frame.begin_rendering({.colour = lit ? &frame.targets.colour : nullptr,
+                         .clear_colour = clear == Clear::colour || clear == Clear::both,
+                         .clear_depth = clear == Clear::depth || clear == Clear::both,
+                         .clear_value = background()});
+  draw_indirect(frame, lit ? lit_pipeline_ : depth_pipeline_, draws.commands.handle(), 0,
+                draws.opaque_commands, draws.list.address(), compare);
+  frame.end_rendering();
+}
+
+void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                           vk::DeviceAddress extra, Recorder::Compare compare) const {
+  frame.begin_rendering({.colour = &frame.targets.colour});
+  draw_indirect(frame, pipeline, draws.commands.handle(), 0, draws.opaque_commands, draws.list.address(),
+                compare, extra);
+  frame.end_rendering();
+}
+
+void Renderer::draw_transparent(const Recorder& frame, const DrawBuffers& draws) const {
+  if (draws.transparent_commands == 0) return;
+  frame.begin_rendering({.colour = &frame.targets.colour});
+  draw_indirect(frame, blend_pipeline_, draws.commands.handle(), draws.opaque_commands,
+                draws.transparent_commands, draws.list.address(), Recorder::Compare::nearer_or_equal);
+  frame.end_rendering();
+}
+
+void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
+                    std::span<const DrawCommand> draws) {
+  if (host_list_.size() < visible.size_bytes())
+    host_list_ = Buffer(device_, visible.size_bytes(), Memory::upload, "a draw list");
+  if (host_commands_.size() < draws.size_bytes()) {
+    host_commands_ = Buffer(device_, draws.size_bytes(), Memory::upload, "draw commands");
+  }
+  if (host_list_.size() == 0) host_list_ = Buffer(device_, 16, Memory::upload, "a draw list");
+  std::ranges::copy(visible, host_list_.mapped<ObjectId>());
+  if (!draws.empty()) std::ranges::copy(draws, host_commands_.mapped<DrawCommand>());
+  const auto blended = std::ranges::find_if(draws, [&](const DrawCommand& draw) {
+    return scene_.surface[visible[draw.first_instance]] == Surface::transparent;
+  });
+  const auto opaque = static_cast<std::uint32_t>(blended - draws.begin());
+  frame.begin_rendering({.colour = &frame.targets.colour,
+                         .clear_colour = true,
+                         .clear_depth = true,
+                         .clear_value = background()});
+  if (!draws.empty()) {
+    draw_indirect(frame, lit_pipeline_, host_commands_.handle(), 0, opaque, host_list_.address(),
+                  Recorder::Compare::nearer_or_equal);
+    draw_indirect(frame, blend_pipeline_, host_commands_.handle(), opaque,
+                  static_cast<std::uint32_t>(draws.size()) - opaque, host_list_.address(),
+                  Recorder::Compare::nearer_or_equal);
+  }
+  frame.end_rendering();
+}
+
+Picture Renderer::picture() const {
+  if (!targets_) return {};
+  return {targets_->colour.width(), targets_->colour.height(), targets_->colour.read()};
+}
+
+std::vector<float> Renderer::depth() const {
+  if (!targets_) return {};
+  const std::vector<std::uint32_t> words = targets_->depth.read();
+  std::vector<float> out(words.size());
+  std::ranges::transform(words, out.begin(), [](std::uint32_t word) { return std::bit_cast<float>(word); });
+  return out;
+}
+
+}  // namespace sightline::device

@@ -1,0 +1,99 @@
+// Draws scenes off-screen. It knows no method: whoever culls records passes of its own between its draws.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include <sightline/workbench/frame.hpp>
+
+#include "workbench/device/recorder.hpp"
+#include "workbench/device/scene_buffers.hpp"
+#include "workbench/device/visible_draws.hpp"
+
+namespace sightline::device {
+
+struct FrameTimes {
+  std::vector<PassTime> passes;  ///< GPU, in order; none where they were not asked for
+  double record_ms = 0;          ///< CPU, what the recording function took: culling on the CPU stands in it
+  double frame_ms = 0;           ///< from the beginning of recording to the finished picture
+
+  [[nodiscard]] double gpu_ms(PassKind kind) const noexcept;
+};
+
+/// The red, green, blue and alpha bytes of a picture, row 0 first, red lowest.
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint32_t> pixels;
+  bool operator==(const Picture&) const = default;
+};
+
+class Renderer {
+public:
+  /// Copies the scene to the device. Scene and device outlive the renderer.
+  Renderer(Device& device, const Scene& scene);
+
+  [[nodiscard]] Device& device() const noexcept { return device_; }
+  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  [[nodiscard]] const SceneBuffers& buffers() const noexcept { return buffers_; }
+  [[nodiscard]] const VisibleDraws& draws() const noexcept { return draws_; }
+
+  /// Sends the new transforms of moved objects.
+  void update(std::span<const ObjectId> moved);
+
+  /// What is timed besides the whole frame. On llvmpipe each timestamp is a round through all its threads, a
+  /// tenth of a short frame, so that a frame tells its own time best without.
+  enum class Timed : std::uint8_t { frame, passes };
+  /// Records, submits and waits for a frame of the view's size. The view has passed check(). Depth and colour
+  /// hold the last frame until they are cleared.
+  FrameTimes frame(const View& view, const std::function<void(Recorder&)>& record,
+                   Timed timed = Timed::frame);
+
+  enum class Style : std::uint8_t { depth, lit };
+  enum class Clear : std::uint8_t { nothing, colour, depth, both };
+  /// Draws the opaque objects of `draws` after clearing.
+  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
+                   Recorder::Compare compare = Recorder::Compare::nearer_or_equal) const;
+  /// The same with a pipeline of one's own and colour; its shaders find `extra` after the list's address.
+  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                   vk::DeviceAddress extra, Recorder::Compare compare) const;
+  /// Blends the transparent objects of `draws` over the picture.
+  void draw_transparent(const Recorder& frame, const DrawBuffers& draws) const;
+  /// All transparent objects, farthest first for the frame's view; 0 where there are none. Sorted when first
+  /// asked for in a frame.
+  [[nodiscard]] vk::DeviceAddress transparent_order();
+
+  /// Draws what a CPU method hands over, in its order: a cleared picture, opaque commands, then blended ones.
+  /// One multi-draw-indirect call each.
+  void draw(const Recorder& frame, std::span<const ObjectId> visible, std::span<const DrawCommand> draws);
+
+  /// The last frame's picture.
+  [[nodiscard]] Picture picture() const;
+  [[nodiscard]] std::vector<float> depth() const;
+
+private:
+  void resize(std::uint32_t width, std::uint32_t height);
+  void sort_transparent(const View& view);
+  void draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
+                     std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
+                     Recorder::Compare compare, vk::DeviceAddress extra = 0) const;
+
+  Device& device_;
+  const Scene& scene_;
+  SceneBuffers buffers_;
+  VisibleDraws draws_;
+  Box extent_;
+  std::optional<Targets> targets_;
+  Timer timer_;
+  vk::raii::CommandBuffers commands_;
+  Buffer view_buffer_, transparent_order_, host_list_, host_commands_;
+  vk::raii::DescriptorPool descriptors_;
+  vk::raii::DescriptorSets view_set_;
+  std::vector<std::uint64_t> sort_keys_;
+  std::optional<View> unsorted_;  ///< the frame's view, until its transparent objects are sorted
+  GraphicsPipeline depth_pipeline_, lit_pipeline_, blend_pipeline_;
+};
+
+/// Writes a PNG through a temporary name. Throws Error when the file cannot be written.
+void save_png(const Picture& picture, const std::string& path);
+
+}  // namespace sightline::device

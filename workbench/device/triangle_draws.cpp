@@ -1,0 +1,134 @@
+#include "workbench/device/triangle_draws.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace sightline::device {
+
+namespace {
+
+constexpr std::uint32_t kTriangleVert[] =
+#include "shaders/triangle.vert.inc"
+    ;
+constexpr std::uint32_t kShadeFrag[] =
+#include "shaders/triangle_shade.frag.inc"
+    ;
+constexpr std::uint32_t kIdFrag[] =
+#include "shaders/triangle_id.frag.inc"
+    ;
+
+constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
+
+std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const Scene& scene) {
+  std::vector<shared::CornerData> out;
+  out.reserve(geometry.positions.size());
+  for (const Vec3& position : geometry.positions) out.push_back({position, 0, 0});
+  for (std::size_t i = 0; i < geometry.indices.size(); ++i)
+    out[geometry.indices[i]].object = geometry.objects[i / 3];
+  for (shared::CornerData& corner : out)
+    corner.colour = colour_of(corner.object, scene.surface[corner.object]);
+  return out;
+}
+
+}  // namespace
+
+TriangleDraws::Pipelines::Pipelines(const Device& device, bool cull_back)
+    : lit(device, {.vertex = kTriangleVert,
+                   .fragment = kShadeFrag,
+                   .input = Input::corner,
+                   .colour = kColourFormat,
+                   .cull_back = cull_back}),
+      blended(device, {.vertex = kTriangleVert,
+                       .fragment = kShadeFrag,
+                       .input = Input::corner,
+                       .colour = kColourFormat,
+                       .blend = true,
+                       .depth_write = false,
+                       .cull_back = cull_back}),
+      ids(device, {.vertex = kTriangleVert,
+                   .fragment = kIdFrag,
+                   .input = Input::corner,
+                   .colour = kIdFormat,
+                   .cull_back = cull_back}) {}
+
+TriangleDraws::TriangleDraws(Renderer& renderer, const TriangleGeometry& geometry)
+    : renderer_(renderer),
+      objects_(geometry.objects),
+      corners_(upload(renderer.device(), corners(geometry, renderer.scene()), "triangle corners")),
+      indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")),
+      pipelines_(renderer.device(), geometry.front_faces_only) {
+  const Scene& scene = renderer.scene();
+  for (const Surface surface : scene.surface) is_transparent_.push_back(surface == Surface::transparent);
+}
+
+std::uint64_t TriangleDraws::bytes() const noexcept {
+  return corners_.size() + indices_.size();
+}
+
+std::size_t TriangleDraws::opaque_count(std::span<const DrawCommand> draws) const noexcept {
+  const auto blended = std::ranges::find_if(
+      draws, [&](const DrawCommand& draw) { return is_transparent_[objects_[draw.first_instance]] != 0; });
+  return static_cast<std::size_t>(blended - draws.begin());
+}
+
+void TriangleDraws::copy_commands(std::span<const DrawCommand> draws) {
+  if (commands_.size() < draws.size_bytes() || commands_.size() == 0)
+    commands_ = Buffer(renderer_.device(), 2 * draws.size_bytes(), Memory::upload, "draw commands");
+  std::ranges::copy(draws, commands_.mapped<DrawCommand>());
+}
+
+void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeline,
+                           std::span<const DrawCommand> draws, std::size_t first,
+                           Submission submission) const {
+  if (draws.empty()) return;
+  frame.bind(pipeline);
+  // Strictly nearer: a triangle that crosses cells is drawn once for each, and shaded once all the same.
+  frame.commands.setDepthCompareOp(frame.reversed() ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
+  frame.commands.bindVertexBuffers(0, corners_.handle(), vk::DeviceSize{0});
+  frame.commands.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint32);
+  if (submission != Submission::multi_draw) {
+    for (const DrawCommand& draw : draws)
+      frame.commands.drawIndexed(draw.index_count, 1, draw.first_index, 0, draw.first_instance);
+    return;
+  }
+  const std::size_t most = renderer_.device().limits().maxDrawIndirectCount;
+  for (std::size_t done = 0; done < draws.size(); done += most) {
+    const auto count = static_cast<std::uint32_t>(std::min(most, draws.size() - done));
+    frame.commands.drawIndexedIndirect(commands_.handle(), (first + done) * kCommandSize, count,
+                                       kCommandSize);
+  }
+}
+
+void TriangleDraws::draw(const Recorder& frame, std::span<const DrawCommand> draws, Submission submission) {
+  if (submission == Submission::multi_draw) copy_commands(draws);
+  const std::size_t opaque = opaque_count(draws);
+  frame.begin_rendering(
+      {.colour = &frame.targets.colour,
+       .clear_colour = true,
+       .clear_depth = true,
+       .clear_value = {std::bit_cast<std::uint32_t>(0.62f), std::bit_cast<std::uint32_t>(0.70f),
+                       std::bit_cast<std::uint32_t>(0.80f), std::bit_cast<std::uint32_t>(1.0f)}});
+  submit(frame, pipelines_.lit, draws.first(opaque), 0, submission);
+  submit(frame, pipelines_.blended, draws.subspan(opaque), opaque, submission);
+  frame.end_rendering();
+}
+
+std::vector<ObjectId> TriangleDraws::item_buffer(const View& view, std::span<const DrawCommand> draws,
+                                                 Submission submission) {
+  if (!ids_ || ids_->width() != view.width || ids_->height() != view.height) {
+    ids_.reset();
+    ids_.emplace(renderer_.device(), kIdFormat, view.width, view.height, "the item buffer");
+  }
+  if (submission == Submission::multi_draw) copy_commands(draws);
+  renderer_.frame(view, [&](Recorder& frame) {
+    frame.begin_rendering({.colour = &*ids_,
+                           .clear_colour = true,
+                           .clear_depth = true,
+                           .clear_value = {kNoObject, kNoObject, kNoObject, kNoObject}});
+    submit(frame, pipelines_.ids, draws.first(opaque_count(draws)), 0, submission);
+    frame.end_rendering();
+  });
+  return ids_->read();
+}
+
+}  // namespace sightline::device

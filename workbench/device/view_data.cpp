@@ -1,0 +1,40 @@
+#include "workbench/device/view_data.hpp"
+
+#include <sightline/frustum.hpp>
+#include <sightline/projection.hpp>
+
+namespace sightline::device {
+
+bool has_reversed_depth(const View& view) noexcept {
+  // Along the eye's -z, depth z/w grows (standard) or falls (reversed). With z = a·e + b and w = c·e + d for
+  // the eye coordinate e, the sign of d(z/w)/de is that of a·d - b·c.
+  const auto& m = view.eye_to_clip.m;
+  const double slope = double{m[10]} * m[15] - double{m[14]} * m[11];
+  return slope > 0;
+}
+
+shared::ViewData view_data(const View& view, const Box& extent) noexcept {
+  shared::ViewData out{};
+  out.world_to_clip = world_to_clip(view);
+  const Frustum frustum = make_frustum(view, extent);
+  for (std::size_t i = 0; i < Frustum::sides; ++i) {
+    const Plane& plane = frustum.planes[i];
+    out.planes[i] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.distance};
+  }
+  // The same planes, but for the push that the scene's size asks for.
+  const Frustum tight = make_frustum(view, {});
+  out.near_push = 1.01f * (frustum.planes[Frustum::front].distance - tight.planes[Frustum::front].distance);
+  const Projector projector = make_projector(view, extent);
+  const Vec3 forward = view_direction(view);
+  out.eye = {projector.eye.x, projector.eye.y, projector.eye.z, projector.orthographic ? 1.0f : 0.0f};
+  out.forward = {forward.x, forward.y, forward.z, 0};
+  out.width = projector.width;
+  out.height = projector.height;
+  out.pixels_per_metre = projector.pixels_per_metre;
+  out.metres_per_w = projector.metres_per_w;
+  out.coordinate_error = projector.coordinate_error;
+  out.reversed = has_reversed_depth(view);
+  return out;
+}
+
+}  // namespace sightline::device

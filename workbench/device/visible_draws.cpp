@@ -1,0 +1,106 @@
+#include "workbench/device/visible_draws.hpp"
+
+#include <array>
+
+namespace sightline::device {
+
+namespace {
+
+constexpr std::uint32_t kScanBlocks[] =
+#include "shaders/scan_blocks.comp.inc"
+    ;
+constexpr std::uint32_t kScanWrite[] =
+#include "shaders/scan_write.comp.inc"
+    ;
+
+// As in scan.h.
+constexpr std::uint32_t kLanes = 64, kBlockSlots = kLanes * 32;
+
+struct Push {
+  vk::DeviceAddress flags, slot_objects, scan, meshes, objects, transparent_order;
+  std::array<vk::DeviceAddress, 2> lists, commands;
+  std::array<VisibleDraws::Condition, 2> conditions;
+  VisibleDraws::Condition transparent_condition;
+  std::uint32_t opaque, mesh_count, transparent, list_count, widest;
+};
+
+std::uint32_t block_count(const SceneBuffers& scene) {
+  return scene.opaque / kBlockSlots + 1;
+}
+
+std::uint64_t done_at(const SceneBuffers& scene) {
+  return 2 * (2 * (std::uint64_t{scene.opaque} / 32 + 1) + block_count(scene));
+}
+
+Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& frame, vk::DeviceAddress flags,
+             const VisibleDraws::List& first, vk::DeviceAddress transparent_order,
+             const VisibleDraws::List* second) {
+  using List = VisibleDraws::List;
+  const auto list = [](const List* of) { return of ? of->out->list.address() : 0; };
+  const auto commands = [](const List* of) { return of ? of->out->commands.address() : 0; };
+  return {flags,
+          scene.slot_objects.address(),
+          scan.address(),
+          scene.mesh_data.address(),
+          scene.object_data.address(),
+          transparent_order,
+          {list(&first), list(second)},
+          {commands(&first), commands(second)},
+          {first.opaque, second ? second->opaque : VisibleDraws::Condition{}},
+          first.transparent,
+          scene.opaque,
+          scene.meshes,
+          transparent_order ? first.out->transparent_commands : 0,
+          second ? 2u : 1u,
+          frame.widest_dispatch()};
+}
+
+}  // namespace
+
+VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
+    : scene_(scene),
+      scan_blocks_(device, kScanBlocks),
+      scan_write_(device, kScanWrite),
+      scan_(device, (done_at(scene) + 5) * 4, Memory::device, "prefix sums") {
+  device.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.fillBuffer(scan_.handle(), 0, VK_WHOLE_SIZE, 0);
+    full_barrier(commands);
+  });
+}
+
+DrawBuffers VisibleDraws::make_buffers(Device& device) const {
+  const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
+  DrawBuffers out{Buffer(device, std::uint64_t{scene_.objects} * 4, Memory::device, "a draw list"),
+                  Buffer(device, (std::uint64_t{scene_.meshes} + transparent) * sizeof(shared::CommandData),
+                         Memory::device, "draw commands"),
+                  scene_.meshes, transparent};
+  device.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.fillBuffer(out.commands.handle(), 0, VK_WHOLE_SIZE, 0);
+    full_barrier(commands);
+  });
+  return out;
+}
+
+std::uint32_t VisibleDraws::groups() const noexcept {
+  return block_count(scene_);
+}
+
+Recorder::Groups VisibleDraws::listed() const noexcept {
+  return {scan_, (done_at(scene_) + 1) * 4};
+}
+
+void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
+                         vk::DeviceAddress transparent_order, const List* second) const {
+  const Push push = push_of(scene_, scan_, frame, flags, first, transparent_order, second);
+  frame.run(scan_blocks_, push, groups(), 1);
+  frame.run(scan_write_, push, groups(), push.list_count);
+}
+
+void VisibleDraws::build_where(const Recorder& frame, vk::DeviceAddress flags, const List& list,
+                               const Recorder::Groups& groups) const {
+  const Push push = push_of(scene_, scan_, frame, flags, list, 0, nullptr);
+  frame.dispatch(scan_blocks_, push, groups);
+  frame.dispatch(scan_write_, push, groups);
+}
+
+}  // namespace sightline::device

@@ -1,0 +1,275 @@
+// From a glTF document to a scene: the node hierarchy, instances, materials and cameras.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <sightline/workbench/io.hpp>
+
+#include "workbench/io/gltf_document.hpp"
+#include "workbench/io/gltf_mesh.hpp"
+#include "workbench/io/gltf_transform.hpp"
+
+namespace sightline {
+
+namespace io::gltf {
+
+namespace {
+
+constexpr std::uint32_t kMaxDepth = 4096;
+// Bounds are computed from the vertices of each object: more than this takes minutes.
+constexpr std::uint64_t kMaxTransformed = std::uint64_t{1} << 35;
+
+void refuse_unknown_extensions(const Json& root) {
+  static constexpr std::string_view kKnown[] = {"EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
+                                                "KHR_lights_punctual",     "KHR_texture_transform",
+                                                "KHR_texture_basisu",      "EXT_texture_webp"};
+  for (const Json& required : array_of(root, "extensionsRequired")) {
+    const std::string name = required.is_string() ? required.get<std::string>() : "?";
+    if (name.starts_with("KHR_materials_")) continue;
+    if (std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown)) {
+      throw Error(fmt::format("requires the extension '{}', which is not supported", name.substr(0, 60)));
+    }
+  }
+}
+
+class SceneReader {
+public:
+  SceneReader(Document& document, std::uint64_t file_bytes, Scene& scene)
+      : document_(document), scene_(scene), meshes_(document, file_bytes, scene) {}
+
+  void read() {
+    const Json::array_t& nodes = array_of(document_.root(), "nodes");
+    std::vector<Pending> pending;
+    for (const std::uint64_t root : roots(nodes)) pending.push_back({root, 0, {}});
+    std::reverse(pending.begin(), pending.end());
+    std::vector<std::uint8_t> visited(nodes.size(), 0);
+    while (!pending.empty()) {
+      const Pending at = pending.back();
+      pending.pop_back();
+      if (at.node >= nodes.size()) {
+        throw Error(fmt::format("refers to node {}, but has {}", at.node, nodes.size()));
+      }
+      if (std::exchange(visited[at.node], std::uint8_t{1}) != 0) {
+        throw Error(fmt::format("node {} is reached twice, expected nodes to form trees", at.node));
+      }
+      if (at.depth > kMaxDepth)
+        throw Error(fmt::format("node {} lies deeper than {} levels", at.node, kMaxDepth));
+      try {
+        read_node(nodes[at.node], at, pending);
+      } catch (const Error& error) {
+        throw Error(fmt::format("node {} {}", at.node, error.what()));
+      }
+    }
+    restore_order();
+  }
+
+private:
+  struct Pending {
+    std::uint64_t node;
+    std::uint32_t depth;
+    Transform parent;
+  };
+
+  /// The nodes of the scene to show; without scenes, those that are nobody's child.
+  [[nodiscard]] std::vector<std::uint64_t> roots(const Json::array_t& nodes) const {
+    std::vector<std::uint64_t> out;
+    if (!array_of(document_.root(), "scenes").empty()) {
+      const Json& shown = document_.at("scenes", whole_of(document_.root(), "scene", 0));
+      for (const Json& node : array_of(shown, "nodes")) out.push_back(index_of(node));
+      return out;
+    }
+    std::vector<std::uint8_t> is_child(nodes.size(), 0);
+    for (const Json& node : nodes) {
+      for (const Json& child : array_of(node, "children")) {
+        if (const std::uint64_t c = index_of(child); c < nodes.size()) is_child[c] = 1;
+      }
+    }
+    for (std::uint64_t i = 0; i < nodes.size(); ++i) {
+      if (is_child[i] == 0) out.push_back(i);
+    }
+    return out;
+  }
+
+  static std::uint64_t index_of(const Json& value) {
+    const double number = number_of(value, "node index");
+    if (number < 0 || number >= 4294967296.0 || number != std::floor(number)) {
+      throw Error("has a node index that is not a whole number from 0");
+    }
+    return static_cast<std::uint64_t>(number);
+  }
+
+  static Transform local_transform(const Json& node) {
+    if (const Json* matrix = find(node, "matrix")) {
+      std::array<double, 16> m;
+      numbers_of(*matrix, "matrix", m);
+      return {{{{m[0], m[4], m[8], m[12]}, {m[1], m[5], m[9], m[13]}, {m[2], m[6], m[10], m[14]}}}};
+    }
+    Parts parts;
+    if (const Json* translation = find(node, "translation"))
+      numbers_of(*translation, "translation", parts.translation);
+    if (const Json* rotation = find(node, "rotation")) numbers_of(*rotation, "rotation", parts.rotation);
+    if (const Json* scale = find(node, "scale")) numbers_of(*scale, "scale", parts.scale);
+    return compose(parts);
+  }
+
+  void read_node(const Json& node, const Pending& at, std::vector<Pending>& pending) {
+    const Transform world = at.parent * local_transform(node);
+    if (const std::uint64_t camera = whole_of(node, "camera", kNone); camera != kNone)
+      add_camera(node, camera, world);
+    if (const std::uint64_t mesh = whole_of(node, "mesh", kNone); mesh != kNone)
+      add_objects(node, mesh, world);
+    const Json::array_t& children = array_of(node, "children");
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      pending.push_back({index_of(*child), at.depth + 1, world});
+    }
+  }
+
+  void add_camera(const Json& node, std::uint64_t index, const Transform& world) {
+    const Json& camera = document_.at("cameras", index);
+    if (text_of(camera, "type") != "perspective") return;
+    const auto& r = world.rows;
+    // A camera looks down its own -z.
+    const double length = std::sqrt(r[0][2] * r[0][2] + r[1][2] * r[1][2] + r[2][2] * r[2][2]);
+    const Affine affine = to_affine(world);
+    const Vec3 eye{affine.rows[0].w, affine.rows[1].w, affine.rows[2].w};
+    if (!(length > 0) || !std::isfinite(length) || !std::isfinite(eye.x) || !std::isfinite(eye.y) ||
+        !std::isfinite(eye.z)) {
+      throw Error("holds a camera that has no finite place or direction");
+    }
+    std::string name = text_of(node, "name");
+    if (name.empty()) name = text_of(camera, "name");
+    if (name.empty()) name = fmt::format("camera_{}", scene_.viewpoints.size() + 1);
+    const auto axis = [&](std::size_t row) { return static_cast<float>(-r[row][2] / length); };
+    scene_.viewpoints.push_back({std::move(name), eye, {axis(0), axis(1), axis(2)}});
+  }
+
+  void add_objects(const Json& node, std::uint64_t mesh_index, const Transform& world) {
+    const Json& mesh = document_.at("meshes", mesh_index);
+    const Json* extensions = find(node, "extensions");
+    const Json* instancing = extensions != nullptr ? find(*extensions, "EXT_mesh_gpu_instancing") : nullptr;
+    const Json* extras = find(node, "extras");
+    const std::uint64_t own_id = extras != nullptr ? order_of(*extras) : kNone;
+    for (const Json& primitive : array_of(mesh, "primitives")) {
+      const std::uint32_t shape = meshes_.mesh_of(primitive);
+      if (shape == kNoMesh) continue;
+      const Surface surface = surface_of(primitive);
+      if (instancing == nullptr) {
+        add_object(shape, to_affine(world), surface, own_id);
+      } else {
+        add_instances(*instancing, shape, world, surface);
+      }
+    }
+  }
+
+  void add_instances(const Json& instancing, std::uint32_t shape, const Transform& world, Surface surface) {
+    const Json* attributes = find(instancing, "attributes");
+    const auto attribute = [&](const char* name, std::string_view type) -> const Accessor* {
+      const std::uint64_t index = attributes != nullptr ? whole_of(*attributes, name, kNone) : kNone;
+      if (index == kNone) return nullptr;
+      const Accessor& accessor = document_.accessor(index);
+      if (accessor.type() != type) throw Error(fmt::format("has instances whose {} is not {}", name, type));
+      return &accessor;
+    };
+    const Accessor* translation = attribute("TRANSLATION", "VEC3");
+    const Accessor* rotation = attribute("ROTATION", "VEC4");
+    const Accessor* scale = attribute("SCALE", "VEC3");
+    const Accessor* order = attribute("_OBJECT", "SCALAR");
+    std::uint64_t count = kNone;
+    for (const Accessor* accessor : {translation, rotation, scale, order}) {
+      if (accessor == nullptr) continue;
+      if (count != kNone && accessor->count() != count)
+        throw Error("has instance attributes of different counts");
+      count = accessor->count();
+    }
+    if (count == kNone) throw Error("has EXT_mesh_gpu_instancing without an attribute that is known");
+    for (std::uint64_t i = 0; i < count; ++i) {
+      Parts parts;
+      const auto fill = [&](const Accessor* from, std::span<double> out) {
+        if (from == nullptr) return;
+        for (std::uint32_t k = 0; k < out.size(); ++k) out[k] = from->component(i, k);
+      };
+      fill(translation, parts.translation);
+      fill(rotation, parts.rotation);
+      fill(scale, parts.scale);
+      const float id = order != nullptr ? order->component(i, 0) : -1;
+      add_object(shape, to_affine(world * compose(parts)), surface,
+                 id >= 0 && id < static_cast<float>(kMaxObjects) ? static_cast<std::uint64_t>(id) : kNone);
+    }
+  }
+
+  [[nodiscard]] Surface surface_of(const Json& primitive) const {
+    const std::uint64_t material = whole_of(primitive, "material", kNone);
+    if (material == kNone) return Surface::opaque;
+    return text_of(document_.at("materials", material), "alphaMode") == "BLEND" ? Surface::transparent
+                                                                                : Surface::opaque;
+  }
+
+  static std::uint64_t order_of(const Json& extras) {
+    const Json* id = find(extras, "sightline_object");
+    return id != nullptr && id->is_number_unsigned() ? id->get<std::uint64_t>() : kNone;
+  }
+
+  void add_object(std::uint32_t shape, const Affine& affine, Surface surface, std::uint64_t id) {
+    if (scene_.size() >= kMaxObjects)
+      throw Error(fmt::format("brings the scene over {} objects", kMaxObjects));
+    transformed_ += scene_.meshes[shape].vertex_count;
+    if (transformed_ > kMaxTransformed) {
+      throw Error(fmt::format("brings all objects together over {} vertices", kMaxTransformed));
+    }
+    scene_.add_object(shape, affine, surface);
+    ids_.push_back(id);
+  }
+
+  /// Gives objects the ids they had when write_glb wrote them, if the file says so for each.
+  void restore_order() {
+    const std::size_t n = scene_.size();
+    std::vector<std::uint32_t> from(n, kNoObject);
+    bool sorted = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (ids_[i] >= n || from[ids_[i]] != kNoObject) return;
+      from[ids_[i]] = static_cast<std::uint32_t>(i);
+      sorted = sorted && ids_[i] == i;
+    }
+    if (sorted) return;
+    const auto reorder = [&](auto& values) {
+      auto moved = values;
+      for (std::size_t i = 0; i < n; ++i) moved[i] = values[from[i]];
+      values = std::move(moved);
+    };
+    reorder(scene_.mesh);
+    reorder(scene_.radius);
+    reorder(scene_.transform);
+    reorder(scene_.surface);
+    Boxes& b = scene_.bounds;
+    for (auto* array : {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z}) reorder(*array);
+  }
+
+  Document& document_;
+  Scene& scene_;
+  MeshReader meshes_;
+  std::uint64_t transformed_ = 0;   ///< vertices of all objects, a shared mesh counted for each
+  std::vector<std::uint64_t> ids_;  ///< one an object: kNone, or the id it had when it was written
+};
+
+}  // namespace
+
+}  // namespace io::gltf
+
+Scene read_gltf(std::span<const std::byte> bytes, std::string name, const std::filesystem::path& folder) {
+  Scene scene;
+  scene.name = name;
+  try {
+    io::gltf::Document document(bytes, folder);
+    io::gltf::refuse_unknown_extensions(document.root());
+    io::gltf::SceneReader(document, bytes.size(), scene).read();
+    if (scene.empty()) throw Error("shows no triangle, expected at least one");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", name, error.what()));
+  }
+  or_throw(check(scene));
+  return scene;
+}
+
+}  // namespace sightline

@@ -1,0 +1,33 @@
+// Node transforms of glTF in double precision, so that a deep hierarchy does not add up rounding.
+#pragma once
+
+#include <array>
+
+#include <sightline/workbench/scene.hpp>
+
+namespace sightline::io::gltf {
+
+/// Rows of (linear part | translation).
+struct Transform {
+  std::array<std::array<double, 4>, 3> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+};
+
+/// First b, then a.
+Transform operator*(const Transform& a, const Transform& b) noexcept;
+
+struct Parts {
+  std::array<double, 3> translation{0, 0, 0};
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion x, y, z, w
+  std::array<double, 3> scale{1, 1, 1};
+};
+
+/// translation · rotation · scale; a quaternion of any length but zero (which turns nothing).
+Transform compose(const Parts& parts) noexcept;
+
+/// The parts of a transform, if it is made of such: false for a shear, a collapsed axis, or where composing
+/// the parts in single precision again would move it by more than rounding.
+bool decompose(const Affine& affine, Parts& parts) noexcept;
+
+Affine to_affine(const Transform& transform) noexcept;
+
+}  // namespace sightline::io::gltf

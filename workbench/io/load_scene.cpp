@@ -1,0 +1,66 @@
+// From what a user types to a checked scene.
+#include <algorithm>
+#include <cstdlib>
+
+#include <sightline/workbench/io.hpp>
+#include <sightline/workbench/worlds.hpp>
+
+#include "workbench/io/files.hpp"
+#include "workbench/io/pk3.hpp"
+
+namespace sightline {
+
+namespace {
+
+constexpr std::string_view kOpenArenaData = "/usr/share/games/openarena/baseoa";
+
+/// The archive itself, or the first of that name in the data folders.
+std::filesystem::path find_archive(const std::filesystem::path& archive) {
+  std::error_code ignored;
+  if (archive.is_absolute() || std::filesystem::exists(archive, ignored)) return archive;
+  const char* variable = std::getenv("SIGHTLINE_DATA");
+  std::string folders = variable != nullptr ? variable : "";
+  folders.append(":").append(kOpenArenaData);
+  for (std::size_t at = 0; at <= folders.size();) {
+    const std::size_t end = std::min(folders.find(':', at), folders.size());
+    const std::string folder = folders.substr(at, end - at);
+    if (!folder.empty() && std::filesystem::exists(folder / archive, ignored)) return folder / archive;
+    at = end + 1;
+  }
+  throw Error(archive.string() + ": no such file here, in the folders of SIGHTLINE_DATA, or in " +
+              std::string(kOpenArenaData) + " (Debian package openarena-081-maps)");
+}
+
+Scene load(std::string_view specification, const LoadOptions& options) {
+  constexpr std::string_view kWorld = "world:", kArchive = ".pk3:";
+  const std::string text(specification);
+  if (text.empty())
+    throw Error("no scene given, expected world:NAME or a .glb, .gltf, .bsp or archive.pk3:maps/name.bsp");
+  if (text.find('\0') != std::string::npos)
+    throw Error("the scene's name holds a zero byte, expected a file name");
+  if (text.starts_with(kWorld)) return or_throw(generate_world(specification.substr(kWorld.size())));
+  if (const std::size_t at = text.find(kArchive); at != std::string::npos) {
+    const std::filesystem::path archive = find_archive(text.substr(0, at + kArchive.size() - 1));
+    return read_bsp(io::unpack_entry(archive, text.substr(at + kArchive.size())), text, options);
+  }
+  const std::filesystem::path path(text);
+  const std::string ending = path.extension().string();
+  if (ending == ".bsp") return read_bsp(io::read_file(path), text, options);
+  if (ending == ".glb" || ending == ".gltf") {
+    return read_gltf(io::read_file(path), text, path.has_parent_path() ? path.parent_path() : ".");
+  }
+  if (ending == ".pk3") throw Error(text + ": names an archive, expected archive.pk3:maps/name.bsp");
+  throw Error(
+      text +
+      ": not a kind of scene, expected world:NAME or a .glb, .gltf, .bsp or archive.pk3:maps/name.bsp");
+}
+
+}  // namespace
+
+Scene load_scene(std::string_view specification, const LoadOptions& options) {
+  Scene scene = load(specification, options);
+  or_throw(check(scene));
+  return scene;
+}
+
+}  // namespace sightline

@@ -1,0 +1,96 @@
+// The frame of all methods of paper D: cells that the frustum touches, of them the units that can face the
+// eye, of them ranges of triangles, as draws.
+#pragma once
+
+#include <vector>
+
+#include "workbench/methods/draw_calls/blend_order.hpp"
+#include "workbench/methods/draw_calls/units.hpp"
+#include "workbench/methods/methods.hpp"
+
+namespace sightline::methods {
+
+/// How triangles are put in cells and cells are drawn.
+struct DrawCallPlan {
+  bool clusters = false;  ///< else a structure of some height
+  partition::Structure structure = partition::Structure::octree;
+  std::uint32_t height = 4;
+  std::uint32_t cluster_size = 64;
+  Strategy strategy = Strategy::drawcall_wise;
+  FacingRule facing = FacingRule::none;
+  Submission submission = Submission::calls;
+  bool operator==(const DrawCallPlan&) const = default;
+};
+
+/// The arrays behind a TriangleGeometry.
+struct TriangleLists {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices, sources;
+  std::vector<ObjectId> objects;
+};
+
+class DrawCallMethod : public Method {
+public:
+  DrawCallMethod(const Scene& scene, const DrawCallPlan& plan);
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override {
+    return plan_.facing == FacingRule::printed ? Guarantee::approximate : Guarantee::exact;
+  }
+  /// What moves is drawn whole from then on where its box is in view, at the cost of its own corners. Builds
+  /// everything anew once a quarter of the objects move, or after give_lists().
+  void update(std::span<const ObjectId> moved) override;
+  void cull(const View& view, Frame& frame) noexcept override;
+  [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
+
+  [[nodiscard]] const DrawCallPlan& plan() const noexcept { return plan_; }
+  /// Changes how the ranges are submitted, from the next cull on.
+  void submit_by(Submission submission) noexcept { plan_.submission = geometry_.submission = submission; }
+  /// Hands the triangles over, which cull() does without; geometry() is empty until the next update.
+  [[nodiscard]] TriangleLists give_lists();
+  /// Cells of the structure, for pictures: opaque triangles' first.
+  [[nodiscard]] std::vector<Box> cells() const;
+
+private:
+  /// Opaque and transparent triangles apart: the latter are blended over the former, once each and far to
+  /// near.
+  struct Layer {
+    partition::TrianglePartition partition;
+    Units units;
+  };
+
+  struct Mover {
+    ObjectId object;
+    TriangleRange range;  ///< all its triangles
+  };
+
+  void rebuild();
+  void describe();
+  void place(ObjectId object);
+  void add_mover(ObjectId object);
+  void take_movers(const Frustum& frustum, bool transparent, Frame& frame) noexcept;
+  void take(const Layer& layer, const Facing& facing, Frame& frame) noexcept;
+  void merge() noexcept;
+  void submit(Frame& frame) const noexcept;
+
+  const Scene& scene_;
+  DrawCallPlan plan_;
+  Box extent_;
+  std::array<Layer, 2> layers_;
+  BlendOrder blend_order_;
+  TriangleLists lists_;
+  TriangleGeometry geometry_;
+  std::vector<Mover> movers_;
+  std::vector<std::uint8_t> is_mover_;  ///< one an object
+  /// Of each object and one past the last, once something has moved: where its corners and its triangles
+  /// begin when all are counted through.
+  std::vector<std::uint32_t> first_corner_, first_source_;
+
+  // of the frame
+  std::vector<partition::TrianglePartition::Run> runs_;
+  std::vector<TriangleRange> ranges_;
+  std::vector<std::uint64_t>
+      seen_;  ///< one an object: 2 · frame where in a visible cell, + 1 where submitted
+  std::uint64_t frame_ = 0, touched_ = 0;
+};
+
+}  // namespace sightline::methods

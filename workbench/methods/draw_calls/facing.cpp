@@ -1,0 +1,99 @@
+#include "workbench/methods/draw_calls/facing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "library/geometry/linear.hpp"
+#include "workbench/partition/triangle_partition.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+using geometry::to_double;
+
+// A rasteriser snaps corners to 1/256 of a pixel, so that a triangle seen within a hair of its edge may turn
+// round: a small one of a pixel by a quarter of a degree.
+constexpr double kSnap = 0.25 * std::numbers::pi / 180;
+
+glm::dvec3 precise_normal(const std::array<Vec3, 3>& triangle) noexcept {
+  const glm::dvec3 a = to_double(triangle[0]);
+  const glm::dvec3 across = glm::cross(to_double(triangle[1]) - a, to_double(triangle[2]) - a);
+  const double length = glm::length(across);
+  return length > 0 ? across / length : glm::dvec3(0);
+}
+
+std::uint32_t sector_of(double x, double z) noexcept {
+  const double turns = std::atan2(z, x) / (2 * std::numbers::pi) + 0.5;  // 0 … 1
+  return static_cast<std::uint32_t>(turns * kSectors) % kSectors;
+}
+
+}  // namespace
+
+std::uint32_t part_of(const Vec3& normal) noexcept {
+  const double along = std::hypot(double{normal.x}, double{normal.z});
+  return along > 0 && along >= std::fabs(double{normal.y}) ? sector_of(normal.x, normal.z) : kSteep;
+}
+
+Vec3 unit_normal(const std::array<Vec3, 3>& triangle) noexcept {
+  return geometry::to_vec3(precise_normal(triangle));
+}
+
+FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint32_t> triangles,
+                   const Box& region) noexcept {
+  FacingCone cone;
+  cone.bounds = partition::shown_within(region, all[triangles.front()]);
+  glm::dvec3 sum(0);
+  bool all_have_area = true;
+  for (const std::uint32_t triangle : triangles) {
+    const auto corners = all[triangle];
+    cone.bounds = partition::united(cone.bounds, partition::shown_within(region, corners));
+    const glm::dvec3 normal = precise_normal(corners);
+    sum += normal;
+    all_have_area = all_have_area && normal != glm::dvec3(0);
+  }
+  cone.part = part_of(unit_normal(all[triangles.front()]));
+  const double length = glm::length(sum);
+  if (!all_have_area || !(length > 1e-6)) return cone;
+  cone.axis = geometry::to_vec3(sum / length);
+  const glm::dvec3 axis = glm::normalize(to_double(cone.axis));
+  double least = 1;
+  for (const std::uint32_t triangle : triangles)
+    least = std::min(least, glm::dot(axis, precise_normal(all[triangle])));
+  const double half_angle = std::acos(std::clamp(least, -1.0, 1.0)) + kSnap;
+  if (half_angle < std::numbers::pi / 2) cone.reach = static_cast<float>(std::sin(half_angle)) + 1e-6f;
+  return cone;
+}
+
+Facing::Facing(const View& view, FacingRule rule) noexcept
+    : rule_(rule),
+      orthographic_(is_orthographic(view)),
+      eye_(eye_position(view)),
+      forward_(view_direction(view)) {
+  if (forward_.x != 0 || forward_.z != 0) sector_ = sector_of(forward_.x, forward_.z);
+}
+
+bool Facing::may_face(const FacingCone& cone) const noexcept {
+  if (rule_ == FacingRule::none) return true;
+  if (rule_ == FacingRule::printed) {
+    if (cone.part == kSteep || sector_ == kSteep) return true;
+    const std::uint32_t apart = (cone.part + kSectors - sector_) % kSectors;
+    return apart != 0 && apart != 1 && apart != kSectors - 1;
+  }
+  if (cone.reach > 1) return true;
+  const glm::dvec3 axis = to_double(cone.axis);
+  const double reach = cone.reach;
+  if (orthographic_) return glm::dot(axis, to_double(forward_)) < reach;
+  const glm::dvec3 eye = to_double(eye_), low = to_double(cone.bounds.min) - eye,
+                   high = to_double(cone.bounds.max) - eye;
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 way{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+                         corner & 4 ? high.z : low.z};
+    const double along = glm::dot(axis, way);
+    if (!(along > 0) || along * along < reach * reach * glm::dot(way, way)) return true;
+  }
+  return false;
+}
+
+}  // namespace sightline::methods

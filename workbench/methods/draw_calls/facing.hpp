@@ -1,0 +1,63 @@
+// Which triangles cannot face the eye: cones of normals, and the sectors of Zhang as the paper has them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <sightline/types.hpp>
+#include <sightline/view.hpp>
+
+#include "workbench/partition/triangle_split.hpp"
+
+namespace sightline::methods {
+
+/// 8 sectors of 45° of the normal's direction on x–z, then those too steep for one.
+inline constexpr std::uint32_t kSectors = 8, kSteep = 8, kParts = 9;
+
+/// The normal's part: a sector where it is within 45° of the ground, otherwise (and without a normal) kSteep.
+std::uint32_t part_of(const Vec3& normal) noexcept;
+
+/// The triangle's unit normal, counter-clockwise; zero where it has no area.
+Vec3 unit_normal(const std::array<Vec3, 3>& triangle) noexcept;
+
+/// The directions that normals take, and where their triangles lie.
+struct FacingCone {
+  Box bounds;
+  Vec3 axis;
+  float reach = 2;  ///< sine of the half angle, widened for what a rasteriser rounds; 2: may face anywhere
+  std::uint32_t part = kSteep;
+};
+
+/// A cone around the normals of triangles of the given region. A triangle without area may face anywhere.
+FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint32_t> triangles,
+                   const Box& region) noexcept;
+
+enum class FacingRule : std::uint8_t {
+  none,     ///< all may face the eye
+  cone,     ///< dropped only where every point of the bounds is seen from behind
+  printed,  ///< sectors i − 1, i, i + 1 of the view vector's sector i, as printed: loses pixels under
+            ///< perspective
+};
+
+/// The rule for one view.
+class Facing {
+public:
+  Facing(const View& view, FacingRule rule) noexcept;
+
+  /// Whether something in the cone may face the eye.
+  ///
+  /// The paper's rule made safe asks for angle(axis, d) + α + β <= 90°, d and β being axis and half angle of
+  /// a cone of the directions from the eye to the bounds. Directions within 90° − α of the axis form a convex
+  /// cone, so asking it of the bounds' eight corners asks it of every point, without the detour by d: all
+  /// that the sum of angles drops, this drops.
+  [[nodiscard]] bool may_face(const FacingCone& cone) const noexcept;
+
+private:
+  FacingRule rule_;
+  bool orthographic_;
+  Vec3 eye_, forward_;
+  std::uint32_t sector_ = kSteep;
+};
+
+}  // namespace sightline::methods

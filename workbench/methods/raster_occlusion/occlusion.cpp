@@ -1,0 +1,90 @@
+#include "workbench/methods/raster_occlusion/occlusion.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::uint32_t kBoxVert[] =
+#include "shaders/box.vert.inc"
+    ;
+constexpr std::uint32_t kMarkFrag[] =
+#include "shaders/mark.frag.inc"
+    ;
+
+using device::PassKind;
+using device::Renderer;
+
+}  // namespace
+
+Guarantee guarantee_of(const submission::Contribution& contribution) noexcept {
+  return contribution.test == submission::Contribution::Test::area ? Guarantee::approximate
+                                                                   : Guarantee::exact;
+}
+
+std::array<std::uint32_t, 2> shader_constants(const submission::Contribution& contribution) noexcept {
+  return {static_cast<std::uint32_t>(contribution.test),
+          std::bit_cast<std::uint32_t>(contribution.threshold)};
+}
+
+device::GraphicsPipeline make_box_pipeline(const device::Device& device,
+                                           const submission::Contribution& contribution) {
+  return {device,
+          {.vertex = kBoxVert,
+           .fragment = kMarkFrag,
+           .constants = shader_constants(contribution),
+           .depth_write = false,
+           .cull_back = true}};
+}
+
+void report_visible(const Renderer& renderer, std::span<const std::uint32_t> flags,
+                    device::VisibleDraws::Condition opaque, device::VisibleDraws::Condition transparent,
+                    Frame& frame) {
+  const Scene& scene = renderer.scene();
+  frame.clear();
+  std::vector<std::uint8_t> drawn(scene.meshes.size());
+  for (ObjectId object = 0; object < scene.size(); ++object) {
+    const bool blended = scene.surface[object] == Surface::transparent;
+    const auto& condition = blended ? transparent : opaque;
+    if ((flags[object] & condition.mask) != condition.value) continue;
+    frame.visible.push_back(object);
+    frame.stats.triangles += scene.triangles(object);
+    frame.stats.draw_calls += blended;
+    if (!blended) drawn[scene.mesh[object]] = 1;
+  }
+  frame.stats.draw_calls += static_cast<std::uint64_t>(std::ranges::count(drawn, 1));
+  frame.stats.objects = scene.size();
+}
+
+MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
+    : renderer_(renderer),
+      contribution_(submission::contribution_from(parameters)),
+      draws_(renderer.draws().make_buffers(renderer.device())) {}
+
+void MarkAndDraw::record(device::Recorder& frame) {
+  {
+    const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);
+    renderer_.draw_opaque(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);
+  }
+  test(frame);
+  {
+    const auto pass = frame.pass("draw commands", PassKind::cull);
+    renderer_.draws().build(frame, marks(), {}, renderer_.transparent_order(), draws_);
+  }
+  const auto pass = frame.pass("draw", PassKind::draw);
+  // An object dropped by area may have laid down depth that nothing would cover.
+  const bool dropped = guarantee() == Guarantee::approximate;
+  renderer_.draw_opaque(frame, draws_, Renderer::Style::lit,
+                        dropped ? Renderer::Clear::both : Renderer::Clear::colour);
+  renderer_.draw_transparent(frame, draws_);
+}
+
+void MarkAndDraw::read_back(Frame& frame) {
+  const std::vector<std::uint32_t> flags = read_marks();
+  report_visible(renderer_, flags, {}, {}, frame);
+  count(frame.stats);
+}
+
+}  // namespace sightline::methods

@@ -1,0 +1,214 @@
+// Beyond Lee & Shin 2023: the chunks stay on the GPU. Each frame sends only which chunks are in and what
+// moved; objects are tested in compute; at most the three faces that look at the eye are restored; objects
+// that were visible last frame are drawn once, before the test.
+#include <cstring>
+
+#include "workbench/methods/raster_occlusion/ground_chunks.hpp"
+#include "workbench/methods/raster_occlusion/two_phase.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::uint32_t kTest[] =
+#include "shaders/resident_test.comp.inc"
+    ;
+constexpr std::uint32_t kFace[] =
+#include "shaders/face.vert.inc"
+    ;
+constexpr std::uint32_t kDepthTiles[] =
+#include "shaders/depth_tiles.comp.inc"
+    ;
+constexpr std::uint32_t kTileTest[] =
+#include "shaders/tile_test.comp.inc"
+    ;
+constexpr std::uint32_t kSeenBox[] =
+#include "shaders/seen_box.frag.inc"
+    ;
+
+// As in the shaders.
+constexpr std::uint32_t kDepthTile = 4, kBlock = 8, kFaceVertices = 18, kQuestionSize = 20;
+constexpr std::uint32_t kWords = world::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
+constexpr std::uint32_t kPart = 32;                               ///< objects that a workgroup takes
+constexpr std::uint32_t kParts = (world::ChunkMap::kCapacity + kPart - 1) / kPart;
+constexpr std::uint32_t kWhollyIn = 0x80000000u;
+
+struct Push {
+  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, questions, blocks, tiles, list, test;
+  std::uint32_t stamp, parts_in, widest;
+};
+
+/// What the device finds out in a frame, as in resident.h.
+struct TestData {
+  struct Asked {
+    vk::DispatchIndirectCommand groups{0, 1, 1};
+    std::uint32_t count = 0;
+  };
+  std::array<vk::DrawIndirectCommand, 2> draws;
+  Asked questions, blocks;
+};
+static_assert(sizeof(TestData) == 64);
+
+struct FacesPush {
+  vk::DeviceAddress boxes, state, list;
+  std::uint32_t across_edge;
+};
+
+constexpr std::array kParameters{submission::kContributionParameter, submission::kThresholdParameter,
+                                 kRegionDepthParameter};
+
+class ResidentChunk final : public TwoPhase {
+public:
+  ResidentChunk(device::Renderer& renderer, const Parameters& parameters)
+      : TwoPhase(renderer, submission::contribution_from(parameters)),
+        chunks_(renderer.scene(), parameters.count("depth")),
+        objects_(renderer.device(), kTest, shader_constants(contribution_)),
+        faces_(renderer.device(), {.vertex = kFace,
+                                   .fragment = kSeenBox,
+                                   .constants = shader_constants(contribution_),
+                                   .depth_write = false}),
+        depth_tiles_(renderer.device(), kDepthTiles),
+        against_tiles_(renderer.device(), kTileTest),
+        questions_(renderer.device(), renderer.scene().size() * kQuestionSize, device::Memory::device,
+                   "what objects ask"),
+        list_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "objects to test"),
+        test_(renderer.device(), sizeof(TestData), device::Memory::device, "draw commands") {
+    send_changes();
+  }
+
+  void update(std::span<const ObjectId> objects) override {
+    chunks_.update(renderer_.scene(), objects);
+    send_changes();
+  }
+
+private:
+  void send_changes() {
+    world::ChunkMap& map = chunks_.map();
+    device::Device& device = renderer_.device();
+    const std::uint32_t limit = map.chunk_limit();
+    if (limit > room_) {
+      room_ = limit + limit / 2;
+      resident_ = device::Buffer(device, std::uint64_t{room_} * kWords * 4, device::Memory::device, "chunks");
+      chunks_in_ = device::Buffer(device, std::uint64_t{room_} * kParts * 4, device::Memory::upload,
+                                  "which chunks are in");
+      changed_.resize(limit);
+      for (std::uint32_t chunk = 0; chunk < limit; ++chunk) changed_[chunk] = chunk;
+    } else {
+      changed_.assign(map.changed_chunks().begin(), map.changed_chunks().end());
+    }
+    map.acknowledge_changes();
+    if (changed_.empty()) return;
+    const std::size_t bytes = std::size_t{kWords} * 4;
+    if (staging_.size() < changed_.size() * bytes) {
+      staging_ = device::Buffer(device, changed_.size() * bytes, device::Memory::upload, "changed chunks");
+    }
+    regions_.clear();
+    auto* words = staging_.mapped<std::uint32_t>();
+    for (std::size_t i = 0; i < changed_.size(); ++i, words += kWords) {
+      const world::ChunkMap::ChunkView chunk = map.chunk(changed_[i]);
+      words[0] = chunk.count;
+      if (chunk.count > 0) std::memcpy(words + 1, chunk.objects, chunk.count * sizeof(ObjectId));
+      if (i > 0 && changed_[i] == changed_[i - 1] + 1) {
+        regions_.back().size += bytes;
+      } else {
+        regions_.push_back({i * bytes, changed_[i] * bytes, bytes});
+      }
+    }
+    device.run([&](const vk::raii::CommandBuffer& commands) {
+      commands.copyBuffer(staging_.handle(), resident_.handle(), regions_);
+      device::full_barrier(commands);
+    });
+  }
+
+  void test(device::Recorder& frame) override {
+    chunks_.select(frame.view, contribution_);
+    auto* const first = chunks_in_.mapped<std::uint32_t>();
+    auto* entry = first;
+    const auto enter = [&](std::uint32_t chunk, std::uint32_t mark) {
+      const std::uint32_t parts = (chunks_.map().chunk(chunk).count + kPart - 1) / kPart;
+      for (std::uint32_t part = 0; part < parts; ++part) *entry++ = (chunk * kParts + part) | mark;
+    };
+    for (const std::uint32_t chunk : chunks_.inside()) enter(chunk, kWhollyIn);
+    for (const std::uint32_t chunk : chunks_.crossing()) enter(chunk, 0);
+    const auto count = static_cast<std::uint32_t>(entry - first);
+    if (count == 0) return;
+    const TestData nothing{{vk::DrawIndirectCommand{0, 1, 0, 0},
+                            vk::DrawIndirectCommand{0, 1, kFaceVertices * renderer_.buffers().objects, 0}},
+                           {},
+                           {}};
+    frame.commands.updateBuffer<TestData>(test_.handle(), 0, nothing);
+    const std::uint32_t blocks = make_room(frame.targets.depth.width(), frame.targets.depth.height());
+    frame.commands.fillBuffer(blocks_.handle(), 0, std::uint64_t{4} * blocks, 0);
+    frame.targets.depth.begin_reading(frame.commands);
+    const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
+    const Push push{boxes,
+                    state_.address(),
+                    chunks_in_.address(),
+                    resident_.address(),
+                    questions_.address(),
+                    blocks_.address(),
+                    farthest_.address(),
+                    list_.address(),
+                    test_.address(),
+                    stamp_,
+                    count,
+                    frame.widest_dispatch()};
+    frame.dispatch(objects_, push, count * kPart, kPart);
+    // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
+    frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, blocks)});
+    frame.dispatch(against_tiles_, push, {test_, offsetof(TestData, questions)});
+    frame.targets.depth.end_reading(frame.commands);
+    frame.begin_rendering({});
+    frame.bind(faces_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);
+    for (const std::uint32_t across_edge : {0, 1}) {
+      frame.push(FacesPush{boxes, state_.address(), list_.address(), across_edge});
+      frame.commands.drawIndirect(test_.handle(), 16 * across_edge, 1, 16);
+    }
+    frame.end_rendering();
+  }
+
+  /// Room for the tiles of a picture; returns how many blocks they are.
+  std::uint32_t make_room(std::uint32_t width, std::uint32_t height) {
+    const auto across = [](std::uint32_t all, std::uint32_t each) { return (all + each - 1) / each; };
+    const std::uint32_t columns = across(width, kDepthTile), rows = across(height, kDepthTile),
+                        blocks = across(columns, kBlock) * across(rows, kBlock);
+    device::Device& device = renderer_.device();
+    const std::uint64_t tile_bytes = std::uint64_t{4} * columns * rows,
+                        block_bytes = std::uint64_t{8} * blocks;
+    if (farthest_.size() < tile_bytes) {
+      farthest_ = device::Buffer(device, tile_bytes, device::Memory::device, "depth tiles");
+    }
+    if (blocks_.size() < block_bytes) {
+      blocks_ = device::Buffer(device, block_bytes, device::Memory::device, "blocks of depth tiles");
+    }
+    return blocks;
+  }
+
+  void count(CullStats& stats) override {
+    stats.cull_vertices = stats.tested;
+    stats.nodes_visited = chunks_.nodes_visited();
+  }
+
+  GroundChunks chunks_;
+  device::ComputePipeline objects_;
+  device::GraphicsPipeline faces_;
+  device::ComputePipeline depth_tiles_, against_tiles_;
+  device::Buffer questions_, list_, test_;
+  device::Buffer resident_, chunks_in_, staging_, blocks_, farthest_;
+  std::uint32_t room_ = 0;  ///< chunks that the buffers hold
+  std::vector<std::uint32_t> changed_;
+  std::vector<vk::BufferCopy> regions_;
+};
+
+}  // namespace
+
+const DeviceMethodInfo kResidentChunk{
+    "resident-chunk",
+    "beyond A",
+    "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
+    Guarantee::exact,
+    "",
+    kParameters,
+    make_on_device<ResidentChunk>};
+
+}  // namespace sightline::methods

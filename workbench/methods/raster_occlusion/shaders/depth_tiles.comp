@@ -1,0 +1,30 @@
+#version 460
+#include "workbench/device/shared.h"
+
+#include "workbench/device/shaders/view.h"
+
+#include "resident.h"
+#include "workbench/device/shaders/frame_depth.h"
+layout(local_size_x = kBlock * kBlock) in;
+#include "workbench/device/shaders/invocation.h"
+
+// The farthest depth of each tile of 4 x 4 pixels: a group a block that was asked for, a lane a tile. Past the
+// picture's edge the sampler repeats it.
+void main() {
+  const uint lane = gl_LocalInvocationID.x;
+  const uvec2 size = tiles_in_image(), all_blocks = blocks_in_image();
+  if (workgroup() >= test.asked[kBlocks].count) return;
+  const uvec2 block = unpacked(blocks.at[all_blocks.x * all_blocks.y + workgroup()]);
+  const uvec2 tile = kBlock * block + uvec2(lane % kBlock, lane / kBlock);
+  if (any(greaterThanEqual(tile, size))) return;
+  // Four texels about each point, which lies where they meet.
+  const vec2 first = vec2(kDepthTile * tile), scale = 1 / vec2(image_size());
+  const vec4 a = textureGather(frame_depth, (first + vec2(1, 1)) * scale);
+  const vec4 b = textureGather(frame_depth, (first + vec2(3, 1)) * scale);
+  const vec4 c = textureGather(frame_depth, (first + vec2(1, 3)) * scale);
+  const vec4 d = textureGather(frame_depth, (first + vec2(3, 3)) * scale);
+  const vec4 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
+  const float lowest = min(min(low.x, low.y), min(low.z, low.w));
+  const float highest = max(max(high.x, high.y), max(high.z, high.w));
+  tiles.at[tile.y * size.x + tile.x] = view.reversed != 0 ? lowest : highest;
+}

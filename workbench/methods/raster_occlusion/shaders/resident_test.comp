@@ -1,0 +1,74 @@
+#version 460
+#include "workbench/device/shared.h"
+
+#include "workbench/device/shaders/view.h"
+
+#include "boxes.h"
+#include "resident.h"
+#include "state.h"
+layout(local_size_x = kGroup) in;
+#include "workbench/device/shaders/invocation.h"
+
+// One group a part of a chunk that is in, one lane an object: frustum and contribution; boxes at the near plane
+// are seen untested; the rest ask for tiles, unless they touch so many that looking costs more than the raster test.
+const uint kMostTiles = 1024;
+// Pixels. A smaller box is cheap to rasterise, and may miss the pixel's middle next to its point.
+const float kLarge = 8;
+
+// Has one workgroup more look at what was asked.
+void add_group(uint of, uint group) {
+  if (group < widest) {
+    atomicAdd(test.asked[of].groups.x, 1);
+  } else if (group % widest == 0) {
+    atomicAdd(test.asked[of].groups.y, 1);
+  }
+}
+
+void ask(uint object, Footprint print) {
+  const vec2 image = vec2(image_size());
+  if (any(lessThan(print.high, vec2(0))) || any(greaterThan(print.low, image))) return;
+  const uvec2 edge = tiles_in_image() - 1;
+  const uvec2 first = min(uvec2(max(print.low, vec2(0))) / kDepthTile, edge);
+  const uvec2 last = min(uvec2(min(print.high, image)) / kDepthTile, edge), span = last - first + 1;
+  uint traits = 0;
+  if (all(greaterThan(print.low, vec2(0))) && all(lessThan(print.high, image))) traits |= kInside;
+  if (all(greaterThan(print.high - print.low, vec2(kLarge)))) traits |= kHasPoints;
+  if (span.x * span.y <= kMostTiles) traits |= kHasTiles;
+  if (print.whole) traits = 0;
+  const uint place = atomicAdd(test.asked[kQuestions].count, 1);
+  questions.at[place] = Question(object, packed(first), packed(last), traits, print.nearest);
+  if (place % kGroup == 0) add_group(kQuestions, place / kGroup);
+  if ((traits & kHasTiles) == 0) return;
+  const uvec2 size = blocks_in_image();
+  for (uint y = first.y / kBlock; y <= last.y / kBlock; ++y) {
+    for (uint x = first.x / kBlock; x <= last.x / kBlock; ++x) {
+      if (atomicExchange(blocks.at[y * size.x + x], 1) != 0) continue;
+      const uint block = atomicAdd(test.asked[kBlocks].count, 1);
+      blocks.at[size.x * size.y + block] = packed(uvec2(x, y));
+      add_group(kBlocks, block);
+    }
+  }
+}
+
+void main() {
+  if (workgroup() >= parts_in) return;
+  const uint entry = chunks_in.at[workgroup()], part = entry & 0x7fffffff;
+  const uint chunk = kWords * (part / kParts), i = kGroup * (part % kParts) + gl_LocalInvocationID.x;
+  if (i >= chunk_objects.at[chunk]) return;
+  const uint object = chunk_objects.at[chunk + 1 + i];
+  const BoxData box = boxes.at[object];
+  const vec3 centre = box.centre_radius.xyz;
+  const vec3 half_extent = widened(centre, box.half_extent.xyz);
+  if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
+  if (!contributes(box.centre_radius, half_extent)) return;
+  const uint before = state_bits(frame - 1, state.at[object]);
+  const bool drawn = (before & kSeen) != 0;
+  const uint bits = drawn ? kInView | kDrawnEarly : kInView;
+  // What is drawn early for the second time was seen with all else there: whether it still shows is asked in one
+  // frame of four (Mattausch, Bittner & Wimmer 2008).
+  const bool rests = drawn && (before & kDrawnEarly) != 0 && (object + frame) % 4 != 0;
+  const bool seen = rests || reaches_near_plane(centre, half_extent);
+  state.at[object] = state_word(frame, seen ? bits | kSeen : bits);
+  if (seen) return;
+  ask(object, footprint(centre, half_extent));
+}

@@ -1,0 +1,37 @@
+// BOCA, Ye et al. 2023, section 3.3: every ray down a bounding volume hierarchy, on the CPU.
+#include "workbench/methods/ray_pvs/nearest_box.hpp"
+#include "workbench/methods/ray_pvs/ray_method.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::array kParameters{kRaysParameter};
+
+class Boca final : public RayMethod {
+public:
+  Boca(const Scene& scene, const Parameters& parameters) : RayMethod(scene, parameters) {
+    bvh_.build(scene.bounds);
+  }
+  void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+
+private:
+  void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
+    methods::cast_down_bvh(bvh_, grid.prepared, hits);
+  }
+
+  rays::Bvh bvh_;
+};
+
+}  // namespace
+
+const MethodInfo kBoca{"boca",
+                       kRayPaper,
+                       "100 x 100 rays down a bounding volume hierarchy",
+                       Guarantee::approximate,
+                       "",
+                       kParameters,
+                       fits_any_scene,
+                       make<Boca>};
+
+}  // namespace sightline::methods

@@ -1,0 +1,32 @@
+// TOCA, Ye et al. 2023, section 3.2: every ray against every box, on the CPU.
+#include "workbench/methods/ray_pvs/nearest_box.hpp"
+#include "workbench/methods/ray_pvs/ray_method.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr std::array kParameters{kRaysParameter};
+
+class Toca final : public RayMethod {
+public:
+  using RayMethod::RayMethod;
+
+private:
+  void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
+    methods::cast_at_all_boxes(scene_.bounds, grid.prepared, hits);
+  }
+};
+
+}  // namespace
+
+const MethodInfo kToca{"toca",
+                       kRayPaper,
+                       "100 x 100 rays, each against every box",
+                       Guarantee::approximate,
+                       "",
+                       kParameters,
+                       fits_any_scene,
+                       make<Toca>};
+
+}  // namespace sightline::methods

@@ -1,0 +1,41 @@
+// The same rays and the same answer by our own tree: eight boxes at once, packets of rays, nearest first.
+#include "library/rays/wide_rays.hpp"
+#include "workbench/methods/ray_pvs/ray_method.hpp"
+
+namespace sightline::methods {
+
+namespace {
+
+constexpr ParameterInfo kThreads{"threads", "that cast; 0: one a core", "0", 0, 256, true};
+constexpr std::array kParameters{kRaysParameter, kThreads};
+
+class WideRays final : public RayMethod {
+public:
+  WideRays(const Scene& scene, const Parameters& parameters)
+      : RayMethod(scene, parameters), crew_(parameters.count(kThreads.name)), stacks_(crew_.size()) {
+    bvh_.build(scene.bounds);
+  }
+  void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+
+private:
+  void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
+    rays::cast_wide(bvh_, grid, crew_, stacks_, hits);
+  }
+
+  rays::WideBvh bvh_;
+  rays::Crew crew_;
+  std::vector<rays::WideStack> stacks_;
+};
+
+}  // namespace
+
+const MethodInfo kWideRays{"wide-rays",
+                           "",
+                           "the PVS of toca and boca by a wide SIMD tree and packets of rays, on all cores",
+                           Guarantee::approximate,
+                           "",
+                           kParameters,
+                           fits_any_scene,
+                           make<WideRays>};
+
+}  // namespace sightline::methods

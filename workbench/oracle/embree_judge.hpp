@@ -1,0 +1,43 @@
+// The judge: the item buffer by Embree rays through pixel centres. It sees meshes and matrices, and knows
+// none of the culling code that it judges.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <sightline/view.hpp>
+#include <sightline/workbench/scene.hpp>
+
+#include "workbench/oracle/item_buffer.hpp"
+#include "workbench/oracle/object_triangles.hpp"
+
+namespace sightline::oracle {
+
+class EmbreeJudge {
+public:
+  /// Builds acceleration structures over all triangles. The scene outlives the judge. Throws Error where
+  /// Embree cannot be started or runs out of memory.
+  explicit EmbreeJudge(const Scene& scene, Faces faces = Faces::both);
+  ~EmbreeJudge();
+  EmbreeJudge(const EmbreeJudge&) = delete;
+  EmbreeJudge& operator=(const EmbreeJudge&) = delete;
+
+  /// The view has passed check(). Same scene and view, same answer for any number of threads.
+  [[nodiscard]] ItemBuffer render(const View& view) const;
+
+  /// Told after Scene::move_object of each of `objects`.
+  void move(std::span<const ObjectId> objects);
+
+  /// For each of `objects`: of the pixels in which `truth` sees it, those whose ray meets one of its
+  /// triangles in double precision too. Embree works in single: what it sees on a silhouette alone may be its
+  /// own rounding, and nobody is accused on that.
+  [[nodiscard]] std::vector<std::uint32_t> confirmed_pixels(const View& view, const ItemBuffer& truth,
+                                                            std::span<const ObjectId> objects) const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sightline::oracle

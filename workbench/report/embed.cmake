@@ -1,0 +1,16 @@
+# cmake -DOUT=assets.cpp -DCHART=… -DSTYLE=… -DSCRIPT=… -P embed.cmake: files as C++ string views.
+# A string literal may be limited in length, an array is not.
+set(text "#include \"workbench/report/assets.hpp\"\n\nnamespace sightline::report {\nnamespace {\n")
+set(views "")
+foreach(pair "kChartScript=${CHART}" "kPageStyle=${STYLE}" "kPageScript=${SCRIPT}")
+  string(REGEX MATCH "^([^=]+)=(.+)$" matched "${pair}")
+  set(name ${CMAKE_MATCH_1})
+  file(READ "${CMAKE_MATCH_2}" hex HEX)
+  if(hex STREQUAL "")
+    message(FATAL_ERROR "embed: ${CMAKE_MATCH_2} is empty or cannot be read")
+  endif()
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${hex}")
+  string(APPEND text "const char ${name}Bytes[] = {${bytes}};\n")
+  string(APPEND views "const std::string_view ${name}(${name}Bytes, sizeof ${name}Bytes);\n")
+endforeach()
+file(WRITE "${OUT}" "${text}}  // namespace\n\n${views}\n}  // namespace sightline::report\n")

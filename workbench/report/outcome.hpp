@@ -1,0 +1,44 @@
+// What became of each object of one view under one method.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <sightline/view.hpp>
+#include <sightline/workbench/scene.hpp>
+
+#include "workbench/measure/contestant.hpp"
+#include "workbench/oracle/embree_judge.hpp"
+
+namespace sightline::report {
+
+enum class Fate : std::uint8_t {
+  culled,   ///< dropped, and no pixel shows it
+  excess,   ///< kept, though no pixel shows it
+  visible,  ///< kept, and seen
+  lost,     ///< dropped, though seen
+};
+inline constexpr std::size_t kFates = 4;
+
+/// One view in full: the truth, and every object's fate under every method.
+struct Snapshot {
+  struct Method {
+    std::string name;
+    std::vector<Fate> fates;  ///< one an object
+    std::array<std::size_t, kFates> counts{};
+  };
+  std::size_t index = 0;  ///< of the camera on its path
+  Camera camera;
+  View view;
+  oracle::ItemBuffer truth;
+  std::vector<Method> methods;
+};
+
+/// Looks through one camera. Throws Error where it makes no view.
+Snapshot take_snapshot(const Scene& scene, const oracle::EmbreeJudge& judge,
+                       std::span<const measure::Contestant> contestants, const Camera& camera,
+                       std::size_t index, std::uint32_t width, std::uint32_t height);
+
+}  // namespace sightline::report

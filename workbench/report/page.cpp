@@ -1,0 +1,239 @@
+#include "workbench/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include <sightline/version.hpp>
+
+#include "workbench/report/assets.hpp"
+#include "workbench/report/pictures.hpp"
+#include "workbench/report/summary.hpp"
+#include "workbench/report/table.hpp"
+
+namespace sightline::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<Fate, kFates> kLegendOrder{Fate::visible, Fate::excess, Fate::culled, Fate::lost};
+
+const char* fate_words(Fate fate) {
+  switch (fate) {
+    case Fate::visible:
+      return "kept, visible";
+    case Fate::excess:
+      return "kept in vain";
+    case Fate::culled:
+      return "culled rightly";
+    case Fate::lost:
+      return "lost";
+  }
+  return "";
+}
+
+/// Bytes of the valid UTF-8 sequence that begins at `at`; 0 for none.
+std::size_t sequence_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(at);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xf0 && first < 0xf5 ? 4
+                                                             : 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xc0u) != 0x80u) return 0;
+  }
+  // Overlong forms, surrogates, and what lies beyond U+10FFFF.
+  if ((first == 0xe0 && byte(at + 1) < 0xa0) || (first == 0xed && byte(at + 1) > 0x9f)) return 0;
+  if ((first == 0xf0 && byte(at + 1) < 0x90) || (first == 0xf4 && byte(at + 1) > 0x8f)) return 0;
+  return length;
+}
+
+std::string table_html(const measure::Comparison& comparison) {
+  std::string out =
+      "<div class=\"wide\"><table><thead><tr><th>method<th>guarantee<th>kept<th>tested<th>draw "
+      "calls<th>triangles"
+      "<th>cull, ms [min–max]<th>lost objects<th>lost pixels<th>excess</tr></thead><tbody>\n";
+  for (const MethodSummary& s : summarise(comparison)) {
+    const auto loss = [&](std::uint64_t count) {
+      return fmt::format("<td class=\"{}\">{}", count == 0 ? "good" : "bad",
+                         format_count(static_cast<double>(count)));
+    };
+    out += fmt::format(
+        "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{} <span "
+        "class=\"range\">[{}–{}]</span>{}{}<td>{}</tr>\n",
+        escape(s.method), to_string(s.guarantee), format_count(s.kept), format_count(s.tested),
+        format_count(s.draw_calls), format_count(s.triangles), format_ms(s.cull.median),
+        format_ms(s.cull.min), format_ms(s.cull.max), loss(s.lost_objects), loss(s.lost_pixels),
+        format_count(s.excess));
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+/// What page.js draws. "<" is written so that no name can end the script element.
+std::string data_json(const measure::Comparison& comparison) {
+  Json data;
+  data["methods"] = comparison.methods;
+  data["views"] = Json::array();
+  for (std::size_t v = 0; v < comparison.cameras.size(); ++v) data["views"].push_back(v);
+  data["truly_visible"] = Json::array();
+  for (const char* name : {"cull_ms", "kept", "triangles", "draw_calls"}) data[name] = Json::array();
+  for (const MethodSummary& s : summarise(comparison)) {
+    Json times = Json::array(), kept = Json::array();
+    const bool first = data["kept"].empty();
+    for (const measure::Row& row : comparison.rows) {
+      if (row.method != s.method) continue;
+      times.push_back(row.cull.median);
+      kept.push_back(row.kept);
+      if (first) data["truly_visible"].push_back(row.truly_visible);
+    }
+    data["cull_ms"].push_back(std::move(times));
+    data["kept"].push_back(std::move(kept));
+    data["triangles"].push_back(std::round(s.triangles));
+    data["draw_calls"].push_back(std::round(10 * s.draw_calls) / 10);
+  }
+  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string facts_html(const PageContent& content) {
+  const measure::Comparison& c = content.comparison;
+  const auto fact = [](double value, const char* what) {
+    return fmt::format("<li><b>{}</b> {}</li>", format_count(value), what);
+  };
+  return "<ul class=\"facts\">" + fact(static_cast<double>(content.scene.size()), "objects") +
+         fact(static_cast<double>(triangle_count(content.scene)), "triangles") +
+         fact(static_cast<double>(c.cameras.size()), "views") +
+         fmt::format("<li>path <b>{}</b></li><li><b>{} × {}</b> pixels</li></ul>\n", escape(c.path), c.width,
+                     c.height);
+}
+
+std::string chart_html(const char* id, const char* title) {
+  return fmt::format(
+      "<figure><h3>{}</h3><div class=\"chart\"><canvas id=\"{}\" role=\"img\" aria-label=\"{}\"></canvas>"
+      "</div></figure>\n",
+      title, id, title);
+}
+
+std::string where_html(const Snapshot& snapshot) {
+  const Vec3 eye = eye_position(snapshot.view), forward = view_direction(snapshot.view);
+  return fmt::format(
+      "View {} of the path: eye at ({:.2f}, {:.2f}, {:.2f}) m, looking along ({:.2f}, {:.2f}, {:.2f}).",
+      snapshot.index, eye.x, eye.y, eye.z, forward.x, forward.y, forward.z);
+}
+
+std::string fate_html(const Snapshot::Method& method, const std::string& picture) {
+  std::string out = fmt::format("<figure><h3>{}</h3><ul class=\"legend\">", escape(method.name));
+  for (const Fate fate : kLegendOrder) {
+    const Colour c = fate_colour(fate);
+    out += fmt::format("<li><i style=\"background:rgb({},{},{})\"></i>{} <b>{}</b></li>", c.r, c.g, c.b,
+                       fate_words(fate),
+                       format_count(static_cast<double>(method.counts[static_cast<std::size_t>(fate)])));
+  }
+  return out +
+         fmt::format(
+             "</ul><img src=\"{}\" alt=\"Top view of the scene: objects by their fate under {}\"></figure>\n",
+             escape(picture), escape(method.name));
+}
+
+std::string machine_html(const measure::Machine& m) {
+  return fmt::format("{}, {} hardware threads, {:.1f} GB, {}, {}", escape(m.cpu), m.cores,
+                     static_cast<double>(m.memory) / 1e9, escape(m.os), escape(m.compiler));
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = sequence_length(text, i);
+    const char c = text[i];
+    if (length == 0) {
+      out += "\xef\xbf\xbd";
+    } else if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else if (c == '\'') {
+      out += "&#39;";
+    } else {
+      out += text.substr(i, length);
+    }
+    i += length == 0 ? 1 : length;
+  }
+  return out;
+}
+
+std::string make_page(const PageContent& content) {
+  const measure::Comparison& comparison = content.comparison;
+  const std::string scene = escape(comparison.scene);
+  std::string page =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+      scene + " – Sightline</title>\n<style>\n";
+  page.append(kPageStyle).append("</style></head>\n<body><main>\n");
+  page += "<header><h1>What not to draw of " + scene + "</h1><p>Sightline " + escape(kVersion) + " on " +
+          machine_html(comparison.machine) + "</p>" + facts_html(content) + "</header>\n";
+  page += "<p class=\"verdict\">" + escape(verdict(comparison)) + "</p>\n";
+  page += "<h2>The methods</h2>\n" + table_html(comparison);
+  page +=
+      "<h2>Along the path</h2>\n<div class=\"charts\">" + chart_html("cull-time", "Culling time, a view") +
+      chart_html("kept", "Objects kept, beside those visible") +
+      chart_html("triangles", "Triangles left to draw") + chart_html("draw-calls", "Draw calls") + "</div>\n";
+  page += "<h2>The truth</h2>\n<figure class=\"item\"><img src=\"" + escape(content.item_buffer) +
+          "\" alt=\"Item buffer: each object in a colour of its own\"><figcaption>The item buffer: "
+          "everything drawn, "
+          "nothing culled, each of the " +
+          format_count(static_cast<double>(content.snapshot.truth.visible_count())) +
+          " visible objects in a colour of its own. " + where_html(content.snapshot) +
+          "</figcaption></figure>\n";
+  page +=
+      "<h2>From above</h2>\n<p>The same view, each object coloured by its fate under each method; x runs to "
+      "the "
+      "right, z down. The grey outline is the view frustum.</p>\n<div class=\"fates\">\n";
+  for (std::size_t m = 0; m < content.snapshot.methods.size(); ++m) {
+    page += fate_html(content.snapshot.methods[m], content.top_views[m]);
+  }
+  page +=
+      "</div>\n<footer><p>Lost: visible in the item buffer, which rays through pixel centres make, and not "
+      "in the "
+      "method's set. Excess: kept though no pixel shows it. Kept, tested, draw calls, triangles and excess "
+      "are means "
+      "over the views, losses are sums. Times are medians of the views' medians, with the least and the "
+      "greatest of "
+      "all repeats; methods take turns in one process, warm-up is not counted. Ratios within one run are the "
+      "result; "
+      "absolute times belong to the machine above.</p></footer>\n</main>\n";
+  page += "<script type=\"application/json\" id=\"data\">" + data_json(comparison) + "</script>\n<script>\n";
+  page.append(kChartScript).append("\n</script>\n<script>\n").append(kPageScript);
+  return page + "</script></body></html>\n";
+}
+
+std::string html(const Table& table) {
+  std::string out = "<div class=\"wide\"><table";
+  out += table.text_columns == 1 ? " class=\"numbers\"><thead><tr>" : "><thead><tr>";
+  for (const std::string& cell : table.header) out += "<th>" + escape(cell);
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (const std::string& cell : row) out += "<td>" + escape(cell);
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+}  // namespace sightline::report

@@ -1,0 +1,23 @@
+// The report's pictures: the item buffer, and the world from above with every object's fate.
+#pragma once
+
+#include <sightline/workbench/scene.hpp>
+
+#include "workbench/report/canvas.hpp"
+#include "workbench/report/outcome.hpp"
+
+namespace sightline::report {
+
+/// The colours of the fates, in their order; the page's legend uses the same.
+Colour fate_colour(Fate fate) noexcept;
+
+/// Every object in a colour of its own, shaded by the slope of its surface; clear where nothing is seen. Half
+/// the buffer's size: it is meant to be rendered at twice the size wanted.
+Canvas draw_item_buffer(const View& view, const oracle::ItemBuffer& truth);
+
+/// The world from above, x to the right and z down, objects as their bounds coloured by fate, with the eye
+/// and the outline of the frustum. `width` pixels wide at most, and not higher than 0.8 times that.
+Canvas draw_top_view(const Scene& scene, const Snapshot& snapshot, const Snapshot::Method& method,
+                     std::uint32_t width);
+
+}  // namespace sightline::report

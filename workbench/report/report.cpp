@@ -1,0 +1,42 @@
+#include "workbench/report/report.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include <sightline/workbench/error.hpp>
+
+#include "workbench/io/text_file.hpp"
+#include "workbench/report/page.hpp"
+#include "workbench/report/pictures.hpp"
+
+namespace sightline::report {
+
+std::size_t picture_view(const measure::Comparison& comparison) {
+  const auto worth = [](const measure::Row& row) { return std::pair(row.lost_pixels, row.truly_visible); };
+  const auto best =
+      std::max_element(comparison.rows.begin(), comparison.rows.end(),
+                       [&](const measure::Row& a, const measure::Row& b) { return worth(a) < worth(b); });
+  return best == comparison.rows.end() ? 0 : best->view;
+}
+
+void write_report(const std::filesystem::path& folder, const measure::Comparison& comparison,
+                  const Scene& scene, const Snapshot& snapshot) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed || !std::filesystem::is_directory(folder)) {
+    throw Error(folder.string() + ": no folder for the report could be made there" +
+                (failed ? ": " + failed.message() : std::string()));
+  }
+  constexpr std::uint32_t kTopViewWidth = 900;
+  report::PageContent content{comparison, scene, snapshot, "item-buffer.png", {}};
+  report::draw_item_buffer(snapshot.view, snapshot.truth).write_png(folder / content.item_buffer);
+  for (std::size_t m = 0; m < snapshot.methods.size(); ++m) {
+    content.top_views.push_back("top-view-" + std::to_string(m + 1) + ".png");
+    report::draw_top_view(scene, snapshot, snapshot.methods[m], kTopViewWidth)
+        .write_png(folder / content.top_views.back());
+  }
+  // The page comes last: where it stands, its pictures do.
+  io::write_file(folder / "index.html", report::make_page(content));
+}
+
+}  // namespace sightline::report

@@ -1,0 +1,77 @@
+#include <sightline/workbench/level_pvs.hpp>
+
+#include <algorithm>
+
+#include <sightline/frustum.hpp>
+
+namespace sightline {
+
+std::uint32_t LevelPvs::leaf_at(const Vec3& point) const noexcept {
+  std::int32_t at = nodes.empty() ? -1 : 0;
+  while (at >= 0) {
+    const Node& node = nodes[static_cast<std::size_t>(at)];
+    at = signed_distance(node.plane, point.x, point.y, point.z) >= 0 ? node.front : node.back;
+  }
+  return static_cast<std::uint32_t>(-(at + 1));
+}
+
+bool LevelPvs::may_see(std::int32_t from, std::int32_t to) const noexcept {
+  if (from < 0 || to < 0 || visibility.empty()) return true;
+  const std::size_t byte =
+      static_cast<std::size_t>(from) * bytes_per_cluster + static_cast<std::size_t>(to) / 8;
+  return (visibility[byte] >> (to % 8) & 1) != 0;
+}
+
+void LevelPvs::potentially_visible(const Vec3& eye, std::span<std::uint8_t> mask) const noexcept {
+  const std::int32_t from = leaves[leaf_at(eye)].cluster;
+  if (from < 0) {
+    std::fill(mask.begin(), mask.end(), std::uint8_t{1});
+    return;
+  }
+  for (std::size_t o = 0; o < mask.size(); ++o) mask[o] = in_some_leaf[o] == 0;
+  for (const Leaf& leaf : leaves) {
+    if (leaf.cluster < 0 || !may_see(from, leaf.cluster)) continue;
+    for (std::uint32_t i = 0; i < leaf.object_count; ++i) mask[leaf_objects[leaf.first_object + i]] = 1;
+  }
+}
+
+Check check(const LevelPvs& level, std::size_t object_count) {
+  const auto bad = [](const std::string& what) { return Failure{"level PVS: " + what}; };
+  if (level.leaves.empty()) return bad("it has no leaf");
+  if (level.in_some_leaf.size() != object_count || level.in_world_model.size() != object_count) {
+    return bad("expected one flag an object");
+  }
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    for (const std::int64_t child : {level.nodes[i].front, level.nodes[i].back}) {
+      // Compilers write parents before children, so a larger index is also what rules out a circle.
+      if (child >= 0 &&
+          (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))) {
+        return bad("node " + std::to_string(i) + " has a child out of order or range");
+      }
+      if (child < 0 && -(child + 1) >= static_cast<std::int64_t>(level.leaves.size())) {
+        return bad("node " + std::to_string(i) + " has a leaf out of range");
+      }
+    }
+  }
+  for (std::size_t i = 0; i < level.leaves.size(); ++i) {
+    const LevelPvs::Leaf& leaf = level.leaves[i];
+    if (std::uint64_t{leaf.first_object} + leaf.object_count > level.leaf_objects.size()) {
+      return bad("leaf " + std::to_string(i) + " lists objects out of range");
+    }
+    if (!level.visibility.empty() && leaf.cluster >= static_cast<std::int64_t>(level.clusters)) {
+      return bad("leaf " + std::to_string(i) + " has a cluster out of range");
+    }
+  }
+  for (std::uint32_t object : level.leaf_objects) {
+    if (object >= object_count)
+      return bad("a leaf lists object " + std::to_string(object) + ", out of range");
+  }
+  if (!level.visibility.empty() &&
+      (level.visibility.size() != std::uint64_t{level.clusters} * level.bytes_per_cluster ||
+       std::uint64_t{level.bytes_per_cluster} * 8 < level.clusters)) {
+    return bad("the visibility matrix has the wrong size");
+  }
+  return {};
+}
+
+}  // namespace sightline

@@ -1,0 +1,145 @@
+#include <sightline/workbench/scene.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include "library/geometry/linear.hpp"
+
+namespace sightline {
+
+using namespace geometry;
+
+Sphere Scene::sphere(ObjectId object) const noexcept {
+  const Box box = bounds[object];
+  return {{0.5f * (box.min.x + box.max.x), 0.5f * (box.min.y + box.max.y), 0.5f * (box.min.z + box.max.z)},
+          radius[object]};
+}
+
+std::uint32_t Scene::add_mesh(std::span<const Vec3> mesh_positions, std::span<const Vec3> mesh_normals,
+                              std::span<const std::uint32_t> mesh_indices) {
+  Mesh added;
+  added.first_index = static_cast<std::uint32_t>(indices.size());
+  added.index_count = static_cast<std::uint32_t>(mesh_indices.size());
+  added.first_vertex = static_cast<std::uint32_t>(positions.size());
+  added.vertex_count = static_cast<std::uint32_t>(mesh_positions.size());
+  positions.insert(positions.end(), mesh_positions.begin(), mesh_positions.end());
+  normals.insert(normals.end(), mesh_normals.begin(), mesh_normals.end());
+  indices.insert(indices.end(), mesh_indices.begin(), mesh_indices.end());
+  meshes.push_back(added);
+  return static_cast<std::uint32_t>(meshes.size() - 1);
+}
+
+ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transform, Surface object_surface) {
+  const auto object = static_cast<ObjectId>(size());
+  bounds.push_back({});
+  radius.push_back(0);
+  mesh.push_back(mesh_index);
+  transform.push_back(object_transform);
+  surface.push_back(object_surface);
+  move_object(object, object_transform);
+  return object;
+}
+
+void Scene::move_object(ObjectId object, const Affine& moved) {
+  transform[object] = moved;
+  const Mesh& shown = meshes[mesh[object]];
+  const std::span<const Vec3> vertices(positions.data() + shown.first_vertex, shown.vertex_count);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const Vec3& vertex : vertices) {
+    const Vec3 p = transform_point(moved, vertex);
+    box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
+    box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
+  }
+  bounds.set(object, box);
+  const Vec3 centre = sphere(object).centre;
+  float squared = 0;
+  for (const Vec3& vertex : vertices) {
+    const glm::vec3 offset = to_glm(transform_point(moved, vertex)) - to_glm(centre);
+    squared = std::max(squared, glm::dot(offset, offset));
+  }
+  constexpr float kRounding = 1 + 4 * std::numeric_limits<float>::epsilon();
+  radius[object] = std::sqrt(squared) * kRounding;
+}
+
+Box extent(const Scene& scene) noexcept {
+  if (scene.empty()) return {};
+  const auto smallest = [](const std::vector<float>& v) { return *std::min_element(v.begin(), v.end()); };
+  const auto greatest = [](const std::vector<float>& v) { return *std::max_element(v.begin(), v.end()); };
+  const Boxes& b = scene.bounds;
+  return {{smallest(b.min_x), smallest(b.min_y), smallest(b.min_z)},
+          {greatest(b.max_x), greatest(b.max_y), greatest(b.max_z)}};
+}
+
+std::uint64_t triangle_count(const Scene& scene) noexcept {
+  std::uint64_t sum = 0;
+  for (ObjectId object = 0; object < scene.size(); ++object) sum += scene.triangles(object);
+  return sum;
+}
+
+namespace {
+
+Failure object_failure(const Scene& scene, std::size_t object, const char* expected) {
+  return {"scene '" + scene.name + "': object " + std::to_string(object) + ": " + expected};
+}
+
+Check check_geometry(const Scene& s) {
+  const std::string scene = "scene '" + s.name + "': ";
+  if (s.normals.size() != s.positions.size()) return Failure{scene + "expected one normal a position"};
+  for (std::size_t m = 0; m < s.meshes.size(); ++m) {
+    const Mesh& mesh = s.meshes[m];
+    const std::string name = scene + "mesh " + std::to_string(m);
+    if (std::uint64_t{mesh.first_index} + mesh.index_count > s.indices.size() ||
+        std::uint64_t{mesh.first_vertex} + mesh.vertex_count > s.positions.size()) {
+      return Failure{name + ": its range ends beyond the scene's arrays"};
+    }
+    if (mesh.index_count % 3 != 0) return Failure{name + ": expected three indices a triangle"};
+    if (mesh.vertex_count == 0) return Failure{name + ": has no vertex"};
+    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+      if (s.indices[mesh.first_index + i] >= mesh.vertex_count)
+        return Failure{name + ": an index is out of range"};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(const Scene& scene) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](const void* data, std::size_t bytes) {
+    const auto* at = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ at[i]) * 0x100000001b3u;
+  };
+  const std::uint64_t count = scene.size();
+  add(&count, sizeof count);
+  const Boxes& b = scene.bounds;
+  for (const auto* array : {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z}) {
+    add(array->data(), array->size() * sizeof(float));
+  }
+  return hash;
+}
+
+Check check(const Scene& s) {
+  const std::size_t n = s.size();
+  if (n == 0) return Failure{"scene '" + s.name + "': it holds no object, expected at least one"};
+  if (n >= kNoObject) return Failure{"scene '" + s.name + "': too many objects for 32-bit ids"};
+  for (const auto* array : {&s.bounds.min_x, &s.bounds.min_y, &s.bounds.min_z, &s.bounds.max_x,
+                            &s.bounds.max_y, &s.bounds.max_z, &s.radius}) {
+    if (array->size() != n) return Failure{"scene '" + s.name + "': object arrays differ in length"};
+  }
+  if (s.transform.size() != n || s.surface.size() != n) {
+    return Failure{"scene '" + s.name + "': object arrays differ in length"};
+  }
+  if (Check bad = check_geometry(s)) return bad;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_valid(s.bounds[i])) return object_failure(s, i, "bounds must be finite with min <= max");
+    if (!std::isfinite(s.radius[i]) || s.radius[i] < 0)
+      return object_failure(s, i, "radius must be finite and >= 0");
+    if (s.mesh[i] >= s.meshes.size()) return object_failure(s, i, "its mesh is out of range");
+  }
+  if (s.level) return check(*s.level, n);
+  return {};
+}
+
+}  // namespace sightline

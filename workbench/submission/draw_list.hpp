@@ -1,0 +1,28 @@
+// From visible objects to draw commands, in the order of a frame: opaque front to back, one instanced call a
+// mesh; then transparent back to front, one call a run of equal meshes (Le Hoang Minh et al. 2022, section
+// 2).
+#pragma once
+
+#include <vector>
+
+#include <sightline/view.hpp>
+#include <sightline/workbench/frame.hpp>
+
+namespace sightline::submission {
+
+/// Scratch of one scene's draw lists; build() allocates nothing once it has seen as many objects.
+class DrawList {
+public:
+  explicit DrawList(const Scene& scene);
+
+  /// Reorders frame.visible, fills frame.draws, and counts calls and triangles in frame.stats.
+  void build(const Scene& scene, const View& view, Frame& frame) noexcept;
+
+private:
+  // depth in the high half, id in the low: equal depths still have one order
+  std::vector<std::uint64_t> opaque_, transparent_, scratch_;
+  std::vector<std::uint32_t> instances_;  // by mesh, all 0 between builds
+  std::vector<std::uint32_t> touched_;    // meshes of this frame, nearest first
+};
+
+}  // namespace sightline::submission
