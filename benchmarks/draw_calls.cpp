@@ -54,8 +54,8 @@ void cull(benchmark::State& state, const std::string& name, float far_plane) {
   Method& method = method_named(name);
   const View view = *make_view({.eye = {0, 0, 0}, .far_plane = far_plane}, 1280, 720);
   Frame frame;
-  method.cull(view, frame);
-  for (auto _ : state) method.cull(view, frame);
+  cull(method, view, frame);
+  for (auto _ : state) cull(method, view, frame);
   if (frame.visible.empty()) state.SkipWithError("nothing is drawn");
   state.counters["calls"] = static_cast<double>(frame.stats.draw_calls);
   state.counters["triangles"] = static_cast<double>(frame.stats.triangles);
@@ -74,7 +74,7 @@ void move_one(benchmark::State& state, const std::string& name) {
   }
   const Box box = twenty_million().bounds[7];
   Frame frame;
-  method.cull(*make_view({.eye = {box.min.x, box.min.y, box.max.z + 50}}, 640, 360), frame);
+  cull(method, *make_view({.eye = {box.min.x, box.min.y, box.max.z + 50}}, 640, 360), frame);
   if (std::ranges::find(frame.visible, ObjectId{7}) == frame.visible.end())
     state.SkipWithError("what moved is not drawn");
 }

@@ -134,7 +134,7 @@ void methods(Bytes& in, const View& view) {
     }
     return made;
   }();
-  const auto known = cpu_methods();
+  const auto known = all_methods();
   std::string specification(known[in.byte() % known.size()].name);
   if (in.byte() & 1) {
     specification += '?';
@@ -143,7 +143,7 @@ void methods(Bytes& in, const View& view) {
   auto method = create_method(specification, scene);
   if (!method || check(view)) return;
   Frame frame;
-  (*method)->cull(view, frame);
+  cull(**method, view, frame);
   require(frame.visible.size() <= scene.size());
   for (const ObjectId id : frame.visible) require(id < scene.size());
 }

@@ -8,8 +8,9 @@
 #include "command.hpp"
 #include "device.hpp"
 #include "page.hpp"
+#include "workbench/camera/camera_path.hpp"
+#include "workbench/measure/comparison_json.hpp"
 #include "workbench/report/summary.hpp"
-#include "workbench/report/table.hpp"
 
 namespace sightline::app {
 
@@ -25,39 +26,29 @@ struct CompareOptions {
 int run_compare(const CompareOptions& options) {
   measure::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
-  if (options.device != "cpu") {
-    if (!options.report.empty()) throw Error("--report: expected --device cpu");
-    return compare_on_device({.scene = options.scene,
-                              .pvs = options.pvs,
-                              .methods = options.methods,
-                              .path = options.path,
-                              .device = options.device,
-                              .json = options.json,
-                              .width = measure.width,
-                              .height = measure.height,
-                              .views = options.frames,
-                              .moving = options.moving,
-                              .limit = options.limit});
-  }
-  if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
-  if (options.limit) throw Error("--limit: expected a Vulkan device, by --device");
+  measure.moving = options.moving;
+  measure.limit = options.limit;
+  const auto device = open_device_or_cpu(options.device);
+  if (device) measure.repeats = 5;
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
-  const std::vector<std::string> names =
-      options.methods.empty() ? measure::fitting_methods(scene) : split("--methods", options.methods);
-  const std::vector<measure::Contestant> contestants = measure::make_contestants(scene, names);
+  measure::Bench bench(scene,
+                       options.methods.empty() ? measure::fitting_methods(scene, device != nullptr)
+                                               : split("--methods", options.methods),
+                       device.get());
   const std::string path_name =
       options.path.empty() ? std::string(camera::default_path(scene)) : options.path;
   const camera::CameraPath path = camera::make_path(scene, path_name, options.frames);
-
-  const oracle::EmbreeJudge judge(scene);
-  const measure::Comparison comparison =
-      measure::compare(scene, judge, contestants, path, measure, progress("compare"));
-  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}\n\n", scene.name, scene.size(),
-             triangle_count(scene), path.name, path.cameras.size(), options.size);
+  const measure::Comparison comparison = measure::compare(bench, path, measure, progress("compare"));
+  expect_silence(device.get());
+  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}\n\n", scene.name, scene.size(),
+             triangle_count(scene), path.name, path.cameras.size(), options.size,
+             device ? " on " + comparison.device : "");
   fmt::print("{}\n{}\n", report::render(report::summary_table(comparison)), report::verdict(comparison));
+  if (const report::Table ratios = report::ratio_table(comparison); !ratios.rows.empty())
+    fmt::print("\nWhere less than 20 % of the objects are visible:\n{}", report::render(ratios));
   if (!options.json.empty()) measure::write_json(options.json, comparison);
-  if (!options.report.empty()) write_page(options.report, scene, judge, contestants, comparison);
+  if (!options.report.empty()) write_page(options.report, bench, comparison);
   return Exit::done;
 }
 

@@ -1,7 +1,6 @@
-// Commands on a Vulkan device.
+// Vulkan devices, as `--device` names them.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -12,22 +11,11 @@ namespace sightline::app {
 inline constexpr const char* kDeviceHelp =
     "where methods run: cpu, or a Vulkan device by index or part of its name, or any for the fastest kind";
 
-/// What `compare` and `verify` are told, when it is to happen on a device.
-struct DeviceCall {
-  std::string scene, pvs, methods, path{}, device, json{};
-  std::uint32_t width = 0, height = 0;
-  std::size_t views = 0;
-  std::uint64_t seed = 0;
-  double moving = 0;
-  bool limit = false;
-};
-
 /// Opens the device of `--device`. Validation is on where SIGHTLINE_VALIDATION is set.
 std::unique_ptr<device::Device> open_device(const std::string& name);
-/// Throws Error where validation complained.
-void expect_silence(const device::Device& device);
-
-int compare_on_device(const DeviceCall& call);
-int verify_on_device(const DeviceCall& call);
+/// The same; null for "cpu".
+std::unique_ptr<device::Device> open_device_or_cpu(const std::string& name);
+/// Throws Error where validation complained; nothing on the CPU.
+void expect_silence(const device::Device* device);
 
 }  // namespace sightline::app

@@ -8,18 +8,16 @@
 #include <sightline/workbench/method.hpp>
 
 #include "command.hpp"
+#include "workbench/device/device.hpp"
 #include "workbench/io/text_file.hpp"
-#include "workbench/methods/device_method.hpp"
 
 namespace sightline::app {
 
 namespace {
 
-// MethodInfo and DeviceMethodInfo alike.
-template <class Info>
-nlohmann::ordered_json to_json(const Info& info) {
+nlohmann::ordered_json to_json(const MethodInfo& info, const MethodForm& form) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-  for (const ParameterInfo& parameter : info.parameters) {
+  for (const ParameterInfo& parameter : form.parameters) {
     nlohmann::ordered_json entry{
         {"name", parameter.name}, {"summary", parameter.summary}, {"default", parameter.fallback}};
     if (parameter.choices.empty()) {
@@ -30,15 +28,14 @@ nlohmann::ordered_json to_json(const Info& info) {
     parameters.push_back(std::move(entry));
   }
   return {{"name", info.name},       {"paper", info.paper},
-          {"summary", info.summary}, {"guarantee", to_string(info.guarantee)},
-          {"needs", info.needs},     {"parameters", std::move(parameters)}};
+          {"summary", info.summary}, {"guarantee", to_string(form.guarantee)},
+          {"needs", form.needs},     {"parameters", std::move(parameters)}};
 }
 
-template <class Info>
-void print(const Info& info) {
-  fmt::print("{:<22} {:<13} {:<34} {}\n", info.name, to_string(info.guarantee), info.paper, info.summary);
-  if (!info.needs.empty()) fmt::print("{:22} needs {}\n", "", info.needs);
-  for (const ParameterInfo& parameter : info.parameters) {
+void print(const MethodInfo& info, const MethodForm& form) {
+  fmt::print("{:<22} {:<13} {:<34} {}\n", info.name, to_string(form.guarantee), info.paper, info.summary);
+  if (!form.needs.empty()) fmt::print("{:22} needs {}\n", "", form.needs);
+  for (const ParameterInfo& parameter : form.parameters) {
     const std::string range = parameter.choices.empty()
                                   ? fmt::format("{:g} to {:g}", parameter.min, parameter.max)
                                   : std::string(parameter.choices);
@@ -63,9 +60,9 @@ void add_methods(CLI::App& app, int& exit) {
                     {"methods", Json::array()},
                     {"device_methods", Json::array()},
                     {"devices", Json::array()}};
-      for (const MethodInfo& info : cpu_methods()) document["methods"].push_back(to_json(info));
-      for (const methods::DeviceMethodInfo& info : methods::device_methods()) {
-        document["device_methods"].push_back(to_json(info));
+      for (const MethodInfo& info : all_methods()) {
+        if (info.cpu.exists()) document["methods"].push_back(to_json(info, info.cpu));
+        if (info.device.exists()) document["device_methods"].push_back(to_json(info, info.device));
       }
       for (const device::DeviceInfo& info : devices) {
         document["devices"].push_back({{"name", info.name}, {"kind", info.kind}, {"driver", info.driver}});
@@ -73,11 +70,15 @@ void add_methods(CLI::App& app, int& exit) {
       io::write_file(*json, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     }
     fmt::print("On the CPU (--device cpu):\n");
-    for (const MethodInfo& info : cpu_methods()) print(info);
+    for (const MethodInfo& info : all_methods()) {
+      if (info.cpu.exists()) print(info, info.cpu);
+    }
     fmt::print(
         "\nOn a Vulkan device (--device NAME), where CPU methods without a form of their own are drawn "
         "too:\n");
-    for (const methods::DeviceMethodInfo& info : methods::device_methods()) print(info);
+    for (const MethodInfo& info : all_methods()) {
+      if (info.device.exists()) print(info, info.device);
+    }
     fmt::print("\nVulkan devices:{}\n", devices.empty() ? " none" : "");
     for (std::size_t i = 0; i < devices.size(); ++i) {
       fmt::print("{:>3}  {} ({}, {})\n", i, devices[i].name, devices[i].kind, devices[i].driver);

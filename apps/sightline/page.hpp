@@ -1,15 +1,13 @@
-// The report of a comparison, with pictures of the view that says most.
+// The report of a comparison.
 #pragma once
 
 #include <string>
 
-#include "workbench/measure/measure.hpp"
-#include "workbench/report/outcome.hpp"
+#include "workbench/measure/compare.hpp"
 
 namespace sightline::app {
 
-/// Writes index.html and its pictures into `folder`.
-void write_page(const std::string& folder, const Scene& scene, const oracle::EmbreeJudge& judge,
-                std::span<const measure::Contestant> contestants, const measure::Comparison& comparison);
+/// Writes the page and its pictures, with the view that shows most. Throws Error where it cannot.
+void write_page(const std::string& folder, measure::Bench& bench, const measure::Comparison& comparison);
 
 }  // namespace sightline::app

@@ -25,34 +25,31 @@ struct ReproduceOptions {
 void print_drawn_object_frustum(const std::string& name, bool quick) {
   const auto device = open_device(name);
   Scene scene = reproduce::object_frustum_scene();
-  const std::vector<std::string> methods{"grid-cell", "object-frustum"};
-  measure::Workbench bench(*device, scene, methods);
-  measure::DeviceMeasureOptions measure;
-  measure.measure.repeats = quick ? 2 : 5;
-  measure.measure.warm_up = 1;
+  measure::Bench bench(scene, reproduce::kObjectFrustumMethods, device.get());
+  measure::MeasureOptions measure;
+  measure.repeats = quick ? 2 : 5;
+  measure.warm_up = 1;
   const measure::Comparison drawn =
-      measure::compare_on_device(bench, reproduce::object_frustum_path(scene), measure, progress("draw"));
-  expect_silence(*device);
+      measure::compare(bench, reproduce::object_frustum_path(scene), measure, progress("draw"));
+  expect_silence(device.get());
   fmt::print("\nDrawn on {}, opaque front to back, then transparent back to front\n{}", drawn.device,
-             report::render(report::device_table(drawn)));
-  const auto all = report::summarise_on_device(drawn);
+             report::render(report::summary_table(drawn)));
+  const auto all = report::summarise(drawn);
   fmt::print("\nfps, object-frustum / grid-cell: {:.2f}, published {:.2f}\n", all[1].fps() / all[0].fps(),
              reproduce::kPublishedObjectFrustum.fps / reproduce::kPublishedGridCell.fps);
 }
 
 int run_object_frustum(const ReproduceOptions& options) {
-  const Scene scene = reproduce::object_frustum_scene();
-  const oracle::EmbreeJudge judge(scene);
-  const std::vector<measure::Contestant> contestants = reproduce::object_frustum_contestants(scene);
-  const auto result =
-      reproduce::reproduce_object_frustum(scene, judge, contestants, options.quick, progress("reproduce"));
+  Scene scene = reproduce::object_frustum_scene();
+  measure::Bench bench(scene, reproduce::kObjectFrustumMethods);
+  const auto result = reproduce::reproduce_object_frustum(bench, options.quick, progress("reproduce"));
   fmt::print(
       "Le Hoang Minh et al. 2022, table 2: {} trees on 1 km², eye at 8.9 m in the middle, ten runs\n\n{}\n",
       scene.size(), report::render(result.runs));
   fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
              100 * result.tested_share, report::render(result.ratios));
   fmt::print("{}", report::render(report::summary_table(result.comparison)));
-  if (!options.report.empty()) write_page(options.report, scene, judge, contestants, result.comparison);
+  if (!options.report.empty()) write_page(options.report, bench, result.comparison);
   if (options.device.empty() && device::list_devices().empty()) {
     fmt::print("\nThere is no Vulkan device: nothing was drawn.\n");
   } else if (options.device != "cpu") {
@@ -75,10 +72,10 @@ int run_vertex_chunk(const ReproduceOptions& options) {
     for (const report::Table& table : world.tables) fmt::print("{}\n", report::render(table));
     fmt::print("Figure 7\n{}\n", report::render(world.rising_fps));
     for (const measure::Comparison* view : {&world.near, &world.far}) {
-      fmt::print("{} view\n{}\n", view->path, report::render(report::device_table(*view)));
+      fmt::print("{} view\n{}\n", view->path, report::render(report::summary_table(*view)));
     }
   }
-  expect_silence(*device);
+  expect_silence(device.get());
   if (!options.report.empty()) reproduce::write_vertex_chunk_report(options.report, worlds);
   return Exit::done;
 }

@@ -71,7 +71,7 @@ int run_ray_pvs(bool quick, const std::string& device_name, const std::string& r
     reproduce::write_ray_report(device->info().name, options, models, regions, scenes);
     fmt::print("\nThe report, with figure 12's pictures: {}/index.html\n", report);
   }
-  expect_silence(*device);
+  expect_silence(device.get());
   const bool alike = std::all_of(models.begin(), models.end(), [](const auto& m) { return m.identical; });
   return alike ? Exit::done : Exit::check_failed;
 }

@@ -9,8 +9,8 @@
 #include "command.hpp"
 #include "device.hpp"
 #include "workbench/camera/random_views.hpp"
-#include "workbench/measure/verify.hpp"
 #include "workbench/report/evidence_table.hpp"
+#include "workbench/report/verification_table.hpp"
 
 namespace sightline::app {
 
@@ -35,42 +35,27 @@ void print_level_evidence(const Scene& scene, std::uint64_t seed) {
 
 int run_verify(const VerifyOptions& options) {
   const auto [width, height] = parse_size(options.size);
-  if (options.device != "cpu") {
-    return verify_on_device({.scene = options.scene,
-                             .pvs = options.pvs,
-                             .methods = options.methods,
-                             .device = options.device,
-                             .width = width,
-                             .height = height,
-                             .views = options.views,
-                             .seed = options.seed,
-                             .moving = options.moving});
-  }
-  if (options.moving > 0) throw Error("--moving: expected a Vulkan device, by --device");
+  const auto device = open_device_or_cpu(options.device);
   Scene scene = load_scene(options.scene);
   attach_pvs(scene, options.pvs);
-  const std::vector<std::string> names =
-      options.methods.empty() ? measure::promising_methods(scene) : split("--methods", options.methods);
-  const std::vector<measure::Contestant> contestants = measure::make_contestants(scene, names);
+  measure::Bench bench(scene,
+                       options.methods.empty() ? measure::promising_methods(scene, device != nullptr)
+                                               : split("--methods", options.methods),
+                       device.get());
   const std::vector<Camera> cameras = camera::random_cameras(scene, options.views, options.seed);
   const measure::Verification result =
-      measure::verify(scene, contestants, cameras, width, height, progress("verify"));
+      measure::verify(bench, cameras, width, height, options.moving, progress("verify"));
+  expect_silence(device.get());
 
-  fmt::print("{}: {} random views of {}x{}, seed {}\n", scene.name, result.views, width, height,
-             options.seed);
-  fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  verdict\n", "method", "guarantee", "kept",
-             "visible", "lost objs", "lost pixels", "excess objs");
-  for (const measure::MethodVerdict& m : result.methods) {
-    fmt::print("{:<32} {:<13} {:>12} {:>12} {:>10} {:>11} {:>12}  {}\n", m.method, to_string(m.guarantee),
-               m.kept, m.visible, m.lost_objects, m.lost_pixels, m.excess_objects,
-               !m.holds()           ? "BROKEN"
-               : m.lost_objects > 0 ? "approximate"
-                                    : "holds");
-  }
+  fmt::print("{}: {} random views of {}x{}, seed {}", scene.name, result.views, width, height, options.seed);
+  if (device) fmt::print(", each as a camera cut and once more");
+  if (options.moving > 0) fmt::print(", {:g} of the objects moving", options.moving);
+  if (device) fmt::print(", on {}", result.device);
+  fmt::print("\n\n{}", report::render(report::verification_table(result)));
   for (const measure::MethodVerdict& m : result.methods) {
     for (const measure::LostObject& lost : m.examples) fmt::print("{}\n", measure::describe(m, lost));
   }
-  if (scene.level) print_level_evidence(scene, options.seed);
+  if (scene.level && !device) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
 }
 

@@ -81,7 +81,7 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
     const Vec3 eye = random.inside(result.cells.bounds);
     const float turn = random.between(0, 6.28f);
     const View view = *make_view({.eye = eye, .forward = {std::sin(turn), 0.1f, std::cos(turn)}}, 160, 120);
-    method->cull(view, frame);
+    cull(*method, view, frame);
     lost += oracle::compare_to_truth(judge.render(view), frame.visible).lost_pixels;
     pixels += 160 * 120;
   }
@@ -146,8 +146,8 @@ TEST(Baked, DrawsEverythingInViewOutsideItsCells) {
   scene.cells = cells;
   Frame baked, all;
   const View view = *make_view({.eye = {0, 500, 0}, .forward = {0, -1, 0}, .up = {1, 0, 0}}, 200, 200);
-  (*create_method("baked", scene))->cull(view, baked);
-  (*create_method("vfc-vc?bounds=box", scene))->cull(view, all);
+  cull(**create_method("baked", scene), view, baked);
+  cull(**create_method("vfc-vc?bounds=box", scene), view, all);
   EXPECT_EQ(baked.visible.size(), scene.size());
   EXPECT_EQ(baked.visible.size(), all.visible.size());
 }

@@ -3,8 +3,10 @@
 
 #include <cstdlib>
 
+#include <sightline/workbench/method.hpp>
 #include "device/fixtures.hpp"
-#include "workbench/methods/device_method.hpp"
+
+#include "workbench/measure/bench.hpp"
 
 namespace sightline {
 namespace {
@@ -70,10 +72,10 @@ TEST(DeviceFeatures, AMethodNamesTheFeatureItLacks) {
   const Scene scene = or_throw(generate_world("regular?columns=2&rows=2&detail=0"));
   {
     device::Renderer renderer(device, scene);
-    EXPECT_NO_THROW(methods::create_device_method("roc", renderer));
-    EXPECT_NO_THROW(methods::create_device_method("resident-chunk", renderer));
+    EXPECT_NO_THROW(or_throw(create_method("roc", MethodSite{scene, &renderer})));
+    EXPECT_NO_THROW(or_throw(create_method("resident-chunk", MethodSite{scene, &renderer})));
     try {
-      methods::create_device_method("vertex-chunk", renderer);
+      or_throw(create_method("vertex-chunk", MethodSite{scene, &renderer}));
       FAIL() << "made without geometryShader";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("geometryShader"), std::string::npos) << error.what();
@@ -93,8 +95,13 @@ TEST(DeviceMemory, SaysWhatThereWasNoRoomForAndLeaksNothing) {
     device::Device device(options);
     try {
       device::Renderer renderer(device, scene);
-      const auto method = methods::create_device_method("resident-chunk", renderer);
-      renderer.frame(view_of({}, 1280, 720), [&](device::Recorder& frame) { method->record(frame); });
+      const auto method = or_throw(create_method("resident-chunk", MethodSite{scene, &renderer}));
+      const View view = view_of({}, 1280, 720);
+      Frame frame;
+      renderer.frame(view, [&](device::Recorder& recorder) {
+        FrameContext context{view, frame, &recorder};
+        method->record(context);
+      });
       FAIL() << "fits into " << limit << " bytes";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("no memory for"), std::string::npos) << error.what();
@@ -117,10 +124,10 @@ TEST(DeviceRegistry, RefusesUnknownNamesKeysAndValues) {
   device::Renderer renderer(device, scene);
   for (const char* wrong :
        {"no-such-method", "roc?no=1", "roc?contribution=maybe", "vertex-chunk?depth=99", "level-pvs"}) {
-    EXPECT_THROW(methods::create_device_method(wrong, renderer), Error) << wrong;
+    EXPECT_THROW(or_throw(create_method(wrong, MethodSite{scene, &renderer})), Error) << wrong;
   }
-  for (const std::string& name : methods::methods_on_device(scene)) {
-    EXPECT_NO_THROW(methods::create_device_method(name, renderer)) << name;
+  for (const std::string& name : measure::fitting_methods(scene, true)) {
+    EXPECT_NO_THROW(or_throw(create_method(name, MethodSite{scene, &renderer}))) << name;
   }
 }
 

@@ -6,8 +6,8 @@
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/worlds.hpp>
 
-#include "workbench/device/item_buffer.hpp"
 #include "workbench/device/renderer.hpp"
+#include "workbench/oracle/raster_item_buffer.hpp"
 
 namespace sightline {
 

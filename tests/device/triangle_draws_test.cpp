@@ -43,7 +43,7 @@ TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
       for (const Camera& camera : camera::random_cameras(scene, 12, 5)) {
         const View view = view_of(camera, 160, 100);
         Frame frame;
-        method->cull(view, frame);
+        cull(*method, view, frame);
         const auto truth = draws.item_buffer(view, all, Submission::calls);
         for (const Submission submission : {Submission::calls, Submission::multi_draw}) {
           const auto picture = draws.item_buffer(view, frame.draws, submission);
@@ -117,7 +117,7 @@ TEST_F(TriangleDrawsTest, TransparentTrianglesBlendAsWithoutCulling) {
     for (const Camera& camera : camera::random_cameras(scene, 8, 15)) {
       const View view = view_of(camera, 160, 100);
       Frame frame;
-      method->cull(view, frame);
+      cull(*method, view, frame);
       renderer.frame(view, [&](device::Recorder& recorder) {
         draws.draw(recorder, frame.draws, method->geometry()->submission);
       });
@@ -143,7 +143,7 @@ TEST(TriangleDraws, NeedNoGeometryShaders) {
     device::TriangleDraws draws(renderer, *method->geometry());
     const View view = view_of({.eye = {0, 0, 90}, .forward = {0, 0, -1}}, 160, 100);
     Frame frame;
-    method->cull(view, frame);
+    cull(*method, view, frame);
     const auto ids = draws.item_buffer(view, frame.draws, Submission::calls);
     EXPECT_GT(std::ranges::count_if(ids, [](ObjectId id) { return id != kNoObject; }), 100);
   }
@@ -157,7 +157,7 @@ TEST_F(TriangleDrawsTest, DrawsAPictureWithBlendedTrianglesLast) {
   device::TriangleDraws draws(renderer, *method->geometry());
   const View view = view_of({.eye = {0, 5, 90}, .forward = {0, 0, -1}});
   Frame frame;
-  method->cull(view, frame);
+  cull(*method, view, frame);
   std::vector<device::Picture> pictures;
   for (const Submission submission : {Submission::calls, Submission::multi_draw}) {
     renderer.frame(view, [&](device::Recorder& recorder) { draws.draw(recorder, frame.draws, submission); });

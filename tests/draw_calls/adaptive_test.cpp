@@ -24,7 +24,7 @@ using methods::Trials;
 template <class Time>
 int settle(Trials& trials, Time time, int patience = 4 * 16 * Trials::kMostPairs) {
   int frames = 0;
-  for (; !trials.settled() && frames < patience; ++frames) trials.took(time(trials.current()));
+  for (; !trials.settled() && frames < patience; ++frames) trials.report_frame_time(time(trials.current()));
   return frames;
 }
 
@@ -80,7 +80,7 @@ TEST(Trials, OnceSettledTryRivalsInOneFrameOf64) {
   int others = 0;
   for (int frame = 0; frame < 6400; ++frame) {
     others += trials.current() != 0;
-    trials.took(1.0 + trials.current());
+    trials.report_frame_time(1.0 + trials.current());
   }
   EXPECT_EQ(others, 100);
   EXPECT_EQ(trials.winner(), 0u);
@@ -90,7 +90,8 @@ TEST(Trials, ChangeTheirMindWhenARivalBecomesQuicker) {
   Trials trials(4, 0);
   settle(trials, [](std::uint32_t way) { return 1.0 + 0.1 * way; });
   ASSERT_EQ(trials.winner(), 0u);
-  for (int frame = 0; frame < 128 * 3 * 10; ++frame) trials.took(trials.current() == 1 ? 0.85 : 1.0);
+  for (int frame = 0; frame < 128 * 3 * 10; ++frame)
+    trials.report_frame_time(trials.current() == 1 ? 0.85 : 1.0);
   EXPECT_EQ(trials.winner(), 1u);
 }
 
@@ -103,7 +104,7 @@ TEST(Trials, ChangeNothingForNoise) {
     settle(trials, [](std::uint32_t way) { return 1.0 + 0.1 * way; });
     std::uint32_t held = trials.winner();
     for (int frame = 0; frame < 128 * 300; ++frame) {
-      trials.took((random.below(10) < 3 ? 1.35 : 1.0) * random.between(0.95f, 1.05f));
+      trials.report_frame_time((random.below(10) < 3 ? 1.35 : 1.0) * random.between(0.95f, 1.05f));
       changes += trials.winner() != std::exchange(held, trials.winner());
     }
   }
@@ -131,11 +132,11 @@ TEST(Trials, CountTheSecondFrameOfATurn) {
 TEST(Trials, StayWhereTheyAreWithoutTimesAndIgnoreNonsense) {
   Trials trials(3, 2);
   for (const double nonsense : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-    trials.took(nonsense);
+    trials.report_frame_time(nonsense);
   EXPECT_EQ(trials.current(), 2u);
   Trials lone(1, 0);
   EXPECT_TRUE(lone.settled());
-  for (int frame = 0; frame < 200; ++frame) lone.took(1);
+  for (int frame = 0; frame < 200; ++frame) lone.report_frame_time(1);
   EXPECT_EQ(lone.current(), 0u);
 }
 
@@ -157,14 +158,14 @@ TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
     Frame frame;
     int frames = 0;
     for (; !adaptive.settled() && frames < 6000; ++frames) {
-      adaptive.cull(look_round(frames), frame);
-      adaptive.took(made_up_time(frame, call, triangle));
+      cull(adaptive, look_round(frames), frame);
+      adaptive.report_frame_time(made_up_time(frame, call, triangle));
     }
     ASSERT_TRUE(adaptive.settled());
     const auto mean = [&](Method& one) {
       double sum = 0;
       for (int v = 0; v < 126; ++v) {
-        one.cull(look_round(v), frame);
+        cull(one, look_round(v), frame);
         sum += made_up_time(frame, call, triangle);
       }
       return sum;
@@ -193,13 +194,13 @@ TEST(AdaptiveMethod, LosesNothingWhileItTries) {
   for (int f = 0; f < 6000 && (f < 1000 || !adaptive.settled()); ++f) {
     const View view = *make_view(cameras[static_cast<std::size_t>(f) % cameras.size()], 96, 64);
     const bool is_new = tried.insert(adaptive.in_use()).second;
-    method->cull(view, frame);
+    cull(*method, view, frame);
     if (is_new || f % 6 == 0)
       ASSERT_EQ(judge.judge(view, *method->geometry(), frame).loss.lost_pixels, 0u) << adaptive.in_use();
     ASSERT_EQ(method->geometry()->indices.data(), indices);
     if (method->geometry()->submission == Submission::multi_draw)
       ASSERT_EQ(frame.stats.draw_calls, frame.draws.empty() ? 0u : 1u);
-    method->took(made_up_time(frame, 8, 1));
+    method->report_frame_time(made_up_time(frame, 8, 1));
   }
   EXPECT_TRUE(adaptive.settled());
   EXPECT_GE(tried.size(), 6u);
@@ -210,10 +211,10 @@ TEST(AdaptiveMethod, SameTimesSameDraws) {
   const auto one = *create_method("adaptive", scene), other = *create_method("adaptive", scene);
   Frame a, b;
   for (int f = 0; f < 1800; ++f) {
-    one->cull(look_round(f), a), other->cull(look_round(f), b);
+    cull(*one, look_round(f), a), cull(*other, look_round(f), b);
     ASSERT_EQ(a.visible, b.visible);
     ASSERT_EQ(a.stats.triangles, b.stats.triangles);
-    one->took(made_up_time(a, 8, 1)), other->took(made_up_time(b, 8, 1));
+    one->report_frame_time(made_up_time(a, 8, 1)), other->report_frame_time(made_up_time(b, 8, 1));
   }
 }
 

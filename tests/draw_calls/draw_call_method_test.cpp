@@ -35,10 +35,10 @@ std::set<std::uint32_t> submitted(const Method& method, const Frame& frame) {
 TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
   std::vector<std::string> names(kAll.begin(), kAll.end());
   for (const auto& [name, triangles] : test::awkward_triangles()) {
-    const Scene scene = test::scene_of(triangles);
-    const auto contestants = measure::make_contestants(scene, names);
+    Scene scene = test::scene_of(triangles);
+    measure::Bench bench(scene, names);
     const auto cameras = camera::random_cameras(scene, 25, 7);
-    const measure::Verification result = measure::verify(scene, contestants, cameras, 96, 64);
+    const measure::Verification result = measure::verify(bench, cameras, 96, 64);
     for (const auto& verdict : result.methods) {
       EXPECT_EQ(verdict.guarantee, Guarantee::exact);
       EXPECT_EQ(verdict.lost_pixels, 0u) << name << ' ' << verdict.method;
@@ -60,7 +60,7 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
     for (const Camera& camera : cameras) {
       const View view = *make_view(camera, 120, 80);
       Frame frame;
-      method->cull(view, frame);
+      cull(*method, view, frame);
       const std::set<std::uint32_t> drawn = submitted(*method, frame);
       Scene only;
       std::vector<std::uint32_t> number;
@@ -108,7 +108,7 @@ TEST(DrawCalls, EveryTriangleWithACornerInViewIsSubmitted) {
           std::vector<std::set<std::uint32_t>> drawn;
           std::vector<Frame> frames(methods.size());
           for (std::size_t m = 0; m < methods.size(); ++m) {
-            methods[m]->cull(view, frames[m]);
+            cull(*methods[m], view, frames[m]);
             drawn.push_back(submitted(*methods[m], frames[m]));
             ASSERT_EQ(drawn[m], drawn[0]) << name << ' ' << structure << height << " method " << m;
           }
@@ -145,7 +145,7 @@ TEST(DrawCalls, BlendTransparentTrianglesOnceAndFarToNear) {
         const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
         const Vec3 eye = eye_position(view), forward = view_direction(view);
         Frame frame;
-        method->cull(view, frame);
+        cull(*method, view, frame);
         std::vector<std::uint32_t> drawn;
         bool blending = false;
         for (const DrawCommand& draw : frame.draws) {
@@ -187,7 +187,7 @@ TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
   for (int v = 0; v < 40; ++v) {
     const View view = test::random_view(random, {{-30, -30, -30}, {30, 30, 30}});
     Frame a, b;
-    zhang->cull(view, a), plain->cull(view, b);
+    cull(*zhang, view, a), cull(*plain, view, b);
     ASSERT_LE(a.stats.triangles, b.stats.triangles);
     fewer += a.stats.triangles, all += b.stats.triangles;
   }
@@ -204,9 +204,9 @@ TEST(DrawCalls, AdaptivePicksByWhatTheDeviceCharges) {
     const float turn = 0.314f * static_cast<float>(v);
     const View view = *make_view({.forward = {std::sin(turn), 0, std::cos(turn)}}, 640, 360);
     Frame frame;
-    dear_calls->cull(view, frame);
+    cull(*dear_calls, view, frame);
     a.draw_calls += frame.draws.size(), a.triangles += frame.stats.triangles;
-    dear_triangles->cull(view, frame);
+    cull(*dear_triangles, view, frame);
     b.draw_calls += frame.draws.size(), b.triangles += frame.stats.triangles;
   }
   EXPECT_LT(10 * a.draw_calls, b.draw_calls);
@@ -223,7 +223,7 @@ TEST(DrawCalls, AdaptiveFollowsMovedObjects) {
   method->update(moved);
   const Vec3 centre = scene.sphere(0).centre;
   Frame frame;
-  method->cull(*make_view({.eye = {centre.x, centre.y, centre.z + 60}}, 64, 64), frame);
+  cull(*method, *make_view({.eye = {centre.x, centre.y, centre.z + 60}}, 64, 64), frame);
   EXPECT_NE(std::ranges::find(frame.visible, ObjectId{0}), frame.visible.end());
 }
 
@@ -251,7 +251,7 @@ TEST(DrawCalls, DrawMovedObjectsWhereTheyAre) {
       for (int v = 0; v < 4; ++v) {
         const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
         Frame frame;
-        method->cull(view, frame);
+        cull(*method, view, frame);
         const TriangleGeometry& geometry = *method->geometry();
         for (const DrawCommand& draw : frame.draws) {
           for (std::uint32_t t = draw.first_instance; t < draw.first_instance + draw.index_count / 3; ++t) {
@@ -297,10 +297,10 @@ TEST(DrawCalls, MovingAnObjectLeavesTheOthersAlone) {
 }
 
 TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
-  const Scene scene = *generate_world("soup?triangles=5000&size=60");
+  Scene scene = *generate_world("soup?triangles=5000&size=60");
   const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
-  const auto contestants = measure::make_contestants(scene, names);
-  const auto result = measure::verify(scene, contestants, camera::random_cameras(scene, 20, 3), 96, 64);
+  measure::Bench bench(scene, names);
+  const auto result = measure::verify(bench, camera::random_cameras(scene, 20, 3), 96, 64);
   EXPECT_EQ(result.methods[0].guarantee, Guarantee::approximate);
   EXPECT_GT(result.methods[0].lost_pixels, 0u);
   EXPECT_EQ(result.methods[1].lost_pixels, 0u);
@@ -312,10 +312,10 @@ TEST(DrawCalls, AllocateNothingOnceTheyHaveGrown) {
     const auto method = *create_method(name, scene);
     const View view = *make_view({.eye = {0, 0, 0}}, 320, 200);
     Frame frame;
-    method->cull(view, frame);
+    cull(*method, view, frame);
     const auto* draws = frame.draws.data();
     const auto* visible = frame.visible.data();
-    for (int i = 0; i < 3; ++i) method->cull(view, frame);
+    for (int i = 0; i < 3; ++i) cull(*method, view, frame);
     EXPECT_EQ(frame.draws.data(), draws);
     EXPECT_EQ(frame.visible.data(), visible);
   }

@@ -1,17 +1,17 @@
 // The limit beside which compare shows its methods: what the item buffer sees, and nothing else.
 #include "device/fixtures.hpp"
-#include "workbench/measure/device_measure.hpp"
-#include "workbench/report/device_table.hpp"
+#include "workbench/measure/compare.hpp"
+#include "workbench/report/summary.hpp"
 
 namespace sightline {
 namespace {
 
 using LimitTest = DeviceTest;
 
-measure::DeviceMeasureOptions small_and_limited() {
-  measure::DeviceMeasureOptions options;
-  options.measure.width = 160, options.measure.height = 90;
-  options.measure.warm_up = 0, options.measure.repeats = 1;
+measure::MeasureOptions small_and_limited() {
+  measure::MeasureOptions options;
+  options.width = 160, options.height = 90;
+  options.warm_up = 0, options.repeats = 1;
   options.limit = true;
   return options;
 }
@@ -19,10 +19,10 @@ measure::DeviceMeasureOptions small_and_limited() {
 TEST_F(LimitTest, DrawsWhatTheItemBufferSeesAndNothingElse) {
   Scene scene = or_throw(generate_world("irregular?spheres=600&size=80&detail=1"));
   const std::vector<std::string> names{"none", "vfc-vc"};
-  measure::Workbench bench(device(), scene, names);
+  measure::Bench bench(scene, names, &device());
   const camera::CameraPath path = camera::make_path(scene, "near", 4);
-  const measure::DeviceMeasureOptions options = small_and_limited();
-  const measure::Comparison comparison = measure::compare_on_device(bench, path, options);
+  const measure::MeasureOptions options = small_and_limited();
+  const measure::Comparison comparison = measure::compare(bench, path, options);
   ASSERT_EQ(comparison.methods, (std::vector<std::string>{"none", "vfc-vc", "(limit)"}));
   ASSERT_EQ(comparison.rows.size(), 12u);
   std::size_t limits = 0, differ = 0, last = 0;
@@ -30,7 +30,7 @@ TEST_F(LimitTest, DrawsWhatTheItemBufferSeesAndNothingElse) {
     if (row.method != measure::kLimit) continue;
     ++limits;
     const View view = view_of(path.cameras[row.view], 160, 90);
-    const oracle::ItemBuffer seen = bench.judge(view);
+    const oracle::ItemBuffer seen = bench.oracle().look(view);
     std::uint64_t objects = 0, triangles = 0;
     for (ObjectId o = 0; o < scene.size(); ++o) {
       if (seen.pixels[o] == 0) continue;
@@ -54,17 +54,18 @@ TEST_F(LimitTest, DrawsWhatTheItemBufferSeesAndNothingElse) {
 TEST_F(LimitTest, IsLeftOutUnlessAskedForAndWhereObjectsMove) {
   Scene scene = or_throw(generate_world("irregular?spheres=100&size=40&detail=1"));
   const std::vector<std::string> names{"none"};
-  measure::Workbench bench(device(), scene, names);
+  measure::Bench bench(scene, names, &device());
   const camera::CameraPath path = camera::make_path(scene, "near", 1);
-  measure::DeviceMeasureOptions options = small_and_limited();
+  measure::MeasureOptions options = small_and_limited();
   options.moving = 0.1;
-  EXPECT_THROW(measure::compare_on_device(bench, path, options), Error);
+  EXPECT_THROW(measure::compare(bench, path, options), Error);
   options.limit = false;
-  EXPECT_EQ(measure::compare_on_device(bench, path, options).methods, names);
+  EXPECT_EQ(measure::compare(bench, path, options).methods, names);
 }
 
 TEST(Limit, IsNoMethodToPickButOneToMeasureBy) {
   measure::Comparison comparison;
+  comparison.device = "some device";
   comparison.methods = {"slow", "fast", "(limit)"};
   comparison.cameras.resize(3);
   const double frames[3][3] = {{12, 4, 2}, {30, 5, 3}, {8, 8, 4}};
@@ -79,10 +80,10 @@ TEST(Limit, IsNoMethodToPickButOneToMeasureBy) {
       comparison.rows.push_back(row);
     }
   }
-  const std::string verdict = report::device_verdict(comparison);
+  const std::string verdict = report::verdict(comparison);
   EXPECT_NE(verdict.find("wants fast"), std::string::npos) << verdict;
   EXPECT_EQ(verdict.find("limit"), std::string::npos) << verdict;
-  const report::Table ratios = report::device_ratios(comparison);
+  const report::Table ratios = report::ratio_table(comparison);
   ASSERT_EQ(ratios.rows.size(), 2u);
   EXPECT_EQ(ratios.rows[0], (std::vector<std::string>{"fast", "2", "4.50", "3.00", "6.00"}));
   EXPECT_EQ(ratios.rows[1], (std::vector<std::string>{"(limit)", "2", "8.00", "6.00", "10.00"}));

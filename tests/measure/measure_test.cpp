@@ -12,7 +12,7 @@
 #include "support/full_disk.hpp"
 #include "support/temporary_folder.hpp"
 #include "workbench/io/text_file.hpp"
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/comparison_json.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/report/table.hpp"
 
@@ -66,19 +66,18 @@ TEST(Timing, MedianLeastAndGreatest) {
 }
 
 TEST(Measure, RowsOfEveryMethodAndViewWithEveryField) {
-  const Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
-  const oracle::EmbreeJudge judge(scene);
-  const std::vector<Contestant> contestants = make_contestants(scene, test::kExactMethods);
+  Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
+  Bench bench(scene, test::kExactMethods);
   MeasureOptions options;
   options.width = 96, options.height = 64, options.repeats = 3, options.warm_up = 1;
   std::size_t told = 0;
-  const Comparison comparison = compare(scene, judge, contestants, camera::make_path(scene, "near", 4),
-                                        options, [&](std::size_t done, std::size_t all) {
-                                          EXPECT_EQ(done, ++told);
-                                          EXPECT_EQ(all, 4u);
-                                        });
+  const Comparison comparison =
+      compare(bench, camera::make_path(scene, "near", 4), options, [&](std::size_t done, std::size_t all) {
+        EXPECT_EQ(done, ++told);
+        EXPECT_EQ(all, 4u);
+      });
   EXPECT_EQ(told, 4u);
-  ASSERT_EQ(comparison.rows.size(), 4 * contestants.size());
+  ASSERT_EQ(comparison.rows.size(), 4 * bench.subjects().size());
 
   const TemporaryFolder folder;
   write_json(folder / "r.json", comparison);

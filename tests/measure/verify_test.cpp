@@ -15,7 +15,6 @@
 
 #include "workbench/camera/path_file.hpp"
 #include "workbench/camera/random_views.hpp"
-#include "workbench/measure/contestant.hpp"
 #include "workbench/measure/verify.hpp"
 #include "workbench/oracle/loss.hpp"
 
@@ -78,9 +77,10 @@ public:
       : scene_(scene), metres_(metres), guarantee_(guarantee) {}
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_; }
   void update(std::span<const ObjectId>) override {}
-  void cull(const View& view, Frame& frame) noexcept override {
+  void record(FrameContext& context) override {
+    Frame& frame = context.output;
     frame.clear();
-    Frustum frustum = make_frustum(view, extent(scene_));
+    Frustum frustum = make_frustum(context.view, extent(scene_));
     frustum.planes[Frustum::left].distance -= metres_;
     for (ObjectId object = 0; object < scene_.size(); ++object) {
       if (overlaps(frustum, scene_.bounds[object])) frame.visible.push_back(object);
@@ -93,19 +93,19 @@ private:
   Guarantee guarantee_;
 };
 
-std::vector<Contestant> broken(const Scene& scene, float metres, Guarantee guarantee) {
-  std::vector<Contestant> contestants;
-  contestants.push_back({"broken", std::make_unique<BrokenFrustum>(scene, metres, guarantee)});
-  return contestants;
+Verification verify_broken(Scene& scene, float metres, Guarantee guarantee, std::span<const Camera> cameras) {
+  Bench bench(scene, {});
+  bench.add("broken", std::make_unique<BrokenFrustum>(scene, metres, guarantee));
+  return verify(bench, cameras, 96, 64);
 }
 
 TEST(Verify, BrokenFrustumIsFoundAndViewAndObjectAreNamed) {
-  const Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
+  Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
   const std::vector<Camera> cameras = camera::random_cameras(scene, 40, 3);
-  const Verification sound = verify(scene, broken(scene, 0, Guarantee::conservative), cameras, 96, 64);
+  const Verification sound = verify_broken(scene, 0, Guarantee::conservative, cameras);
   EXPECT_TRUE(sound.passed()) << describe(sound.methods[0], sound.methods[0].examples.at(0));
 
-  const Verification result = verify(scene, broken(scene, 1.5f, Guarantee::conservative), cameras, 96, 64);
+  const Verification result = verify_broken(scene, 1.5f, Guarantee::conservative, cameras);
   EXPECT_FALSE(result.passed());
   const MethodVerdict& verdict = result.methods[0];
   EXPECT_GT(verdict.lost_objects, 0u);
@@ -127,9 +127,9 @@ TEST(Verify, BrokenFrustumIsFoundAndViewAndObjectAreNamed) {
 }
 
 TEST(Verify, ApproximateLossIsReportedAndIsNoFailure) {
-  const Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
+  Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
   const std::vector<Camera> cameras = camera::random_cameras(scene, 40, 3);
-  const Verification result = verify(scene, broken(scene, 1.5f, Guarantee::approximate), cameras, 96, 64);
+  const Verification result = verify_broken(scene, 1.5f, Guarantee::approximate, cameras);
   EXPECT_TRUE(result.passed());
   EXPECT_GT(result.methods[0].lost_pixels, 0u);
 }
@@ -137,9 +137,9 @@ TEST(Verify, ApproximateLossIsReportedAndIsNoFailure) {
 class VerifyWorld : public testing::TestWithParam<const char*> {};
 
 TEST_P(VerifyWorld, NoMethodLosesWhatItPromises) {
-  const Scene scene = or_throw(generate_world(GetParam()));
-  const std::vector<Contestant> contestants = make_contestants(scene, promising_methods(scene));
-  const Verification result = verify(scene, contestants, camera::random_cameras(scene, 25, 7), 96, 64);
+  Scene scene = or_throw(generate_world(GetParam()));
+  Bench bench(scene, promising_methods(scene));
+  const Verification result = verify(bench, camera::random_cameras(scene, 25, 7), 96, 64);
   EXPECT_EQ(result.views, 25u);
   ASSERT_GE(result.methods.size(), 4u);
   for (const MethodVerdict& verdict : result.methods) {
@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, VerifyWorld,
                                          "soup?triangles=40000"));
 
 TEST(RandomViews, SameSeedSameCamerasAndEveryKind) {
-  const Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
+  Scene scene = or_throw(generate_world("regular?columns=20&rows=20"));
   const std::vector<Camera> first = camera::random_cameras(scene, 400, 9),
                             second = camera::random_cameras(scene, 400, 9);
   std::size_t orthographic = 0, reversed = 0, infinite = 0, shifted = 0, rolled = 0;
@@ -169,9 +169,9 @@ TEST(RandomViews, SameSeedSameCamerasAndEveryKind) {
   EXPECT_NE(camera::camera_json(camera::random_cameras(scene, 1, 10)[0]), camera::camera_json(first[0]));
 }
 
-TEST(Contestants, UnknownMethodIsRefused) {
-  const Scene scene = or_throw(generate_world("regular?columns=2&rows=2"));
-  EXPECT_THROW(make_contestants(scene, std::vector<std::string>{"nothing-like-it"}), Error);
+TEST(Bench, UnknownMethodIsRefused) {
+  Scene scene = or_throw(generate_world("regular?columns=2&rows=2"));
+  EXPECT_THROW(Bench(scene, std::vector<std::string>{"nothing-like-it"}), Error);
 }
 
 }  // namespace

@@ -64,16 +64,16 @@ class Conformance : public testing::TestWithParam<std::string> {};
 
 TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
   const Scene scene = *generate_world(GetParam());
-  for (const MethodInfo& info : cpu_methods()) {
-    if (!info.fits(scene)) continue;
+  for (const MethodInfo& info : all_methods()) {
+    if (!info.cpu.suits(scene)) continue;
     const auto method = *create_method(info.name, scene), twin = *create_method(info.name, scene);
     scene::Random random(11);
     Frame frame, again;
     for (int v = 0; v < 50; ++v) {
       const View view = test::random_view(random, kAround);
-      method->cull(view, frame);
+      cull(*method, view, frame);
       expect_sound(scene, frame, method->geometry(), info.name);
-      twin->cull(view, again);
+      cull(*twin, view, again);
       ASSERT_EQ(frame.visible, again.visible) << info.name;
     }
   }
@@ -85,8 +85,8 @@ TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
 TEST_P(Conformance, ALoneObjectInViewIsKept) {
   Scene all = *generate_world(GetParam());
   scene::Random random(12);
-  for (const MethodInfo& info : cpu_methods()) {
-    if (!info.fits(all) || info.guarantee == Guarantee::approximate) continue;
+  for (const MethodInfo& info : all_methods()) {
+    if (!info.cpu.suits(all) || info.cpu.guarantee == Guarantee::approximate) continue;
     for (int v = 0; v < 20; ++v) {
       Scene lone;
       const Mesh& mesh = all.meshes[0];
@@ -104,18 +104,18 @@ TEST_P(Conformance, ALoneObjectInViewIsKept) {
       Camera camera{.eye = eye, .forward = {centre.x - eye.x, centre.y - eye.y, centre.z - eye.z}};
       if (std::fabs(way.y) > 0.9f) camera.up = {1, 0, 0};
       Frame frame;
-      (*create_method(info.name, lone))->cull(*make_view(camera, 640, 360), frame);
+      cull(**create_method(info.name, lone), *make_view(camera, 640, 360), frame);
       ASSERT_EQ(frame.visible.size(), 1u) << info.name;
     }
   }
 }
 
 TEST_P(Conformance, MovedObjectsAreFollowed) {
-  for (const MethodInfo& info : cpu_methods()) {
+  for (const MethodInfo& info : all_methods()) {
     Scene scene = *generate_world(GetParam());
     // "adaptive" picks its structure when it is made, so that a fresh one may keep another set; see its own
     // tests.
-    if (!info.fits(scene) || info.name == "adaptive") continue;
+    if (!info.cpu.suits(scene) || info.name == "adaptive") continue;
     const auto method = *create_method(info.name, scene);
     scene::Random random(13);
     for (int step = 0; step < 10; ++step) {
@@ -136,8 +136,8 @@ TEST_P(Conformance, MovedObjectsAreFollowed) {
       const auto fresh = *create_method(info.name, scene);
       const View view = test::random_view(random, kAround);
       Frame frame, expected;
-      method->cull(view, frame);
-      fresh->cull(view, expected);
+      cull(*method, view, frame);
+      cull(*fresh, view, expected);
       std::sort(frame.visible.begin(), frame.visible.end());
       std::sort(expected.visible.begin(), expected.visible.end());
       ASSERT_EQ(frame.visible, expected.visible) << info.name;

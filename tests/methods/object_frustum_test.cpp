@@ -19,7 +19,7 @@ namespace {
 
 std::vector<ObjectId> kept(Method& method, const View& view) {
   Frame frame;
-  method.cull(view, frame);
+  cull(method, view, frame);
   std::sort(frame.visible.begin(), frame.visible.end());
   return frame.visible;
 }
@@ -178,7 +178,7 @@ TEST(ObjectFrustum, TestsOnlyObjectsOfCrossingCells) {
   const Scene scene = *generate_world("forest");
   const auto method = *create_method("object-frustum", scene);
   Frame frame;
-  method->cull(*make_view({.eye = {0, 8.9f, 0}, .far_plane = 600}, 1280, 720), frame);
+  cull(*method, *make_view({.eye = {0, 8.9f, 0}, .far_plane = 600}, 1280, 720), frame);
   EXPECT_GT(frame.visible.size(), 500u);
   EXPECT_LT(frame.stats.tested, frame.visible.size());
 }

@@ -21,7 +21,7 @@ std::string refusal(std::string_view specification, const Scene& scene) {
 
 TEST(Registry, NamesAreUniqueAndFound) {
   std::set<std::string_view> names;
-  for (const MethodInfo& info : cpu_methods()) {
+  for (const MethodInfo& info : all_methods()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_EQ(find_method(info.name), &info);
     EXPECT_FALSE(info.summary.empty());

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <sightline/workbench/method.hpp>
 #include "device/fixtures.hpp"
-#include "workbench/methods/device_method.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline {
@@ -40,12 +40,12 @@ public:
 
   /// Every method's frame from the view: nothing lost, the same picture to the bit.
   void look(const View& view, const std::string& where) {
-    const device::ItemBuffer truth = judge_.render(view);
-    visible_ += static_cast<std::uint64_t>(std::ranges::count(truth.visible, 1));
-    renderer_.frame(view, [&](device::Recorder& frame) { reference_->record(frame); });
+    const oracle::ItemBuffer truth = judge_.render(view);
+    visible_ += truth.visible_count();
+    draw(*reference_, view);
     const device::Picture expected = renderer_.picture();
     for (auto& [name, method] : methods_) {
-      renderer_.frame(view, [&](device::Recorder& frame) { method->record(frame); });
+      draw(*method, view);
       const device::Picture picture = renderer_.picture();
       std::size_t different = 0;
       for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -55,8 +55,7 @@ public:
       std::vector<std::uint8_t> kept(scene_.size());
       for (const ObjectId object : frame_.visible) kept[object] = 1;
       std::size_t lost = 0;
-      for (ObjectId object = 0; object < scene_.size(); ++object)
-        lost += truth.visible[object] && !kept[object];
+      for (ObjectId object = 0; object < scene_.size(); ++object) lost += truth.sees(object) && !kept[object];
       EXPECT_EQ(lost, 0u) << name << " lost objects " << where;
       EXPECT_EQ(different, 0u) << name << " drew another picture " << where;
     }
@@ -67,19 +66,26 @@ public:
   [[nodiscard]] const Frame& last_frame() const { return frame_; }
 
 private:
-  std::unique_ptr<methods::DeviceMethod> make(const std::string& specification) {
-    return methods::create_device_method(specification, renderer_);
+  void draw(Method& method, const View& view) {
+    renderer_.frame(view, [&](device::Recorder& recorder) {
+      FrameContext context{view, frame_, &recorder};
+      method.record(context);
+    });
+  }
+
+  std::unique_ptr<Method> make(const std::string& specification) {
+    return or_throw(create_method(specification, MethodSite{scene_, &renderer_}));
   }
 
   struct Examined {
     std::string name;
-    std::unique_ptr<methods::DeviceMethod> method;
+    std::unique_ptr<Method> method;
   };
 
   Scene& scene_;
   device::Renderer renderer_;
-  device::ItemBufferPass judge_;
-  std::unique_ptr<methods::DeviceMethod> reference_;
+  oracle::RasterItemBuffer judge_;
+  std::unique_ptr<Method> reference_;
   std::vector<Examined> methods_;
   std::vector<ObjectId> moved_;
   Frame frame_;

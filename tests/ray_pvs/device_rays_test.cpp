@@ -5,9 +5,9 @@
 
 #include <sightline/workbench/io.hpp>
 
+#include <sightline/workbench/method.hpp>
 #include "device/fixtures.hpp"
 #include "support/nasty_boxes.hpp"
-#include "workbench/methods/device_method.hpp"
 #include "workbench/methods/ray_pvs/nearest_box.hpp"
 
 namespace sightline {
@@ -130,13 +130,16 @@ TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   const View view = view_of(camera_at(scene, "far"));
   const auto boca = or_throw(create_method("boca", scene));
   Frame expected;
-  boca->cull(view, expected);
+  cull(*boca, view, expected);
   std::ranges::sort(expected.visible);
   EXPECT_GT(expected.visible.size(), 50u);
   for (const char* name : {"iwcpa", "bvha", "saa"}) {
-    const auto method = methods::create_device_method(name, renderer);
-    renderer.frame(view, [&](device::Recorder& frame) { method->record(frame); });
+    const auto method = or_throw(create_method(name, MethodSite{scene, &renderer}));
     Frame frame;
+    renderer.frame(view, [&](device::Recorder& recorder) {
+      FrameContext context{view, frame, &recorder};
+      method->record(context);
+    });
     method->read_back(frame);
     EXPECT_EQ(frame.visible, expected.visible) << name;
   }

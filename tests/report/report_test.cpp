@@ -27,17 +27,16 @@ using testing::Not;
 
 struct Material {
   Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
-  oracle::EmbreeJudge judge{scene};
-  std::vector<measure::Contestant> contestants = measure::make_contestants(scene, test::kExactMethods);
+  measure::Bench bench{scene, test::kExactMethods};
   measure::Comparison comparison;
   Snapshot snapshot;
 
   Material() {
     measure::MeasureOptions options;
     options.width = 96, options.height = 54, options.repeats = 1, options.warm_up = 0;
-    comparison = measure::compare(scene, judge, contestants, camera::make_path(scene, "near", 3), options);
+    comparison = measure::compare(bench, camera::make_path(scene, "near", 3), options);
     const std::size_t view = picture_view(comparison);
-    snapshot = take_snapshot(scene, judge, contestants, comparison.cameras[view], view, 192, 108);
+    snapshot = take_snapshot(bench, comparison.cameras[view], view, 192, 108);
   }
 };
 
@@ -56,15 +55,15 @@ TEST(Report, WritesAPageThatLoadsNothingFromElsewhere) {
     EXPECT_EQ(bytes.substr(1, 3), "PNG");
     ++pictures;
   }
-  EXPECT_EQ(pictures, 1 + m.contestants.size());
+  EXPECT_EQ(pictures, 1 + test::kExactMethods.size());
   for (const char* loader :
        {"<link", "@import", "url(", "<script src", "<iframe", "fetch(", "XMLHttpRequest"}) {
     EXPECT_THAT(page, Not(HasSubstr(loader)));
   }
   EXPECT_THAT(page, HasSubstr("Chart.js v3"));
   EXPECT_THAT(page, HasSubstr("This scene wants"));
-  for (const measure::Contestant& contestant : m.contestants)
-    EXPECT_THAT(page, HasSubstr("<td>" + contestant.name + "<td>"));
+  for (const std::string& method : test::kExactMethods)
+    EXPECT_THAT(page, HasSubstr("<td>" + method + "<td>"));
 }
 
 TEST(Report, NamesAreEscapedEverywhere) {

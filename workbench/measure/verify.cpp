@@ -7,9 +7,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/camera/path_file.hpp"
-#include "workbench/oracle/embree_judge.hpp"
-#include "workbench/oracle/loss.hpp"
-#include "workbench/oracle/triangle_judge.hpp"
+#include "workbench/measure/mover.hpp"
 
 namespace sightline::measure {
 namespace {
@@ -19,52 +17,50 @@ std::size_t examples_wanted(Guarantee guarantee) {
   return guarantee == Guarantee::approximate ? 1 : 10;
 }
 
+/// One look of one subject, added to its verdict.
+void examine(Bench& bench, Subject& subject, const View& view, const LostObject& where,
+             MethodVerdict& verdict) {
+  bench.run(subject, view);
+  const oracle::Judgement judged = bench.judge(subject, view, Bench::Compare::pictures);
+  verdict.kept += subject.frame.visible.size();
+  verdict.visible += judged.truly_visible;
+  verdict.lost_objects += judged.loss.lost.size();
+  verdict.lost_pixels += judged.loss.lost_pixels;
+  verdict.excess_objects += judged.loss.excess.size();
+  verdict.different_pixels += judged.different_pixels;
+  if (judged.loss.lost.empty()) return;
+  ++verdict.views_with_loss;
+  if (verdict.examples.size() >= examples_wanted(verdict.guarantee)) return;
+  verdict.examples.push_back(where);
+  verdict.examples.back().object = judged.loss.lost.front();
+  verdict.examples.back().pixels = judged.loss.lost_pixels;
+}
+
 }  // namespace
 
 bool Verification::passed() const noexcept {
   return std::all_of(methods.begin(), methods.end(), [](const MethodVerdict& m) { return m.holds(); });
 }
 
-Verification verify(const Scene& scene, std::span<const Contestant> contestants,
-                    std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
-                    const Progress& progress) {
-  const oracle::EmbreeJudge judge(scene);
-  oracle::TriangleJudge triangle_judge(scene);
+Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
+                    double moving, const Progress& progress) {
   Verification result;
-  result.scene = scene.name;
-  for (const Contestant& contestant : contestants) {
+  result.scene = bench.scene().name;
+  result.device = bench.device_name();
+  for (const Subject& subject : bench.subjects()) {
     MethodVerdict verdict;
-    verdict.method = contestant.name;
-    verdict.guarantee = contestant.method->guarantee();
+    verdict.method = subject.name;
+    verdict.guarantee = subject.method->guarantee();
     result.methods.push_back(std::move(verdict));
   }
-  Frame frame;
+  const int looks = bench.renderer() ? 2 : 1;
+  Mover mover(bench.scene(), moving, 1);
   for (std::size_t v = 0; v < cameras.size(); ++v) {
     const View view = or_throw(make_view(cameras[v], width, height));
-    const oracle::ItemBuffer truth = judge.render(view);
-    const std::size_t visible = truth.visible_count();
-    for (std::size_t m = 0; m < contestants.size(); ++m) {
-      MethodVerdict& verdict = result.methods[m];
-      frame.clear();
-      contestants[m].method->cull(view, frame);
-      oracle::Loss loss;
-      std::size_t truly_visible = visible;
-      if (const TriangleGeometry* geometry = contestants[m].method->geometry()) {
-        oracle::TriangleJudge::Verdict found = triangle_judge.judge(view, *geometry, frame);
-        loss = std::move(found.loss), truly_visible = found.truly_visible;
-      } else {
-        loss = oracle::confirmed_loss(judge, view, truth, frame.visible);
-      }
-      verdict.kept += frame.visible.size();
-      verdict.visible += truly_visible;
-      verdict.lost_objects += loss.lost.size();
-      verdict.lost_pixels += loss.lost_pixels;
-      verdict.excess_objects += loss.excess.size();
-      if (loss.lost.empty()) continue;
-      ++verdict.views_with_loss;
-      if (verdict.examples.size() < examples_wanted(verdict.guarantee)) {
-        verdict.examples.push_back({v, cameras[v], width, height, loss.lost.front(), loss.lost_pixels});
-      }
+    for (int look = 0; look < looks; ++look) {
+      if (moving > 0) bench.update(mover.move());
+      for (std::size_t m = 0; m < result.methods.size(); ++m)
+        examine(bench, bench.subjects()[m], view, {v, cameras[v], width, height}, result.methods[m]);
     }
     ++result.views;
     if (progress) progress(v + 1, cameras.size());

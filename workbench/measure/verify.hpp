@@ -1,4 +1,4 @@
-// Verification: methods against the item buffer, view by view.
+// Verification: methods against the oracle, view by view.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,9 @@
 #include <vector>
 
 #include <sightline/view.hpp>
-#include <sightline/workbench/method.hpp>
 #include <sightline/workbench/progress.hpp>
 
-#include "workbench/measure/contestant.hpp"
+#include "workbench/measure/bench.hpp"
 
 namespace sightline::measure {
 
@@ -28,27 +27,33 @@ struct MethodVerdict {
   Guarantee guarantee = Guarantee::exact;
   std::uint64_t kept = 0, visible = 0;  ///< objects, summed over the views
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
+  std::uint64_t different_pixels = 0;  ///< on a device: that differ from the picture of all it could draw
   std::size_t views_with_loss = 0;
   std::vector<LostObject> examples;  ///< from the first views with a loss, one for approximate methods
 
-  /// False where an exact or conservative method lost something; an approximate one only reports.
+  /// False where an exact or conservative method lost something, or an exact one drew another picture; an
+  /// approximate one only reports.
   [[nodiscard]] bool holds() const noexcept {
-    return lost_objects == 0 || guarantee == Guarantee::approximate;
+    return guarantee == Guarantee::approximate ||
+           (lost_objects == 0 && (guarantee != Guarantee::exact || different_pixels == 0));
   }
 };
 
 struct Verification {
-  std::string scene;
+  std::string scene, device = "cpu";
   std::size_t views = 0;
   std::vector<MethodVerdict> methods;
   [[nodiscard]] bool passed() const noexcept;
+  /// Whether a device drew the frames, so that pictures were compared.
+  [[nodiscard]] bool drawn() const noexcept { return device != "cpu"; }
 };
 
-/// Culls every view with every method and compares with the judge. Throws Error for a camera that makes no
-/// view, and for a method that names an object twice or one that does not exist.
-Verification verify(const Scene& scene, std::span<const Contestant> contestants,
-                    std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
-                    const Progress& progress = {});
+/// Culls every view with every method and holds the answers against the oracle. On a device each view is a
+/// camera cut for every method, and is drawn once more after it, so that a settled frame is examined, too,
+/// and the pictures are compared. `moving` is the share of objects that move before every look. Throws Error
+/// for a camera that makes no view, and for a method that names an object twice or one that does not exist.
+Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
+                    double moving = 0, const Progress& progress = {});
 
 /// A sentence that names method, view and object, with every number of the view.
 std::string describe(const MethodVerdict& verdict, const LostObject& lost);

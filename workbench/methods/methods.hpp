@@ -1,31 +1,36 @@
-// What each method file gives to the registry.
+// What the files of methods build on.
 #pragma once
 
 #include <sightline/workbench/method.hpp>
 
 namespace sightline::methods {
 
-extern const MethodInfo kNone;
-extern const MethodInfo kVfcVc;
-extern const MethodInfo kMasked;
-extern const MethodInfo kGridCell;
-extern const MethodInfo kObjectFrustum;
-extern const MethodInfo kLevelPvs;
-extern const MethodInfo kToca;
-extern const MethodInfo kBoca;
-extern const MethodInfo kWideRays;
-extern const MethodInfo kTrianglePvs;
-extern const MethodInfo kGuided;
-extern const MethodInfo kBaked;
+/// A method that decides on the CPU: it culls the view into the output, and whoever wants a picture draws
+/// that.
+class CpuMethod : public Method {
+public:
+  void record(FrameContext& context) final { cull(context.view, context.output); }
+  virtual void cull(const View& view, Frame& frame) noexcept = 0;
+};
 
-inline bool fits_any_scene(const Scene&) {
-  return true;
+/// The form for the CPU of a method whose constructor takes the scene and its parameters.
+template <class M>
+Result<std::unique_ptr<Method>> make_on_cpu(const MethodSite& site, const Parameters& parameters) {
+  return std::unique_ptr<Method>(std::make_unique<M>(site.scene, parameters));
+}
+template <class M>
+constexpr MethodForm on_cpu(Guarantee guarantee, std::span<const ParameterInfo> parameters = {}) {
+  return {guarantee, parameters, make_on_cpu<M>};
 }
 
-/// A factory for a method whose constructor takes the scene and its parameters.
+/// The form for a device of a method whose constructor takes the renderer and its parameters.
 template <class M>
-Result<std::unique_ptr<Method>> make(const Scene& scene, const Parameters& parameters) {
-  return std::unique_ptr<Method>(std::make_unique<M>(scene, parameters));
+Result<std::unique_ptr<Method>> make_on_device(const MethodSite& site, const Parameters& parameters) {
+  return std::unique_ptr<Method>(std::make_unique<M>(*site.renderer, parameters));
+}
+template <class M>
+constexpr MethodForm on_device(Guarantee guarantee, std::span<const ParameterInfo> parameters = {}) {
+  return {guarantee, parameters, make_on_device<M>};
 }
 
 }  // namespace sightline::methods

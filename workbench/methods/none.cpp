@@ -1,14 +1,14 @@
 // Draws every object: what all other methods are measured against.
 #include <numeric>
 
-#include "workbench/methods/methods.hpp"
+#include "workbench/methods/raster_occlusion/occlusion.hpp"
 #include "workbench/submission/draw_list.hpp"
 
 namespace sightline::methods {
 
 namespace {
 
-class None final : public Method {
+class None final : public CpuMethod {
 public:
   None(const Scene& scene, const Parameters&) : scene_(scene), draw_list_(scene) {}
 
@@ -28,9 +28,47 @@ private:
   submission::DrawList draw_list_;
 };
 
+class NoneOnDevice final : public Method {
+public:
+  NoneOnDevice(device::Renderer& renderer, const Parameters&)
+      : renderer_(renderer),
+        flags_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "flags"),
+        draws_(renderer.draws().make_buffers(renderer.device())) {}
+
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
+  void update(std::span<const ObjectId>) override {}
+
+  void record(FrameContext& context) override {
+    device::Recorder& frame = *context.recorder;
+    const auto pass = frame.pass("draw", device::PassKind::draw);
+    // Opaque objects are listed once; transparent ones are sorted anew for each view.
+    if (!listed_ || renderer_.transparent_order()) {
+      renderer_.draws().build(frame, flags_.address(), device::VisibleDraws::kAll,
+                              renderer_.transparent_order(), draws_);
+      listed_ = true;
+    }
+    renderer_.draw_opaque(frame, draws_, device::Renderer::Style::lit, device::Renderer::Clear::both);
+    renderer_.draw_transparent(frame, draws_);
+  }
+
+  void read_back(Frame& frame) override {
+    const std::vector<std::uint32_t> flags(renderer_.scene().size());
+    report_visible(renderer_, flags, device::VisibleDraws::kAll, device::VisibleDraws::kAll, frame);
+  }
+
+private:
+  device::Renderer& renderer_;
+  device::Buffer flags_;
+  device::DrawBuffers draws_;
+  bool listed_ = false;
+};
+
 }  // namespace
 
-const MethodInfo kNone{"none", "", "draws every object", Guarantee::exact,
-                       "",     {}, fits_any_scene,       make<None>};
+extern const MethodInfo kNone{.name = "none",
+                              .paper = "",
+                              .summary = "draws every object",
+                              .cpu = on_cpu<None>(Guarantee::exact),
+                              .device = on_device<NoneOnDevice>(Guarantee::exact)};
 
 }  // namespace sightline::methods

@@ -1,9 +1,45 @@
+// All methods in one table. Each line names what a method's file defines: a MethodInfo, or an array of them.
 #include <vector>
 
-#include "workbench/methods/draw_calls/draw_calls.hpp"
-#include "workbench/methods/methods.hpp"
+#include <sightline/workbench/method.hpp>
+
+#include "workbench/device/renderer.hpp"
+#include "workbench/methods/drawn_on_device.hpp"
+
+#define SIGHTLINE_METHODS(METHOD, FAMILY) \
+  METHOD(kNone)                           \
+  METHOD(kVfcVc)                          \
+  METHOD(kRoc)                            \
+  METHOD(kHroc)                           \
+  METHOD(kVertexChunk)                    \
+  METHOD(kResidentChunk)                  \
+  METHOD(kHiz)                            \
+  METHOD(kGridCell)                       \
+  METHOD(kObjectFrustum)                  \
+  METHOD(kMasked)                         \
+  FAMILY(kDrawCallMethods, 9)             \
+  METHOD(kClusterCone)                    \
+  METHOD(kAdaptive)                       \
+  METHOD(kToca)                           \
+  METHOD(kBoca)                           \
+  METHOD(kIwcpa)                          \
+  METHOD(kBvha)                           \
+  METHOD(kSaa)                            \
+  METHOD(kWideRays)                       \
+  METHOD(kTrianglePvs)                    \
+  METHOD(kGuided)                         \
+  METHOD(kLevelPvs)                       \
+  METHOD(kBaked)
 
 namespace sightline {
+
+namespace methods {
+
+#define SIGHTLINE_DECLARE(name) extern const MethodInfo name;
+#define SIGHTLINE_DECLARE_FAMILY(name, count) extern const std::array<MethodInfo, count> name;
+SIGHTLINE_METHODS(SIGHTLINE_DECLARE, SIGHTLINE_DECLARE_FAMILY)
+
+}  // namespace methods
 
 std::string_view to_string(Guarantee guarantee) noexcept {
   switch (guarantee) {
@@ -17,42 +53,57 @@ std::string_view to_string(Guarantee guarantee) noexcept {
   return "";
 }
 
-std::span<const MethodInfo> cpu_methods() noexcept {
-  using namespace methods;
+std::span<const MethodInfo> all_methods() noexcept {
   static const std::vector<MethodInfo> kMethods = [] {
-    std::vector<MethodInfo> all{kNone, kVfcVc, kGridCell, kObjectFrustum, kMasked};
-    all.insert(all.end(), kDrawCallMethods.begin(), kDrawCallMethods.end());
-    all.insert(all.end(),
-               {kClusterCone, kAdaptive, kToca, kBoca, kWideRays, kTrianglePvs, kGuided, kLevelPvs, kBaked});
+    std::vector<MethodInfo> all;
+#define SIGHTLINE_LIST(name) all.push_back(methods::name);
+#define SIGHTLINE_LIST_FAMILY(name, count) all.insert(all.end(), methods::name.begin(), methods::name.end());
+    SIGHTLINE_METHODS(SIGHTLINE_LIST, SIGHTLINE_LIST_FAMILY)
     return all;
   }();
   return kMethods;
 }
 
 const MethodInfo* find_method(std::string_view name) noexcept {
-  for (const MethodInfo& info : cpu_methods()) {
+  for (const MethodInfo& info : all_methods()) {
     if (info.name == name) return &info;
   }
   return nullptr;
 }
 
+namespace {
+
+Failure no_such_method(std::string_view name, bool on_device) {
+  std::string known;
+  for (const MethodInfo& method : all_methods()) {
+    if (on_device || method.cpu.exists()) known.append(known.empty() ? "" : ", ").append(method.name);
+  }
+  return {"method '" + std::string(name) + "': no such method" + (find_method(name) ? " on the CPU" : "") +
+          ", expected one of " + known};
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Method>> create_method(std::string_view specification, const Scene& scene) {
-  const std::string_view name = specified_name(specification);
+  return create_method(specification, MethodSite{scene});
+}
+
+Result<std::unique_ptr<Method>> create_method(std::string_view specification, const MethodSite& site) {
+  const std::string name(specified_name(specification));
   const MethodInfo* info = find_method(name);
-  if (!info) {
-    std::string known;
-    for (const MethodInfo& method : cpu_methods())
-      known.append(known.empty() ? "" : ", ").append(method.name);
-    return Failure{"method '" + std::string(name) + "': no such method, expected one of " + known};
-  }
-  Result<Parameters> parameters = parse_parameters("method", specification, info->parameters);
+  if (!info || (!site.renderer && !info->cpu.exists())) return no_such_method(name, site.renderer);
+  const bool on_device = site.renderer && info->device.exists();
+  const MethodForm& form = on_device ? info->device : info->cpu;
+  Result<Parameters> parameters = parse_parameters("method", specification, form.parameters);
   if (!parameters) return parameters.failure();
-  if (Check bad = check(scene)) return *bad;
-  if (!info->fits(scene)) {
-    return Failure{"method '" + std::string(name) + "': scene '" + scene.name + "' lacks " +
-                   std::string(info->needs)};
+  if (Check bad = check(site.scene)) return *bad;
+  if (!form.suits(site.scene)) {
+    return Failure{"method '" + name + "': scene '" + site.scene.name + "' lacks " + std::string(form.needs)};
   }
-  return info->create(scene, *parameters);
+  if (on_device && !form.needs.empty()) site.renderer->device().require(form.needs, "method '" + name + "'");
+  Result<std::unique_ptr<Method>> made = form.create(site, *parameters);
+  if (!made || !site.renderer || on_device) return made;
+  return methods::draw_on_device(std::move(*made), *site.renderer);
 }
 
 }  // namespace sightline

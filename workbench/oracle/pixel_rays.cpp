@@ -33,10 +33,19 @@ PixelRays::PixelRays(const View& view) : width_(view.width), height_(view.height
   }
 }
 
+glm::dvec4 PixelRays::eye_point(std::uint32_t x, std::uint32_t y, double depth) const noexcept {
+  const double ndc_x = (2.0 * x + 1.0) / width_ - 1.0, ndc_y = 1.0 - (2.0 * y + 1.0) / height_;
+  return clip_to_eye_ * glm::dvec4(ndc_x, ndc_y, depth, 1);
+}
+
+double PixelRays::distance(std::uint32_t x, std::uint32_t y, double depth) const noexcept {
+  const glm::dvec4 near_eye = eye_point(x, y, near_depth_), at = eye_point(x, y, depth);
+  return glm::length(glm::dvec3(at) / at.w - glm::dvec3(near_eye) / near_eye.w);
+}
+
 PixelRay PixelRays::through(std::uint32_t x, std::uint32_t y) const noexcept {
   const double ndc_x = (2.0 * x + 1.0) / width_ - 1.0, ndc_y = 1.0 - (2.0 * y + 1.0) / height_;
-  const glm::dvec4 near_eye = clip_to_eye_ * glm::dvec4(ndc_x, ndc_y, near_depth_, 1);
-  const glm::dvec4 far_eye = clip_to_eye_ * glm::dvec4(ndc_x, ndc_y, far_depth_, 1);
+  const glm::dvec4 near_eye = eye_point(x, y, near_depth_), far_eye = eye_point(x, y, far_depth_);
   const glm::dvec4 near_world = clip_to_world_ * glm::dvec4(ndc_x, ndc_y, near_depth_, 1);
   PixelRay ray;
   ray.origin = glm::dvec3(near_world) / near_world.w;

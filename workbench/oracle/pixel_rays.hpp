@@ -22,8 +22,11 @@ public:
   explicit PixelRays(const View& view);
   /// Through the centre of pixel (x, y), row 0 at the top.
   [[nodiscard]] PixelRay through(std::uint32_t x, std::uint32_t y) const noexcept;
+  /// Metres along that ray to what lies at a clip depth.
+  [[nodiscard]] double distance(std::uint32_t x, std::uint32_t y, double depth) const noexcept;
 
 private:
+  [[nodiscard]] glm::dvec4 eye_point(std::uint32_t x, std::uint32_t y, double depth) const noexcept;
   glm::dmat4 clip_to_world_;
   glm::dmat3 eye_to_world_;
   glm::dmat4 clip_to_eye_;

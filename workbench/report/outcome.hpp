@@ -9,8 +9,7 @@
 #include <sightline/view.hpp>
 #include <sightline/workbench/scene.hpp>
 
-#include "workbench/measure/contestant.hpp"
-#include "workbench/oracle/embree_judge.hpp"
+#include "workbench/measure/bench.hpp"
 
 namespace sightline::report {
 
@@ -37,8 +36,7 @@ struct Snapshot {
 };
 
 /// Looks through one camera. Throws Error where it makes no view.
-Snapshot take_snapshot(const Scene& scene, const oracle::EmbreeJudge& judge,
-                       std::span<const measure::Contestant> contestants, const Camera& camera,
-                       std::size_t index, std::uint32_t width, std::uint32_t height);
+Snapshot take_snapshot(measure::Bench& bench, const Camera& camera, std::size_t index, std::uint32_t width,
+                       std::uint32_t height);
 
 }  // namespace sightline::report

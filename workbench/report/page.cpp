@@ -52,23 +52,24 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
   return length;
 }
 
+/// A cell with losses in the colour of losses, and the range behind a time in small.
+std::string cell_html(const std::string& column, const std::string& cell) {
+  if (column.starts_with("lost "))
+    return fmt::format("<td class=\"{}\">{}", cell == "0" ? "good" : "bad", cell);
+  const std::size_t range = cell.find(" [");
+  if (range == std::string::npos) return "<td>" + escape(cell);
+  return fmt::format("<td>{} <span class=\"range\">{}</span>", cell.substr(0, range), cell.substr(range + 1));
+}
+
 std::string table_html(const measure::Comparison& comparison) {
-  std::string out =
-      "<div class=\"wide\"><table><thead><tr><th>method<th>guarantee<th>kept<th>tested<th>draw "
-      "calls<th>triangles"
-      "<th>cull, ms [min–max]<th>lost objects<th>lost pixels<th>excess</tr></thead><tbody>\n";
-  for (const MethodSummary& s : summarise(comparison)) {
-    const auto loss = [&](std::uint64_t count) {
-      return fmt::format("<td class=\"{}\">{}", count == 0 ? "good" : "bad",
-                         format_count(static_cast<double>(count)));
-    };
-    out += fmt::format(
-        "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{} <span "
-        "class=\"range\">[{}–{}]</span>{}{}<td>{}</tr>\n",
-        escape(s.method), to_string(s.guarantee), format_count(s.kept), format_count(s.tested),
-        format_count(s.draw_calls), format_count(s.triangles), format_ms(s.cull.median),
-        format_ms(s.cull.min), format_ms(s.cull.max), loss(s.lost_objects), loss(s.lost_pixels),
-        format_count(s.excess));
+  const Table table = summary_table(comparison);
+  std::string out = "<div class=\"wide\"><table><thead><tr>";
+  for (const std::string& column : table.header) out += "<th>" + escape(column);
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (std::size_t c = 0; c < row.size(); ++c) out += cell_html(table.header[c], row[c]);
+    out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
 }
@@ -80,17 +81,20 @@ std::string data_json(const measure::Comparison& comparison) {
   data["views"] = Json::array();
   for (std::size_t v = 0; v < comparison.cameras.size(); ++v) data["views"].push_back(v);
   data["truly_visible"] = Json::array();
-  for (const char* name : {"cull_ms", "kept", "triangles", "draw_calls"}) data[name] = Json::array();
+  for (const char* name : {"cull_ms", "frame_ms", "kept", "triangles", "draw_calls"})
+    data[name] = Json::array();
   for (const MethodSummary& s : summarise(comparison)) {
-    Json times = Json::array(), kept = Json::array();
+    Json times = Json::array(), frames = Json::array(), kept = Json::array();
     const bool first = data["kept"].empty();
     for (const measure::Row& row : comparison.rows) {
       if (row.method != s.method) continue;
-      times.push_back(row.cull.median);
+      times.push_back(row.cull.median + (row.cull_gpu ? row.cull_gpu->median : 0));
+      if (row.frame) frames.push_back(row.frame->median);
       kept.push_back(row.kept);
       if (first) data["truly_visible"].push_back(row.truly_visible);
     }
     data["cull_ms"].push_back(std::move(times));
+    if (comparison.drawn()) data["frame_ms"].push_back(std::move(frames));
     data["kept"].push_back(std::move(kept));
     data["triangles"].push_back(std::round(s.triangles));
     data["draw_calls"].push_back(std::round(10 * s.draw_calls) / 10);
@@ -187,11 +191,14 @@ std::string make_page(const PageContent& content) {
       scene + " – Sightline</title>\n<style>\n";
   page.append(kPageStyle).append("</style></head>\n<body><main>\n");
   page += "<header><h1>What not to draw of " + scene + "</h1><p>Sightline " + escape(kVersion) + " on " +
-          machine_html(comparison.machine) + "</p>" + facts_html(content) + "</header>\n";
+          machine_html(comparison.machine) +
+          (comparison.drawn() ? ", drawn by " + escape(comparison.device) : "") + "</p>" +
+          facts_html(content) + "</header>\n";
   page += "<p class=\"verdict\">" + escape(verdict(comparison)) + "</p>\n";
   page += "<h2>The methods</h2>\n" + table_html(comparison);
   page +=
       "<h2>Along the path</h2>\n<div class=\"charts\">" + chart_html("cull-time", "Culling time, a view") +
+      (comparison.drawn() ? chart_html("frame-time", "Frame time, a view") : "") +
       chart_html("kept", "Objects kept, beside those visible") +
       chart_html("triangles", "Triangles left to draw") + chart_html("draw-calls", "Draw calls") + "</div>\n";
   page += "<h2>The truth</h2>\n<figure class=\"item\"><img src=\"" + escape(content.item_buffer) +
@@ -209,8 +216,9 @@ std::string make_page(const PageContent& content) {
     page += fate_html(content.snapshot.methods[m], content.top_views[m]);
   }
   page +=
-      "</div>\n<footer><p>Lost: visible in the item buffer, which rays through pixel centres make, and not "
-      "in the "
+      "</div>\n<footer><p>Lost: visible in the item buffer, which rays through pixel centres or, where "
+      "frames "
+      "were drawn, the rasteriser makes, and not in the "
       "method's set. Excess: kept though no pixel shows it. Kept, tested, draw calls, triangles and excess "
       "are means "
       "over the views, losses are sums. Times are medians of the views' medians, with the least and the "

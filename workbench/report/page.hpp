@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/compare.hpp"
 #include "workbench/report/outcome.hpp"
 #include "workbench/report/table.hpp"
 

@@ -60,6 +60,7 @@
       line("cull-time", "milliseconds", each(data.cull_ms), true),
       line("kept", "objects", each(data.kept).concat(
         [{ label: "visible in truth", values: data.truly_visible, colour: colour("--ink"), width: 2.5 }]), true),
+      ...(data.frame_ms.length ? [line("frame-time", "milliseconds", each(data.frame_ms), true)] : []),
       bars("triangles", "triangles a view, mean", data.triangles),
       bars("draw-calls", "draw calls a view, mean", data.draw_calls),
     ];

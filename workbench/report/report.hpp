@@ -5,7 +5,7 @@
 
 #include <sightline/workbench/scene.hpp>
 
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/compare.hpp"
 #include "workbench/report/outcome.hpp"
 
 namespace sightline::report {

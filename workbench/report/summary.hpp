@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/compare.hpp"
 #include "workbench/report/table.hpp"
 
 namespace sightline::report {
@@ -13,24 +13,34 @@ namespace sightline::report {
 struct MethodSummary {
   std::string method;
   Guarantee guarantee = Guarantee::exact;
-  double kept = 0, tested = 0, draw_calls = 0, triangles = 0, excess = 0, truly_visible = 0;
-  measure::Timing cull;  ///< median of the views' medians; least and greatest over all repeats
+  double kept = 0, tested = 0, cull_vertices = 0, draw_calls = 0, triangles = 0, excess = 0,
+         truly_visible = 0;
+  measure::Timing cull;  ///< on the CPU: median of the views' medians; least and greatest over all repeats
+  double cpu_ms = 0, gpu_ms = 0, frame_ms = 0;  ///< means of the views' medians; 0 where nothing was drawn
   std::uint64_t lost_objects = 0, lost_pixels = 0;
   std::size_t views_with_loss = 0;
+
+  [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
 
 /// In the order of the methods.
 std::vector<MethodSummary> summarise(const measure::Comparison& comparison);
+
+/// One line a method: what it kept, what that cost, what it lost.
+Table summary_table(const measure::Comparison& comparison);
+
+/// How many times as fast as the first method's frames the others' are, over the views in which less than
+/// `share` of the scene's objects is visible: one line a method, the median, least and greatest. Empty where
+/// nothing was drawn.
+Table ratio_table(const measure::Comparison& comparison, double share = 0.2);
 
 /// What a mean frame would cost on an assumed GPU, for weighing what a method leaves to draw against the time
 /// it takes to decide. An assumption, to be named beside every use.
 inline constexpr double kTrianglesPerMillisecond = 1e6, kDrawCallsPerMillisecond = 1000;
 double estimated_frame_ms(const MethodSummary& summary) noexcept;
 
-/// A paragraph: which method this scene wants, and what that is based on.
+/// A paragraph: which method this scene wants, and what that is based on: the frames that were drawn, or
+/// where none were, culling times and that assumption.
 std::string verdict(const measure::Comparison& comparison);
-
-/// One line a method: what it kept, what that cost, what it lost.
-Table summary_table(const measure::Comparison& comparison);
 
 }  // namespace sightline::report

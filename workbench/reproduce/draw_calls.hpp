@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include <sightline/workbench/progress.hpp>
+
 #include "workbench/camera/camera_path.hpp"
 #include "workbench/device/device.hpp"
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/timing.hpp"
 #include "workbench/report/table.hpp"
 #include "workbench/reproduce/draw_call_levels.hpp"
 

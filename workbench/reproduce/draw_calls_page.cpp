@@ -2,6 +2,8 @@
 // cells.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <system_error>
 

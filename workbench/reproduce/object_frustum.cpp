@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -58,20 +57,14 @@ Scene object_frustum_scene() {
   return or_throw(generate_world("forest?trees=30000&size=1000"));
 }
 
-std::vector<measure::Contestant> object_frustum_contestants(const Scene& scene) {
-  const std::array<std::string, 2> names{"grid-cell", "object-frustum"};
-  return measure::make_contestants(scene, names);
-}
-
-ObjectFrustumReproduction reproduce_object_frustum(const Scene& scene, const oracle::EmbreeJudge& judge,
-                                                   std::span<const measure::Contestant> contestants,
-                                                   bool quick, const Progress& progress) {
+ObjectFrustumReproduction reproduce_object_frustum(measure::Bench& bench, bool quick,
+                                                   const Progress& progress) {
   ObjectFrustumReproduction out;
   measure::MeasureOptions options;
   options.repeats = quick ? 11 : 101;
-  out.comparison = measure::compare(scene, judge, contestants, object_frustum_path(scene), options, progress);
+  out.comparison = measure::compare(bench, object_frustum_path(bench.scene()), options, progress);
 
-  const double objects = static_cast<double>(scene.size());
+  const double objects = static_cast<double>(bench.scene().size());
   out.runs.header = {"run",    "grid-cell kept", "ms", "object-frustum kept",
                      "tested", "share tested",   "ms", "ms ratio"};
   Sums all;

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "workbench/measure/measure.hpp"
+#include "workbench/measure/compare.hpp"
 #include "workbench/report/table.hpp"
 
 namespace sightline::reproduce {
@@ -31,12 +32,12 @@ Scene object_frustum_scene();
 /// The ten views.
 camera::CameraPath object_frustum_path(const Scene& scene);
 
-/// Ten runs; `quick` repeats each less often. Throws Error as compare() does.
-ObjectFrustumReproduction reproduce_object_frustum(const Scene& scene, const oracle::EmbreeJudge& judge,
-                                                   std::span<const measure::Contestant> contestants,
-                                                   bool quick, const Progress& progress = {});
-
 /// The two methods, grid-cell first.
-std::vector<measure::Contestant> object_frustum_contestants(const Scene& scene);
+inline const std::vector<std::string> kObjectFrustumMethods{"grid-cell", "object-frustum"};
+
+/// Ten runs of those on the bench, which is on the CPU; `quick` repeats each less often. Throws Error as
+/// compare() does.
+ObjectFrustumReproduction reproduce_object_frustum(measure::Bench& bench, bool quick,
+                                                   const Progress& progress = {});
 
 }  // namespace sightline::reproduce

@@ -60,7 +60,7 @@ bool same_hits(const rays::RayHits& a, const rays::RayHits& b) {
 
 void draw(device::Renderer& renderer, Method& method, const View& view, double* ms) {
   Frame frame;
-  method.cull(view, frame);
+  cull(method, view, frame);
   const device::FrameTimes times = renderer.frame(view, [&](device::Recorder& recorder) {
     const auto pass = recorder.pass("draw", device::PassKind::draw);
     renderer.draw(recorder, frame.visible, frame.draws);
@@ -101,9 +101,9 @@ void judge_model(const Scene& scene, const View& view, const rays::RayHits& hits
   for (const std::uint32_t pixels : truth.pixels) out.object_pixels += pixels;
   const auto guided = or_throw(create_method("guided", scene));
   Frame frame;
-  guided->cull(view, frame);
+  cull(*guided, view, frame);
   const auto start = Clock::now();
-  guided->cull(view, frame);
+  cull(*guided, view, frame);
   out.guided_ms = ms_since(start);
   out.guided_lost_pixels = oracle::compare_to_truth(truth, frame.visible).lost_pixels;
   out.guided_rays = frame.stats.rays;
@@ -190,7 +190,7 @@ std::vector<RegionTime> measure_regions(int number, device::Device& device, cons
         if (round > 0) everything.push_back(a), pvs.push_back(b);
       }
       Frame frame;
-      boca->cull(view, frame);
+      cull(*boca, view, frame);
       region.kept = frame.visible.size();
       region.everything_ms = median(everything);
       region.pvs_ms = median(pvs);

@@ -39,7 +39,7 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
     const View view = or_throw(make_view(camera, kRaySceneWidth, kRaySceneHeight));
     const oracle::ItemBuffer truth = judge.render(view);
     const auto start = std::chrono::steady_clock::now();
-    guided->cull(view, frame);
+    cull(*guided, view, frame);
     out.guided_ms +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     const std::uint64_t pixels = truth.ids.size(),
@@ -51,7 +51,7 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
     out.guided_over += share > kGuidedTarget;
     out.pixels += pixels;
 
-    triangles->cull(view, frame);
+    cull(*triangles, view, frame);
     const oracle::Loss loss = oracle::compare_to_truth(truth, frame.visible);
     const auto blocks = oracle::objects_with_block(truth, kRaySceneWidth / kRays, kRaySceneHeight / kRays);
     out.triangle_lost += loss.lost.size();

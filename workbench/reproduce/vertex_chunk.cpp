@@ -33,13 +33,13 @@ constexpr Published kIrregular{
     {203, 178, 91, 62, 11},          {37, 33, 31, 36, 9}, {223, 182, 92, 83, 12}};
 constexpr std::array<std::size_t, 5> kPaperOrder{kChunk, kHroc, kRoc, kVfc, kNone};
 
-double cull_ms(const report::DeviceSummary& s) {
+double cull_ms(const report::MethodSummary& s) {
   return s.cpu_ms + s.gpu_ms;
 }
 
 // "12.3 (1.00 / 1.00)": ours, and both as ratios to vertex-chunk.
 template <class Value>
-std::vector<std::string> line(std::string name, const std::vector<report::DeviceSummary>& ours,
+std::vector<std::string> line(std::string name, const std::vector<report::MethodSummary>& ours,
                               const std::array<double, 5>& published, Value value, bool whole) {
   std::vector<std::string> cells{std::move(name)};
   const double base = value(ours[kChunk]);
@@ -65,11 +65,11 @@ report::Table table_of(std::string title) {
 }
 
 std::vector<report::Table> make_tables(const VertexChunkWorld& world, const Published& published) {
-  const std::vector<report::DeviceSummary> near = report::summarise_on_device(world.near),
-                                           far = report::summarise_on_device(world.far),
-                                           rising = report::summarise_on_device(world.rising);
+  const std::vector<report::MethodSummary> near = report::summarise(world.near),
+                                           far = report::summarise(world.far),
+                                           rising = report::summarise(world.rising);
   const double objects = static_cast<double>(world.near.rows.front().stats.objects);
-  const auto fps = [](const report::DeviceSummary& s) { return s.fps(); };
+  const auto fps = [](const report::MethodSummary& s) { return s.fps(); };
   std::vector<report::Table> out;
   out.push_back(table_of("1: vertices into the culling pass"));
   out.back().rows.push_back(line(
@@ -160,29 +160,26 @@ Camera vertex_chunk_far(const Scene& scene) {
 VertexChunkWorld reproduce_vertex_chunk(device::Device& device, const std::string& name,
                                         const VertexChunkOptions& options, const Progress& progress) {
   Scene scene = vertex_chunk_scene(name, options.quick);
-  measure::Workbench bench(device, scene, kMethods);
-  measure::DeviceMeasureOptions measure;
-  measure.measure.width = options.quick ? 640 : 1280;
-  measure.measure.height = options.quick ? 360 : 720;
-  measure.measure.repeats = measure.timed_passes = 15;
+  measure::Bench bench(scene, kMethods, &device);
+  measure::MeasureOptions measure;
+  measure.width = options.quick ? 640 : 1280;
+  measure.height = options.quick ? 360 : 720;
+  measure.repeats = measure.timed_passes = 15;
   VertexChunkWorld world;
   world.name = name;
-  world.near = measure::compare_on_device(bench, {"near", {vertex_chunk_near(scene)}}, measure);
+  world.near = measure::compare(bench, {"near", {vertex_chunk_near(scene)}}, measure);
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
-  measure.measure.warm_up = 2;
-  measure.measure.repeats = 1, measure.timed_passes = 0;
-  world.rising =
-      measure::compare_on_device(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
-  measure.measure.repeats = options.quick ? 7 : 5, measure.timed_passes = 3;
-  world.far = measure::compare_on_device(bench, {"far", {vertex_chunk_far(scene)}}, measure);
+  measure.warm_up = 2;
+  measure.repeats = 1, measure.timed_passes = 0;
+  world.rising = measure::compare(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
+  measure.repeats = options.quick ? 7 : 5, measure.timed_passes = 3;
+  world.far = measure::compare(bench, {"far", {vertex_chunk_far(scene)}}, measure);
   world.tables = make_tables(world, name == "regular" ? kRegular : kIrregular);
   world.rising_fps = rising_table(world.rising);
   if (options.pictures) {
-    world.pictures = take_vertex_chunk_pictures(
-        bench, name,
-        or_throw(make_view(world.near.cameras.front(), measure.measure.width, measure.measure.height)),
-        *bench.contestants()[kChunk].method);
+    const View near = or_throw(make_view(world.near.cameras.front(), measure.width, measure.height));
+    world.pictures = take_vertex_chunk_pictures(bench, name, near, bench.subjects()[kChunk]);
   }
   return world;
 }

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "workbench/measure/device_measure.hpp"
-#include "workbench/report/device_table.hpp"
+#include "workbench/device/renderer.hpp"
+#include "workbench/measure/compare.hpp"
+#include "workbench/report/summary.hpp"
 
 namespace sightline::reproduce {
 
@@ -37,7 +38,7 @@ Scene vertex_chunk_scene(const std::string& world, bool quick);
 Camera vertex_chunk_near(const Scene& scene);
 Camera vertex_chunk_far(const Scene& scene);
 
-/// Measures one world. Throws Error as Workbench and compare_on_device do.
+/// Measures one world. Throws Error as Bench and compare() do.
 VertexChunkWorld reproduce_vertex_chunk(device::Device& device, const std::string& world,
                                         const VertexChunkOptions& options, const Progress& progress = {});
 

@@ -58,26 +58,26 @@ std::vector<std::uint32_t> chunk_colours(const Scene& scene) {
 
 }  // namespace
 
-std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Workbench& bench,
+std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Bench& bench,
                                                                   const std::string& world, const View& near,
-                                                                  methods::DeviceMethod& method) {
+                                                                  measure::Subject& subject) {
   const Scene& scene = bench.scene();
-  for (int settle = 0; settle < 2; ++settle) bench.draw(method, near);
+  for (int settle = 0; settle < 2; ++settle) bench.run(subject, near);
   std::vector<VertexChunkWorld::Picture> pictures;
-  pictures.push_back({world + "-near.png", "The near view.", bench.renderer().picture()});
-  Frame frame;
-  method.read_back(frame);
-  std::vector<std::uint32_t> fates(scene.size(), kCulled);
-  for (const ObjectId object : frame.visible) fates[object] = kKept;
+  pictures.push_back({world + "-near.png", "The near view.", bench.renderer()->picture()});
+  subject.method->read_back(subject.frame);
+  std::vector<std::uint32_t> colours(scene.size(), kCulled);
+  for (const ObjectId object : subject.frame.visible) colours[object] = kKept;
   const View aside = or_throw(make_view(aside_of(scene), near.width, near.height));
-  bench.draw(bench.reference(), aside);
-  const device::Picture lit = bench.renderer().picture();
-  const oracle::ItemBuffer items = bench.judge(aside);
+  measure::Subject everything{"none", or_throw(create_method("none", MethodSite{scene, bench.renderer()}))};
+  bench.run(everything, aside);
+  const device::Picture lit = bench.renderer()->picture();
+  const oracle::ItemBuffer items = bench.oracle().look(aside);
   pictures.push_back(
       {world + "-kept.png",
        "Seen from the side: orange is what vertex-chunk keeps of the near view, whose eye is in the "
        "middle and looks to the right; grey is what it culls.",
-       painted(lit, items, fates)});
+       painted(lit, items, colours)});
   pictures.push_back(
       {world + "-chunks.png",
        "The chunks, each in a colour; dark is what crosses a border between regions, in shared "

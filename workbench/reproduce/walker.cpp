@@ -35,7 +35,7 @@ Walker::Times Walker::draw(device::Renderer& renderer, const View& view) {
   const device::FrameTimes times = renderer.frame(view, [&](device::Recorder& recorder) {
     const auto begin = std::chrono::steady_clock::now();
     if (culls()) {
-      method_->cull(view, frame_);
+      cull(*method_, view, frame_);
     } else if (what_ == What::everything) {
       const auto count = static_cast<std::uint32_t>(method_->geometry()->objects.size());
       frame_.clear();
@@ -45,7 +45,7 @@ Walker::Times Walker::draw(device::Renderer& renderer, const View& view) {
     out.cull_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     draws_->draw(recorder, frame_.draws, method_->geometry()->submission);
   });
-  method_->took(times.frame_ms);
+  method_->report_frame_time(times.frame_ms);
   out.frame_ms = times.frame_ms, out.record_ms = times.record_ms;
   return out;
 }

@@ -11,7 +11,7 @@
 
 namespace sightline::methods {
 
-class Adaptive final : public Method {
+class Adaptive final : public CpuMethod {
 public:
   /// One of `plans`, submitted one way.
   struct Way {
@@ -25,7 +25,7 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
   void update(std::span<const ObjectId> moved) override;
   void cull(const View& view, Frame& frame) noexcept override;
-  void took(double milliseconds) noexcept override { trials_.took(milliseconds); }
+  void report_frame_time(double milliseconds) noexcept override { trials_.report_frame_time(milliseconds); }
   /// The triangles of all plans, one after the other; submission is that of the last frame's way.
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
 

@@ -159,7 +159,8 @@ std::vector<Adaptive::Way> ways_of(const std::vector<const Reckoning*>& chosen, 
   return ways;
 }
 
-Result<std::unique_ptr<Method>> make_method(const Scene& scene, const Parameters& parameters) {
+Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+  const Scene& scene = site.scene;
   const Costs given{parameters.number("call-ns"), parameters.number("command-ns"),
                     parameters.number("triangle-ns")};
   const bool many = triangle_count(scene) > kMany;
@@ -195,14 +196,10 @@ Result<std::unique_ptr<Method>> make_method(const Scene& scene, const Parameters
 
 }  // namespace
 
-const MethodInfo kAdaptive{
-    "adaptive",
-    "",
-    "the structure, height and submission whose frames turn out quickest, told what they took",
-    Guarantee::exact,
-    kFlattenNeeds,
-    kParameters,
-    can_flatten,
-    make_method};
+extern const MethodInfo kAdaptive{
+    .name = "adaptive",
+    .paper = "",
+    .summary = "the structure, height and submission whose frames turn out quickest, told what they took",
+    .cpu = {Guarantee::exact, kParameters, make_method, kFlattenNeeds, can_flatten}};
 
 }  // namespace sightline::methods

@@ -13,7 +13,8 @@ constexpr std::array kParameters{
     ParameterInfo{"submission", "each cluster a call, all by one multi-draw, or neighbouring clusters merged",
                   "merged", 0, 0, false, "calls|multi-draw|merged"}};
 
-Result<std::unique_ptr<Method>> make_method(const Scene& scene, const Parameters& parameters) {
+Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+  const Scene& scene = site.scene;
   DrawCallPlan plan;
   plan.clusters = true;
   plan.cluster_size = parameters.count("size");
@@ -24,13 +25,10 @@ Result<std::unique_ptr<Method>> make_method(const Scene& scene, const Parameters
 
 }  // namespace
 
-const MethodInfo kClusterCone{"cluster-cone",
-                              "",
-                              "clusters of triangles with bounds and normal cones, neighbours merged",
-                              Guarantee::exact,
-                              kFlattenNeeds,
-                              kParameters,
-                              can_flatten,
-                              make_method};
+extern const MethodInfo kClusterCone{
+    .name = "cluster-cone",
+    .paper = "",
+    .summary = "clusters of triangles with bounds and normal cones, neighbours merged",
+    .cpu = {Guarantee::exact, kParameters, make_method, kFlattenNeeds, can_flatten}};
 
 }  // namespace sightline::methods

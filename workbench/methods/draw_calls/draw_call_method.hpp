@@ -29,7 +29,7 @@ struct TriangleLists {
   std::vector<ObjectId> objects;
 };
 
-class DrawCallMethod : public Method {
+class DrawCallMethod : public CpuMethod {
 public:
   DrawCallMethod(const Scene& scene, const DrawCallPlan& plan);
 

@@ -23,7 +23,8 @@ constexpr std::array kPlainParameters{kHeight, kSubmission};
 constexpr std::array kZhangParameters{kHeight, kSubmission, kFacing};
 
 template <Structure S, Strategy V>
-Result<std::unique_ptr<Method>> make_method(const Scene& scene, const Parameters& parameters) {
+Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+  const Scene& scene = site.scene;
   DrawCallPlan plan;
   plan.structure = S;
   plan.strategy = V;
@@ -45,15 +46,14 @@ constexpr std::array<std::string_view, 3> kSummaries{
 
 template <std::size_t V, std::size_t S>
 constexpr MethodInfo info() {
-  return {kNames[V][S],
-          "D: Serpa, Serpa & Rodrigues",
-          kSummaries[V],
-          Guarantee::exact,
-          kFlattenNeeds,
-          V == 2 ? std::span<const ParameterInfo>(kZhangParameters)
-                 : std::span<const ParameterInfo>(kPlainParameters),
-          can_flatten,
-          make_method<static_cast<Structure>(S), static_cast<Strategy>(V)>};
+  const auto parameters = V == 2 ? std::span<const ParameterInfo>(kZhangParameters)
+                                 : std::span<const ParameterInfo>(kPlainParameters);
+  return {
+      .name = kNames[V][S],
+      .paper = "D: Serpa, Serpa & Rodrigues",
+      .summary = kSummaries[V],
+      .cpu = {Guarantee::exact, parameters, make_method<static_cast<Structure>(S), static_cast<Strategy>(V)>,
+              kFlattenNeeds, can_flatten}};
 }
 
 template <std::size_t... I>
@@ -71,6 +71,6 @@ Submission submission_from(const Parameters& parameters) noexcept {
   return Submission::calls;
 }
 
-const std::array<MethodInfo, 9> kDrawCallMethods = product(std::make_index_sequence<9>{});
+extern const std::array<MethodInfo, 9> kDrawCallMethods = product(std::make_index_sequence<9>{});
 
 }  // namespace sightline::methods

@@ -1,15 +1,9 @@
-// What paper D gives to the registry.
+// What the methods of paper D share.
 #pragma once
-
-#include <array>
 
 #include "workbench/methods/methods.hpp"
 
 namespace sightline::methods {
-
-extern const std::array<MethodInfo, 9> kDrawCallMethods;
-extern const MethodInfo kClusterCone;
-extern const MethodInfo kAdaptive;
 
 /// The parameter `submission`.
 Submission submission_from(const Parameters& parameters) noexcept;

@@ -36,7 +36,7 @@ Trials::Trials(std::uint32_t ways, std::uint32_t first)
   std::swap(order_[0], order_[first]);
 }
 
-void Trials::took(double time) noexcept {
+void Trials::report_frame_time(double time) noexcept {
   if (!(time > 0) || !std::isfinite(time)) return;
   if (settled_) {
     watch(time);

@@ -25,7 +25,7 @@ public:
   [[nodiscard]] std::uint32_t current() const noexcept { return current_; }
   /// What the last frame of the current way took, in any unit; the turn passes on. What is not a positive
   /// time is ignored.
-  void took(double time) noexcept;
+  void report_frame_time(double time) noexcept;
   [[nodiscard]] bool settled() const noexcept { return settled_; }
   /// The one settled on; until then the best so far.
   [[nodiscard]] std::uint32_t winner() const noexcept { return ways_.front().id; }

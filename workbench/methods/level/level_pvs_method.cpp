@@ -18,13 +18,13 @@ struct Leaves {
 
 }  // namespace
 
-const MethodInfo kLevelPvs{"level-pvs",
-                           "the level's compiler (Quake 3)",
-                           "the level's own visible set, then the frustum",
-                           Guarantee::approximate,
-                           "a level's PVS (a .bsp file)",
-                           {},
-                           [](const Scene& scene) { return scene.level.has_value(); },
-                           make<RegionPvs<Leaves>>};
+extern const MethodInfo kLevelPvs{.name = "level-pvs",
+                                  .paper = "the level's compiler (Quake 3)",
+                                  .summary = "the level's own visible set, then the frustum",
+                                  .cpu = {Guarantee::approximate,
+                                          {},
+                                          make_on_cpu<RegionPvs<Leaves>>,
+                                          "a level's PVS (a .bsp file)",
+                                          [](const Scene& scene) { return scene.level.has_value(); }}};
 
 }  // namespace sightline::methods

@@ -14,7 +14,7 @@ namespace sightline::methods {
 /// `Regions` is made from a scene; region_at(eye) names the eye's region, and mark(eye, region, mask) writes
 /// 1 for each object that may be seen from it and 0 for the rest.
 template <class Regions>
-class RegionPvs final : public Method {
+class RegionPvs final : public CpuMethod {
 public:
   RegionPvs(const Scene& scene, const Parameters&)
       : scene_(scene),

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array kParameters{kCellParameter, submission::kBoundsParameter};
 
-class GridCell final : public Method {
+class GridCell final : public CpuMethod {
 public:
   GridCell(const Scene& scene, const Parameters& parameters)
       : objects_(scene, parameters), draw_list_(scene) {}
@@ -51,13 +51,9 @@ private:
 
 }  // namespace
 
-const MethodInfo kGridCell{"grid-cell",
-                           "C: Le Hoang Minh et al. 2022",
-                           "whole cells of a ground grid against the frustum",
-                           Guarantee::conservative,
-                           "",
-                           kParameters,
-                           fits_any_scene,
-                           make<GridCell>};
+extern const MethodInfo kGridCell{.name = "grid-cell",
+                                  .paper = "C: Le Hoang Minh et al. 2022",
+                                  .summary = "whole cells of a ground grid against the frustum",
+                                  .cpu = on_cpu<GridCell>(Guarantee::conservative, kParameters)};
 
 }  // namespace sightline::methods

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array kParameters{kCellParameter, submission::kBoundsParameter};
 
-class ObjectFrustum final : public Method {
+class ObjectFrustum final : public CpuMethod {
 public:
   ObjectFrustum(const Scene& scene, const Parameters& parameters)
       : objects_(scene, parameters), draw_list_(scene) {
@@ -75,13 +75,10 @@ private:
 
 }  // namespace
 
-const MethodInfo kObjectFrustum{"object-frustum",
-                                "C: Le Hoang Minh et al. 2022",
-                                "cells inside the frustum whole, objects of crossing cells one by one",
-                                Guarantee::conservative,
-                                "",
-                                kParameters,
-                                fits_any_scene,
-                                make<ObjectFrustum>};
+extern const MethodInfo kObjectFrustum{
+    .name = "object-frustum",
+    .paper = "C: Le Hoang Minh et al. 2022",
+    .summary = "cells inside the frustum whole, objects of crossing cells one by one",
+    .cpu = on_cpu<ObjectFrustum>(Guarantee::conservative, kParameters)};
 
 }  // namespace sightline::methods

@@ -64,12 +64,10 @@ private:
 
 }  // namespace
 
-const DeviceMethodInfo kHiz{"hiz",
-                            "E: Haar & Aaltonen 2015",
-                            "boxes against a pyramid of last frame's visible objects' depth, in two passes",
-                            Guarantee::exact,
-                            "",
-                            kOcclusionParameters,
-                            make_on_device<Hiz>};
+extern const MethodInfo kHiz{
+    .name = "hiz",
+    .paper = "E: Haar & Aaltonen 2015",
+    .summary = "boxes against a pyramid of last frame's visible objects' depth, in two passes",
+    .device = on_device<Hiz>(Guarantee::exact, kOcclusionParameters)};
 
 }  // namespace sightline::methods

@@ -149,12 +149,10 @@ private:
 
 }  // namespace
 
-const DeviceMethodInfo kHroc{"hroc",
-                             "A: Lee & Shin 2023",
-                             "roc on the boxes of a tree, level by level from last frame's visible nodes",
-                             Guarantee::exact,
-                             "",
-                             kOcclusionParameters,
-                             make_on_device<Hroc>};
+extern const MethodInfo kHroc{
+    .name = "hroc",
+    .paper = "A: Lee & Shin 2023",
+    .summary = "roc on the boxes of a tree, level by level from last frame's visible nodes",
+    .device = on_device<Hroc>(Guarantee::exact, kOcclusionParameters)};
 
 }  // namespace sightline::methods

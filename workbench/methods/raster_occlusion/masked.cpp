@@ -38,7 +38,7 @@ WorldBox wide(const Box& b) {
   return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
 }
 
-class Masked final : public Method {
+class Masked final : public CpuMethod {
 public:
   Masked(const Scene& scene, const Parameters& parameters)
       : scene_(scene),
@@ -300,13 +300,10 @@ private:
 
 }  // namespace
 
-const MethodInfo kMasked{"masked",
-                         "Hasselgren et al. 2016",
-                         "occluders into a hierarchical depth buffer on the CPU, then boxes against it",
-                         Guarantee::conservative,
-                         "",
-                         kParameters,
-                         fits_any_scene,
-                         make<Masked>};
+extern const MethodInfo kMasked{
+    .name = "masked",
+    .paper = "Hasselgren et al. 2016",
+    .summary = "occluders into a hierarchical depth buffer on the CPU, then boxes against it",
+    .cpu = on_cpu<Masked>(Guarantee::conservative, kParameters)};
 
 }  // namespace sightline::methods

@@ -63,7 +63,8 @@ MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
       contribution_(submission::contribution_from(parameters)),
       draws_(renderer.draws().make_buffers(renderer.device())) {}
 
-void MarkAndDraw::record(device::Recorder& frame) {
+void MarkAndDraw::record(FrameContext& context) {
+  device::Recorder& frame = *context.recorder;
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);
     renderer_.draw_opaque(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);

@@ -4,7 +4,8 @@
 
 #include <array>
 
-#include "workbench/methods/raster_occlusion/device_methods.hpp"
+#include "workbench/device/renderer.hpp"
+#include "workbench/methods/methods.hpp"
 #include "workbench/submission/contribution.hpp"
 
 namespace sightline::methods {
@@ -34,12 +35,12 @@ void report_visible(const device::Renderer& renderer, std::span<const std::uint3
 
 /// The frame of roc, hroc and vertex-chunk: last frame's visible objects lay down depth for this frame's
 /// camera; boxes are tested against it; what is marked is drawn.
-class MarkAndDraw : public DeviceMethod {
+class MarkAndDraw : public Method {
 public:
   MarkAndDraw(device::Renderer& renderer, const Parameters& parameters);
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
-  void record(device::Recorder& frame) final;
+  void record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 
 protected:

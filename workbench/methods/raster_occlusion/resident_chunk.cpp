@@ -202,13 +202,10 @@ private:
 
 }  // namespace
 
-const DeviceMethodInfo kResidentChunk{
-    "resident-chunk",
-    "beyond A",
-    "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
-    Guarantee::exact,
-    "",
-    kParameters,
-    make_on_device<ResidentChunk>};
+extern const MethodInfo kResidentChunk{
+    .name = "resident-chunk",
+    .paper = "beyond A",
+    .summary = "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
+    .device = on_device<ResidentChunk>(Guarantee::exact, kParameters)};
 
 }  // namespace sightline::methods

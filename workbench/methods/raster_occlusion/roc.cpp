@@ -44,12 +44,9 @@ private:
 
 }  // namespace
 
-const DeviceMethodInfo kRoc{"roc",
-                            "A: Lee & Shin 2023",
-                            "every object's box rasterised against last frame's visible objects",
-                            Guarantee::exact,
-                            "",
-                            kOcclusionParameters,
-                            make_on_device<Roc>};
+extern const MethodInfo kRoc{.name = "roc",
+                             .paper = "A: Lee & Shin 2023",
+                             .summary = "every object's box rasterised against last frame's visible objects",
+                             .device = on_device<Roc>(Guarantee::exact, kOcclusionParameters)};
 
 }  // namespace sightline::methods

@@ -64,7 +64,8 @@ TwoPhase::TwoPhase(Renderer& renderer, const submission::Contribution& contribut
       again_(renderer.draws().make_buffers(renderer.device())),
       next_(renderer.draws().make_buffers(renderer.device())) {}
 
-void TwoPhase::record(device::Recorder& frame) {
+void TwoPhase::record(FrameContext& context) {
+  device::Recorder& frame = *context.recorder;
   begin_frame(frame);
   {
     const auto pass = frame.pass("draw last frame's visible objects", PassKind::draw);

@@ -8,12 +8,12 @@
 
 namespace sightline::methods {
 
-class TwoPhase : public DeviceMethod {
+class TwoPhase : public Method {
 public:
   TwoPhase(device::Renderer& renderer, const submission::Contribution& contribution);
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
-  void record(device::Recorder& frame) final;
+  void record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 
 protected:

@@ -86,13 +86,10 @@ private:
 
 }  // namespace
 
-const DeviceMethodInfo kVertexChunk{
-    "vertex-chunk",
-    "A: Lee & Shin 2023",
-    "chunks culled on the CPU; one vertex an object becomes its box, tested by early z",
-    Guarantee::exact,
-    "geometryShader",
-    kParameters,
-    make_on_device<VertexChunk>};
+extern const MethodInfo kVertexChunk{
+    .name = "vertex-chunk",
+    .paper = "A: Lee & Shin 2023",
+    .summary = "chunks culled on the CPU; one vertex an object becomes its box, tested by early z",
+    .device = {Guarantee::exact, kParameters, make_on_device<VertexChunk>, "geometryShader"}};
 
 }  // namespace sightline::methods

@@ -23,13 +23,13 @@ struct BakedCells {
 
 }  // namespace
 
-const MethodInfo kBaked{"baked",
-                        "",
-                        "the visible set baked for the eye's cell, then the frustum",
-                        Guarantee::approximate,
-                        "a baked PVS (sightline bake, --pvs FILE)",
-                        {},
-                        [](const Scene& scene) { return scene.cells != nullptr; },
-                        make<RegionPvs<BakedCells>>};
+extern const MethodInfo kBaked{.name = "baked",
+                               .paper = "",
+                               .summary = "the visible set baked for the eye's cell, then the frustum",
+                               .cpu = {Guarantee::approximate,
+                                       {},
+                                       make_on_cpu<RegionPvs<BakedCells>>,
+                                       "a baked PVS (sightline bake, --pvs FILE)",
+                                       [](const Scene& scene) { return scene.cells != nullptr; }}};
 
 }  // namespace sightline::methods

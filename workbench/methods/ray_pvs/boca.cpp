@@ -25,13 +25,9 @@ private:
 
 }  // namespace
 
-const MethodInfo kBoca{"boca",
-                       kRayPaper,
-                       "100 x 100 rays down a bounding volume hierarchy",
-                       Guarantee::approximate,
-                       "",
-                       kParameters,
-                       fits_any_scene,
-                       make<Boca>};
+extern const MethodInfo kBoca{.name = "boca",
+                              .paper = kRayPaper,
+                              .summary = "100 x 100 rays down a bounding volume hierarchy",
+                              .cpu = on_cpu<Boca>(Guarantee::approximate, kParameters)};
 
 }  // namespace sightline::methods

@@ -97,12 +97,10 @@ std::unique_ptr<DeviceRays> make_bvha(device::Device& device, const Scene& scene
   return std::make_unique<Bvha>(device, scene);
 }
 
-const DeviceMethodInfo kBvha{"bvha",
-                             kRayPaper,
-                             "100 x 100 rays, the tree on the CPU and the distances on the GPU",
-                             Guarantee::approximate,
-                             "",
-                             kRayDeviceParameters,
-                             make_rays_on_device<make_bvha>};
+extern const MethodInfo kBvha{
+    .name = "bvha",
+    .paper = kRayPaper,
+    .summary = "100 x 100 rays, the tree on the CPU and the distances on the GPU",
+    .device = {Guarantee::approximate, kRayDeviceParameters, make_rays_on_device<make_bvha>}};
 
 }  // namespace sightline::methods

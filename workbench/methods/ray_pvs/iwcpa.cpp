@@ -80,12 +80,10 @@ std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scen
   return std::make_unique<Iwcpa>(device, scene);
 }
 
-const DeviceMethodInfo kIwcpa{"iwcpa",
-                              kRayPaper,
-                              "100 x 100 rays, every ray and box at once on the GPU",
-                              Guarantee::approximate,
-                              "",
-                              kRayDeviceParameters,
-                              make_rays_on_device<make_iwcpa>};
+extern const MethodInfo kIwcpa{
+    .name = "iwcpa",
+    .paper = kRayPaper,
+    .summary = "100 x 100 rays, every ray and box at once on the GPU",
+    .device = {Guarantee::approximate, kRayDeviceParameters, make_rays_on_device<make_iwcpa>}};
 
 }  // namespace sightline::methods

@@ -4,7 +4,7 @@ namespace sightline::methods {
 
 namespace {
 
-class RayDeviceMethod final : public DeviceMethod {
+class RayDeviceMethod final : public Method {
 public:
   RayDeviceMethod(device::Renderer& renderer, std::uint32_t side, std::unique_ptr<DeviceRays> rays)
       : renderer_(renderer),
@@ -15,7 +15,8 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::approximate; }
   void update(std::span<const ObjectId>) override { rays_->update(); }
 
-  void record(device::Recorder& frame) override {
+  void record(FrameContext& context) override {
+    device::Recorder& frame = *context.recorder;
     grid_.make(frame.view, side_, side_);
     rays_->prepare(grid_);
     {
@@ -52,8 +53,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<DeviceMethod> make_ray_device_method(device::Renderer& renderer, const Parameters& parameters,
-                                                     std::unique_ptr<DeviceRays> rays) {
+std::unique_ptr<Method> make_ray_device_method(device::Renderer& renderer, const Parameters& parameters,
+                                               std::unique_ptr<DeviceRays> rays) {
   return std::make_unique<RayDeviceMethod>(renderer, parameters.count(kRaysParameter.name), std::move(rays));
 }
 

@@ -18,7 +18,7 @@ inline constexpr ParameterInfo kRaysParameter{"rays", "along each side of the vi
                                               true};
 
 /// Approximate by nature: things fall between rays, and a near box hides what its own geometry does not.
-class RayMethod : public Method {
+class RayMethod : public CpuMethod {
 public:
   RayMethod(const Scene& scene, const Parameters& parameters)
       : scene_(scene), side_(parameters.count(kRaysParameter.name)), draw_list_(scene) {}

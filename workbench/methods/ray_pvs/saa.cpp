@@ -52,12 +52,10 @@ std::unique_ptr<DeviceRays> make_saa(device::Device& device, const Scene& scene)
   return std::make_unique<Saa>(device, scene);
 }
 
-const DeviceMethodInfo kSaa{"saa",
-                            kRayPaper,
-                            "100 x 100 rays, one a lane, down a tree laid flat with skip counts",
-                            Guarantee::approximate,
-                            "",
-                            kRayDeviceParameters,
-                            make_rays_on_device<make_saa>};
+extern const MethodInfo kSaa{
+    .name = "saa",
+    .paper = kRayPaper,
+    .summary = "100 x 100 rays, one a lane, down a tree laid flat with skip counts",
+    .device = {Guarantee::approximate, kRayDeviceParameters, make_rays_on_device<make_saa>}};
 
 }  // namespace sightline::methods

@@ -20,13 +20,9 @@ private:
 
 }  // namespace
 
-const MethodInfo kToca{"toca",
-                       kRayPaper,
-                       "100 x 100 rays, each against every box",
-                       Guarantee::approximate,
-                       "",
-                       kParameters,
-                       fits_any_scene,
-                       make<Toca>};
+extern const MethodInfo kToca{.name = "toca",
+                              .paper = kRayPaper,
+                              .summary = "100 x 100 rays, each against every box",
+                              .cpu = on_cpu<Toca>(Guarantee::approximate, kParameters)};
 
 }  // namespace sightline::methods

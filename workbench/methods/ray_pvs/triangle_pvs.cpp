@@ -18,7 +18,7 @@ constexpr std::array kGuidedParameters{
     ParameterInfo{"spacing", "pixels between the first rays, rounded down to a power of two", "16", 1, 256,
                   true}};
 
-class TriangleMethod : public Method {
+class TriangleMethod : public CpuMethod {
 public:
   explicit TriangleMethod(const Scene& scene)
       : scene_(scene), rays_(scene), draw_list_(scene), seen_(scene.size()) {}
@@ -85,22 +85,15 @@ private:
 
 }  // namespace
 
-const MethodInfo kTrianglePvs{"triangle-pvs",
-                              "",
-                              "100 x 100 rays against the triangles themselves",
-                              Guarantee::approximate,
-                              "",
-                              kGridParameters,
-                              fits_any_scene,
-                              make<TrianglePvs>};
+extern const MethodInfo kTrianglePvs{.name = "triangle-pvs",
+                                     .paper = "",
+                                     .summary = "100 x 100 rays against the triangles themselves",
+                                     .cpu = on_cpu<TrianglePvs>(Guarantee::approximate, kGridParameters)};
 
-const MethodInfo kGuided{"guided",
-                         "",
-                         "rays against triangles, more where neighbours disagree, until a target is met",
-                         Guarantee::approximate,
-                         "",
-                         kGuidedParameters,
-                         fits_any_scene,
-                         make<Guided>};
+extern const MethodInfo kGuided{
+    .name = "guided",
+    .paper = "",
+    .summary = "rays against triangles, more where neighbours disagree, until a target is met",
+    .cpu = on_cpu<Guided>(Guarantee::approximate, kGuidedParameters)};
 
 }  // namespace sightline::methods

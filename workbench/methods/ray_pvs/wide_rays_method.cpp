@@ -29,13 +29,10 @@ private:
 
 }  // namespace
 
-const MethodInfo kWideRays{"wide-rays",
-                           "",
-                           "the PVS of toca and boca by a wide SIMD tree and packets of rays, on all cores",
-                           Guarantee::approximate,
-                           "",
-                           kParameters,
-                           fits_any_scene,
-                           make<WideRays>};
+extern const MethodInfo kWideRays{
+    .name = "wide-rays",
+    .paper = "",
+    .summary = "the PVS of toca and boca by a wide SIMD tree and packets of rays, on all cores",
+    .cpu = on_cpu<WideRays>(Guarantee::approximate, kParameters)};
 
 }  // namespace sightline::methods

@@ -1,17 +1,17 @@
-// The workbench: methods are told what their frames took, and those with triangles of their own are drawn by
-// them and judged by them.
+// The bench on a device: methods are told what their frames took, and those with triangles of their own are
+// drawn by them and judged by them.
 #include <array>
 
 #include "device/fixtures.hpp"
 #include "support/triangles.hpp"
 #include "workbench/camera/random_views.hpp"
-#include "workbench/measure/device_measure.hpp"
-#include "workbench/measure/device_verify.hpp"
+#include "workbench/measure/compare.hpp"
+#include "workbench/measure/verify.hpp"
 
 namespace sightline {
 namespace {
 
-class WorkbenchTest : public DeviceTest {};
+class BenchTest : public DeviceTest {};
 
 // Keeps everything, and counts what it is told.
 class Listener final : public Method {
@@ -19,40 +19,40 @@ public:
   explicit Listener(std::vector<double>& told) : told_(told) {}
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
   void update(std::span<const ObjectId>) override {}
-  void cull(const View&, Frame& frame) noexcept override { frame.clear(); }
-  void took(double milliseconds) noexcept override { told_.push_back(milliseconds); }
+  void record(FrameContext& context) override { context.output.clear(); }
+  void report_frame_time(double milliseconds) noexcept override { told_.push_back(milliseconds); }
 
 private:
   std::vector<double>& told_;
 };
 
-TEST_F(WorkbenchTest, TellsMethodsWhatTheirFramesTook) {
+TEST_F(BenchTest, TellsMethodsWhatTheirFramesTook) {
   Scene scene = *generate_world("soup?triangles=200&size=60");
-  measure::Workbench bench(device(), scene, {});
+  measure::Bench bench(scene, {}, &device());
   std::vector<double> told;
-  const auto listener = methods::draw_by_device(std::make_unique<Listener>(told), bench.renderer());
+  measure::Subject& listener = bench.add("listener", std::make_unique<Listener>(told));
   const View view = view_of({.eye = {0, 0, 90}, .forward = {0, 0, -1}}, 64, 40);
   for (int frame = 0; frame < 3; ++frame) {
-    const double took = bench.draw(*listener, view).frame_ms;
+    const double took = bench.run(listener, view).frame_ms;
     ASSERT_EQ(told.size(), static_cast<std::size_t>(frame) + 1);
     EXPECT_EQ(told.back(), took);
   }
 }
 
-TEST_F(WorkbenchTest, ComparesDrawCallMethodsByTheirOwnDraws) {
+TEST_F(BenchTest, ComparesDrawCallMethodsByTheirOwnDraws) {
   Scene scene = *generate_world("soup?triangles=3000&size=60");
   const std::vector<std::string> names{"simple-octree", "drawcall-wise-octree", "zhang-octree"};
-  measure::Workbench bench(device(), scene, names);
+  measure::Bench bench(scene, names, &device());
   camera::CameraPath path;
   path.cameras = camera::random_cameras(scene, 3, 21);
-  measure::DeviceMeasureOptions options;
-  options.measure.width = 96, options.measure.height = 64;
-  options.measure.warm_up = 0, options.measure.repeats = 1;
-  const measure::Comparison result = measure::compare_on_device(bench, path, options);
+  measure::MeasureOptions options;
+  options.width = 96, options.height = 64;
+  options.warm_up = 0, options.repeats = 1;
+  const measure::Comparison result = measure::compare(bench, path, options);
   for (const measure::Row& row : result.rows) {
     const auto method = *create_method(row.method, scene);
     Frame frame;
-    method->cull(view_of(path.cameras[row.view], 96, 64), frame);
+    cull(*method, view_of(path.cameras[row.view], 96, 64), frame);
     EXPECT_EQ(row.stats.draw_calls, frame.stats.draw_calls) << row.method;
     EXPECT_EQ(row.stats.triangles, frame.stats.triangles) << row.method;
     EXPECT_EQ(row.lost_objects, 0u) << row.method;
@@ -61,7 +61,7 @@ TEST_F(WorkbenchTest, ComparesDrawCallMethodsByTheirOwnDraws) {
 
 // One triangle an object, so that objects show nothing but their backs to half of the views; transparent
 // ones; three of the same place.
-TEST_F(WorkbenchTest, VerifiesDrawCallMethodsByTheTrianglesThatTheyDraw) {
+TEST_F(BenchTest, VerifiesDrawCallMethodsByTheTrianglesThatTheyDraw) {
   std::vector<Scene> scenes;
   scenes.push_back(*generate_world("soup?triangles=2000&per-object=1&size=60"));
   scenes.push_back(test::scene_of(test::awkward_triangles()[0].triangles));
@@ -69,41 +69,42 @@ TEST_F(WorkbenchTest, VerifiesDrawCallMethodsByTheTrianglesThatTheyDraw) {
   const std::vector<std::string> names{"simple-kd-tree", "drawcall-wise-octree", "zhang-octree?height=5",
                                        "cluster-cone", "adaptive"};
   for (Scene& scene : scenes) {
-    measure::Workbench bench(device(), scene, names);
-    const auto result = measure::verify_on_device(bench, camera::random_cameras(scene, 8, 22), 96, 64, 0);
+    measure::Bench bench(scene, names, &device());
+    const auto result = measure::verify(bench, camera::random_cameras(scene, 8, 22), 96, 64, 0);
     EXPECT_TRUE(result.passed());
     for (std::size_t m = 0; m < names.size(); ++m) {
       EXPECT_GT(result.methods[m].visible, 0u);
       EXPECT_EQ(result.methods[m].lost_objects, 0u) << names[m];
-      EXPECT_EQ(result.different_pixels[m], 0u) << names[m];
+      EXPECT_EQ(result.methods[m].different_pixels, 0u) << names[m];
     }
   }
 }
 
 // Triangles a thousand times as large as what they are strewn over: depths meet in single pixels, three at a
 // time.
-TEST_F(WorkbenchTest, LetsAnyOfTheSurfacesAtOneDepthShow) {
+TEST_F(BenchTest, LetsAnyOfTheSurfacesAtOneDepthShow) {
   Scene scene = *generate_world("soup?triangles=3000&per-object=1&size=1&edge=1000");
   const std::vector<std::string> names{"simple-kd-tree", "cluster-cone"};
-  measure::Workbench bench(device(), scene, names);
-  const auto result = measure::verify_on_device(bench, camera::random_cameras(scene, 8, 1), 97, 61, 0);
-  for (std::size_t m = 0; m < names.size(); ++m) EXPECT_EQ(result.different_pixels[m], 0u) << names[m];
+  measure::Bench bench(scene, names, &device());
+  const auto result = measure::verify(bench, camera::random_cameras(scene, 8, 1), 97, 61, 0);
+  for (std::size_t m = 0; m < names.size(); ++m)
+    EXPECT_EQ(result.methods[m].different_pixels, 0u) << names[m];
 }
 
-TEST_F(WorkbenchTest, FindsOutWhatThePrintedFacingRuleLoses) {
+TEST_F(BenchTest, FindsOutWhatThePrintedFacingRuleLoses) {
   Scene scene = *generate_world("soup?triangles=2000&per-object=1&size=60");
   const std::vector<std::string> names{"zhang-octree?facing=printed"};
-  measure::Workbench bench(device(), scene, names);
-  const auto result = measure::verify_on_device(bench, camera::random_cameras(scene, 20, 23), 96, 64, 0);
+  measure::Bench bench(scene, names, &device());
+  const auto result = measure::verify(bench, camera::random_cameras(scene, 20, 23), 96, 64, 0);
   EXPECT_GT(result.methods[0].lost_objects, 0u);
-  EXPECT_GT(result.different_pixels[0], 0u);
+  EXPECT_GT(result.methods[0].different_pixels, 0u);
 }
 
-TEST_F(WorkbenchTest, DrawCallMethodsFollowMovedObjects) {
+TEST_F(BenchTest, DrawCallMethodsFollowMovedObjects) {
   Scene scene = *generate_world("soup?triangles=600&per-object=20&size=60");
   const std::vector<std::string> names{"drawcall-wise-octree", "adaptive"};
-  measure::Workbench bench(device(), scene, names);
-  const auto result = measure::verify_on_device(bench, camera::random_cameras(scene, 6, 24), 96, 64, 0.3);
+  measure::Bench bench(scene, names, &device());
+  const auto result = measure::verify(bench, camera::random_cameras(scene, 6, 24), 96, 64, 0.3);
   EXPECT_TRUE(result.passed());
 }
 

@@ -1,8 +1,13 @@
-#include "workbench/device/item_buffer.hpp"
+#include "workbench/oracle/raster_item_buffer.hpp"
 
 #include <algorithm>
+#include <limits>
 
-namespace sightline::device {
+#include "workbench/oracle/pixel_rays.hpp"
+
+namespace sightline::oracle {
+
+using namespace device;
 
 namespace {
 
@@ -16,13 +21,27 @@ constexpr std::uint32_t kSeenFrag[] =
 #include "shaders/seen.frag.inc"
     ;
 
+/// Metres from the near plane to what each pixel shows.
+std::vector<float> distances(const View& view, const std::vector<ObjectId>& ids,
+                             const std::vector<float>& depth) {
+  const PixelRays rays(view);
+  std::vector<float> out(depth.size(), std::numeric_limits<float>::infinity());
+  for (std::uint32_t y = 0; y < view.height; ++y) {
+    for (std::uint32_t x = 0; x < view.width; ++x) {
+      const std::size_t pixel = std::size_t{y} * view.width + x;
+      if (ids[pixel] != kNoObject) out[pixel] = static_cast<float>(rays.distance(x, y, depth[pixel]));
+    }
+  }
+  return out;
+}
+
 struct Push {
   vk::DeviceAddress objects, list, seen;
 };
 
 }  // namespace
 
-ItemBufferPass::ItemBufferPass(Renderer& renderer)
+RasterItemBuffer::RasterItemBuffer(Renderer& renderer)
     : renderer_(renderer),
       id_pipeline_(
           renderer.device(),
@@ -33,7 +52,7 @@ ItemBufferPass::ItemBufferPass(Renderer& renderer)
       all_(renderer.draws().make_buffers(renderer.device())),
       seen_(renderer.device(), renderer.scene().size() * 4, Memory::device, "the item buffer") {}
 
-ItemBuffer ItemBufferPass::render(const View& view) {
+ItemBuffer RasterItemBuffer::render(const View& view) {
   Device& device = renderer_.device();
   const SceneBuffers& scene = renderer_.buffers();
   if (!ids_ || ids_->width() != view.width || ids_->height() != view.height) {
@@ -63,15 +82,18 @@ ItemBuffer ItemBufferPass::render(const View& view) {
     draw(seen_pipeline_, all_.opaque_commands, all_.transparent_commands);
     frame.end_rendering();
   });
-  ItemBuffer out{view.width, view.height, ids_->read(), {}};
-  const std::vector<std::uint32_t> seen = read_words(device, seen_, renderer_.scene().size());
-  out.visible.resize(seen.size());
-  std::ranges::transform(seen, out.visible.begin(),
-                         [](std::uint32_t word) { return static_cast<std::uint8_t>(word != 0); });
+  ItemBuffer out;
+  out.width = view.width, out.height = view.height;
+  out.ids = ids_->read();
+  out.distances = distances(view, out.ids, renderer_.depth());
+  out.pixels = read_words(device, seen_, renderer_.scene().size());
+  for (std::uint32_t& seen : out.pixels) seen = seen != 0;
+  std::vector<std::uint32_t> owned(out.pixels.size());
   for (const ObjectId id : out.ids) {
-    if (id != kNoObject) out.visible[id] = 1;
+    if (id != kNoObject) ++owned[id];
   }
+  for (std::size_t o = 0; o < owned.size(); ++o) out.pixels[o] = std::max(out.pixels[o], owned[o]);
   return out;
 }
 
-}  // namespace sightline::device
+}  // namespace sightline::oracle
