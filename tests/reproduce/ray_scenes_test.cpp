@@ -37,7 +37,7 @@ TEST(Blocks, AreThoseThatASearchOfEveryPlaceFinds) {
         if (whole) expected[id] = 1;
       }
     }
-    ASSERT_EQ(oracle::objects_with_block(image, width, height), expected) << round;
+    ASSERT_EQ(oracle::objects_that_cover(image, width, height), expected) << round;
   }
 }
 
@@ -55,7 +55,7 @@ TEST(RayScenes, LoseNoObjectAsLargeAsTheSpacingAndNoMoreThanTheTarget) {
   for (const std::string& name : scenes) {
     const RayScene found = measure_ray_scene(load_scene(name), 3);
     EXPECT_EQ(found.views, 3u) << name;
-    EXPECT_EQ(found.triangle_blocks, 0u) << name;
+    EXPECT_EQ(found.triangle_covers, 0u) << name;
     EXPECT_EQ(found.guided_over, 0u) << name << ": " << found.guided_worst;
     EXPECT_LT(found.guided_rays, found.pixels) << name;
     lost += found.triangle_lost;

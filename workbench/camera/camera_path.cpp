@@ -174,14 +174,14 @@ private:
 };
 
 std::vector<Camera> walk(const Scene& scene, std::size_t frames) {
-  const Roadmap roadmap(scene);
+  const NavigationGraph graph(scene);
   std::vector<Vec3> corners;
   for (const Vec3& stop : rounds(scene)) {
     if (corners.empty()) {
       corners.push_back(stop);
       continue;
     }
-    const std::vector<Vec3> way = roadmap.way(corners.back(), stop);
+    const std::vector<Vec3> way = graph.way(corners.back(), stop);
     if (!way.empty()) corners.insert(corners.end(), way.begin() + 1, way.end());
   }
   const Track track(corners);

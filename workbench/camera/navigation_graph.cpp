@@ -38,7 +38,7 @@ bool is_clear(const LevelPvs& level, const Vec3& a, const Vec3& b) {
   });
 }
 
-Roadmap::Roadmap(const Scene& scene) : level_(*scene.level) {
+NavigationGraph::NavigationGraph(const Scene& scene) : level_(*scene.level) {
   const auto add = [&](const Vec3& place) {
     if (scene::is_open(level_, place)) places_.push_back(place);
   };
@@ -56,7 +56,8 @@ Roadmap::Roadmap(const Scene& scene) : level_(*scene.level) {
   }
 }
 
-std::vector<Roadmap::Edge> Roadmap::neighbours_of(const Vec3& point, std::uint32_t self) const {
+std::vector<NavigationGraph::Edge> NavigationGraph::neighbours_of(const Vec3& point,
+                                                                  std::uint32_t self) const {
   std::vector<Edge> near;
   near.reserve(places_.size());
   for (std::uint32_t p = 0; p < places_.size(); ++p) {
@@ -71,7 +72,7 @@ std::vector<Roadmap::Edge> Roadmap::neighbours_of(const Vec3& point, std::uint32
   return near;
 }
 
-std::vector<Vec3> Roadmap::way(const Vec3& a, const Vec3& b) const {
+std::vector<Vec3> NavigationGraph::way(const Vec3& a, const Vec3& b) const {
   if (is_clear(level_, a, b)) return {a, b};
   const std::vector<Edge> first = neighbours_of(a, kNowhere), last = neighbours_of(b, kNowhere);
   constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -108,7 +109,7 @@ std::vector<Vec3> Roadmap::way(const Vec3& a, const Vec3& b) const {
 }
 
 // From each corner straight to the farthest one that can be reached.
-std::vector<Vec3> Roadmap::pulled_tight(const std::vector<Vec3>& corners) const {
+std::vector<Vec3> NavigationGraph::pulled_tight(const std::vector<Vec3>& corners) const {
   std::vector<Vec3> tight{corners.front()};
   for (std::size_t at = 0; at + 1 < corners.size();) {
     std::size_t next = corners.size() - 1;

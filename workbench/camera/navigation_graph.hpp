@@ -9,10 +9,10 @@
 
 namespace sightline::camera {
 
-class Roadmap {
+class NavigationGraph {
 public:
   /// Joins the scene's viewpoints, waypoints and the middles of its open leaves. The scene has a level.
-  explicit Roadmap(const Scene& scene);
+  explicit NavigationGraph(const Scene& scene);
 
   /// Corners of a short way from a to b through open space, both included; empty where none was found.
   [[nodiscard]] std::vector<Vec3> way(const Vec3& a, const Vec3& b) const;

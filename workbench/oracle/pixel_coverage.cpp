@@ -2,7 +2,7 @@
 
 namespace sightline::oracle {
 
-std::vector<std::uint8_t> objects_with_block(const ItemBuffer& image, std::uint32_t width,
+std::vector<std::uint8_t> objects_that_cover(const ItemBuffer& image, std::uint32_t width,
                                              std::uint32_t height) {
   std::vector<std::uint8_t> found(image.pixels.size(), 0);
   // For each column, how many rows in a row end in a run of `width` pixels of one object, the same one.

@@ -1,4 +1,4 @@
-// Which objects cover a whole block of pixels: those that a grid of rays as wide cannot miss.
+// Which objects cover a whole rectangle of pixels: those that a grid of rays as wide cannot miss.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace sightline::oracle {
 
-/// One byte an object: 1 where some axis-aligned block of width × height pixels shows it alone. Opaque
+/// One byte an object: 1 where some axis-aligned rectangle of width × height pixels shows it alone. Opaque
 /// objects only, as the image holds no others.
-std::vector<std::uint8_t> objects_with_block(const ItemBuffer& image, std::uint32_t width,
+std::vector<std::uint8_t> objects_that_cover(const ItemBuffer& image, std::uint32_t width,
                                              std::uint32_t height);
 
 }  // namespace sightline::oracle

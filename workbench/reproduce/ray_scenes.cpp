@@ -53,12 +53,12 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
 
     cull(*triangles, view, frame);
     const oracle::Loss loss = oracle::compare_to_truth(truth, frame.visible);
-    const auto blocks = oracle::objects_with_block(truth, kRaySceneWidth / kRays, kRaySceneHeight / kRays);
+    const auto covers = oracle::objects_that_cover(truth, kRaySceneWidth / kRays, kRaySceneHeight / kRays);
     out.triangle_lost += loss.lost.size();
     out.triangle_lost_pixels += loss.lost_pixels;
     for (const ObjectId object : loss.lost) {
       out.triangle_most = std::max<std::uint64_t>(out.triangle_most, truth.pixels[object]);
-      out.triangle_blocks += blocks[object];
+      out.triangle_covers += covers[object];
     }
     ++out.views;
     if (progress) progress(out.views, cameras.size());
@@ -82,7 +82,7 @@ report::Table ray_scene_table(std::span<const RayScene> scenes) {
                           report::format_count(std::round(rays / views)),
                           fmt::format("{:.2f}", rays / pixels), report::format_ms(s.guided_ms / views),
                           count(s.triangle_lost), count(s.triangle_lost_pixels), count(s.triangle_most),
-                          count(s.triangle_blocks)});
+                          count(s.triangle_covers)});
   }
   return table;
 }

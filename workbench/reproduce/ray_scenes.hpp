@@ -24,7 +24,7 @@ struct RayScene {
   std::size_t guided_over = 0;
   /// `triangle-pvs`: lost objects and pixels; the most pixels of a lost object; lost objects that cover a
   /// whole block of pixels as large as the spacing of the rays.
-  std::uint64_t triangle_lost = 0, triangle_lost_pixels = 0, triangle_most = 0, triangle_blocks = 0;
+  std::uint64_t triangle_lost = 0, triangle_lost_pixels = 0, triangle_most = 0, triangle_covers = 0;
 };
 
 /// The image that the rays are held against: 100 × 100 rays stand 13 × 7 pixels apart, each in the middle of

@@ -6,7 +6,7 @@
 
 #include <sightline/view.hpp>
 
-#include "workbench/methods/draw_calls/units.hpp"
+#include "workbench/methods/draw_calls/draw_batches.hpp"
 
 namespace sightline::methods {
 

@@ -49,15 +49,15 @@ void DrawCallMethod::rebuild() {
       layer.partition.build(plan_.structure, flat.span(), triangles, plan_.height);
     }
     if (surface == Surface::opaque) {
-      layer.units = make_units(plan_.strategy, flat, layer.partition, order, with_cones);
+      layer.batches = make_draw_batches(plan_.strategy, flat, layer.partition, order, with_cones);
     } else {
       std::vector<std::uint32_t> positions = triangles;  // in the global list of `simple`
       if (plan_.strategy != Strategy::simple) {
         std::iota(positions.begin(), positions.end(), static_cast<std::uint32_t>(order.size()));
         order.insert(order.end(), triangles.begin(), triangles.end());
       }
-      layer.units =
-          make_blended_units(plan_.strategy, flat, layer.partition, triangles, positions, with_cones);
+      layer.batches =
+          make_blended_batches(plan_.strategy, flat, layer.partition, triangles, positions, with_cones);
       blend_order_ = BlendOrder(flat, triangles, positions);
     }
     layer.partition.drop_triangles();
@@ -85,7 +85,7 @@ void DrawCallMethod::describe() {
   std::uint64_t bytes = lists_.positions.size() * sizeof(Vec3) +
                         4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) +
                         9 * scene_.size();
-  for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.units.bytes();
+  for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.batches.bytes();
   geometry_ = {lists_.positions,
                lists_.indices,
                lists_.objects,
@@ -127,21 +127,21 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
 }
 
 void DrawCallMethod::take(const Layer& layer, const Facing& facing, Frame& frame) noexcept {
-  const Units& units = layer.units;
-  const bool faces = !units.cones.empty();
+  const DrawBatches& batches = layer.batches;
+  const bool faces = !batches.cones.empty();
   for (const auto& run : runs_) {
-    for (std::uint32_t u = units.cell_start[run.first_cell]; u < units.cell_start[run.last_cell]; ++u) {
-      const bool drawn = !faces || facing.may_face(units.cones[u]);
-      for (std::uint32_t o = units.object_start[u]; o < units.object_start[u + 1]; ++o) {
-        const ObjectId object = units.objects[o];
+    for (std::uint32_t u = batches.cell_start[run.first_cell]; u < batches.cell_start[run.last_cell]; ++u) {
+      const bool drawn = !faces || facing.may_face(batches.cones[u]);
+      for (std::uint32_t o = batches.object_start[u]; o < batches.object_start[u + 1]; ++o) {
+        const ObjectId object = batches.objects[o];
         std::uint64_t& seen = seen_[object];
         touched_ += seen < 2 * frame_;
         if (drawn && seen <= 2 * frame_) frame.visible.push_back(object);
         seen = std::max(seen, 2 * frame_ + drawn);
       }
       if (!drawn) continue;
-      ranges_.insert(ranges_.end(), units.ranges.begin() + units.range_start[u],
-                     units.ranges.begin() + units.range_start[u + 1]);
+      ranges_.insert(ranges_.end(), batches.ranges.begin() + batches.range_start[u],
+                     batches.ranges.begin() + batches.range_start[u + 1]);
     }
   }
 }

@@ -1,11 +1,11 @@
-// The frame of all methods of paper D: cells that the frustum touches, of them the units that can face the
+// The frame of all methods of paper D: cells that the frustum touches, of them the batches that can face the
 // eye, of them ranges of triangles, as draws.
 #pragma once
 
 #include <vector>
 
 #include "workbench/methods/draw_calls/blend_order.hpp"
-#include "workbench/methods/draw_calls/units.hpp"
+#include "workbench/methods/draw_calls/draw_batches.hpp"
 #include "workbench/methods/methods.hpp"
 
 namespace sightline::methods {
@@ -55,7 +55,7 @@ private:
   /// near.
   struct Layer {
     partition::TrianglePartition partition;
-    Units units;
+    DrawBatches batches;
   };
 
   struct Mover {

@@ -28,12 +28,13 @@ FlatTriangles flatten(const Scene& scene) {
 }
 
 bool can_flatten(const Scene& scene) {
-  constexpr std::uint64_t kMost = 100'000'000, kFew = 2'000'000;
+  constexpr std::uint64_t kMostTriangles = 100'000'000, kAlwaysAllowed = 2'000'000;
   const std::uint64_t triangles = triangle_count(scene), held = scene.indices.size() / 3;
   std::uint64_t vertices = 0;
   for (ObjectId object = 0; object < scene.size(); ++object)
     vertices += scene.meshes[scene.mesh[object]].vertex_count;
-  return triangles <= std::min(kMost, std::max(kFew, 2 * held)) && vertices <= 3 * kMost;
+  return triangles <= std::min(kMostTriangles, std::max(kAlwaysAllowed, 2 * held)) &&
+         vertices <= 3 * kMostTriangles;
 }
 
 }  // namespace sightline::methods

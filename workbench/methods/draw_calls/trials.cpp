@@ -10,10 +10,10 @@ namespace sightline::methods {
 namespace {
 
 constexpr std::uint32_t kFirstPairs = 8, kBetweenPairs = 4;  // before ways are compared, and compared again
-constexpr std::uint32_t kSomePairs = 32, kSome = 8, kFewPairs = 64,
-                        kFew = 4;                       // so many stay at most from then on
-constexpr double kSure = 3, kLikely = 2;                // standard errors
-constexpr double kAlike = 0.005, kNearlyAlike = 0.015;  // shares of the leader's time
+constexpr std::uint32_t kPairsBeforeCut = 32, kWaysAfterCut = 8, kPairsBeforeSecondCut = 64,
+                        kWaysAfterSecondCut = 4;          // so many stay at most from then on
+constexpr double kErrorsToDrop = 3, kErrorsToSettle = 2;  // standard errors
+constexpr double kAlike = 0.005, kNearlyAlike = 0.015;    // shares of the leader's time
 
 constexpr std::uint32_t kRivals = 3, kBetweenTrials = 128;
 constexpr double kFade = 0.98, kLeastWeight = 6;  // of what 50 trials tell, old ones count little
@@ -89,16 +89,18 @@ void Trials::compare() noexcept {
     }
     way.error = std::sqrt(squares / pairs / (pairs - 1));
   }
-  const std::size_t most = pairs >= kFewPairs ? kFew : pairs >= kSomePairs ? kSome : running.size();
+  const std::size_t most = pairs >= kPairsBeforeSecondCut ? kWaysAfterSecondCut
+                           : pairs >= kPairsBeforeCut     ? kWaysAfterCut
+                                                          : running.size();
   const double worst = running[std::min(most, running.size()) - 1].mean;
   const auto left = std::partition(running.begin(), running.end(), [&](const Way& way) {
-    return way.mean <= worst && way.slower <= kAlike * leader.mean + kSure * way.error;
+    return way.mean <= worst && way.slower <= kAlike * leader.mean + kErrorsToDrop * way.error;
   });
   std::sort(running.begin(), left, quicker);
   std::sort(left, running.end(), quicker);
   running_ = static_cast<std::uint32_t>(left - running.begin());
   const bool alike = std::all_of(running.begin(), left, [&](const Way& way) {
-    return way.slower + kLikely * way.error <= kNearlyAlike * leader.mean;
+    return way.slower + kErrorsToSettle * way.error <= kNearlyAlike * leader.mean;
   });
   if (alike || pairs == kMostPairs) settle();
 }
@@ -135,7 +137,7 @@ void Trials::watch(double time) noexcept {
   const double mean = record.sum / record.weight;
   const double scatter = std::sqrt(std::max(0.0, record.squares / record.weight - mean * mean));
   const double error = std::max(scatter, kLeastScatter) / std::sqrt(record.weight);
-  if (record.weight > kLeastWeight - 0.5 && mean + kSure * error < kWorthAChange) {
+  if (record.weight > kLeastWeight - 0.5 && mean + kErrorsToDrop * error < kWorthAChange) {
     std::swap(ways_.front().id, ways_[1 + rival_].id);
     std::ranges::fill(records_, Record{});
   }

@@ -7,11 +7,11 @@ namespace {
 constexpr std::uint32_t kNewTiles[] =
 #include "shaders/new_tiles.comp.inc"
     ;
-constexpr std::uint32_t kTiedComp[] =
-#include "shaders/tied.comp.inc"
+constexpr std::uint32_t kEqualDepthComp[] =
+#include "shaders/equal_depth.comp.inc"
     ;
-constexpr std::uint32_t kTiedFrag[] =
-#include "shaders/tied.frag.inc"
+constexpr std::uint32_t kEqualDepthFrag[] =
+#include "shaders/equal_depth.frag.inc"
     ;
 constexpr std::uint32_t kObjectVert[] =
 #include "shaders/object.vert.inc"
@@ -22,7 +22,7 @@ using device::Renderer;
 using device::VisibleDraws;
 
 // As in state.h.
-constexpr std::uint32_t kInView = 1, kDrawnEarly = 2, kSeen = 4, kTied = 8;
+constexpr std::uint32_t kInView = 1, kDrawnEarly = 2, kSeen = 4, kEqualDepth = 8;
 constexpr std::uint32_t kTile = 64;
 constexpr std::uint32_t kFrames = 1u << 28;  ///< as many as a state can tell apart
 
@@ -37,13 +37,13 @@ struct NewTilesPush {
   std::uint32_t objects, scan_groups, stamp, widest;
 };
 
-struct TiedPush {
+struct EqualDepthPush {
   vk::DeviceAddress boxes, objects, state, tiles;
   std::uint32_t count, stamp;
 };
 
 // What follows from there being something new: two VkDispatchIndirectCommands, as in new_tiles.comp.
-constexpr vk::DeviceSize kTiedGroups = 0, kScanGroups = 12, kFollowUpSize = 24;
+constexpr vk::DeviceSize kEqualDepthGroups = 0, kScanGroups = 12, kFollowUpSize = 24;
 
 }  // namespace
 
@@ -52,12 +52,12 @@ TwoPhase::TwoPhase(Renderer& renderer, const submission::Contribution& contribut
       contribution_(contribution),
       state_(upload(renderer.device(), std::vector<std::uint32_t>(renderer.scene().size()), "states")),
       new_tiles_(renderer.device(), kNewTiles, shader_constants(contribution)),
-      tied_(renderer.device(), kTiedComp, shader_constants(contribution)),
-      tied_pipeline_(renderer.device(), {.vertex = kObjectVert,
-                                         .fragment = kTiedFrag,
-                                         .input = device::Input::mesh,
-                                         .colour = device::kColourFormat,
-                                         .depth_write = false}),
+      equal_depth_(renderer.device(), kEqualDepthComp, shader_constants(contribution)),
+      equal_depth_pipeline_(renderer.device(), {.vertex = kObjectVert,
+                                                .fragment = kEqualDepthFrag,
+                                                .input = device::Input::mesh,
+                                                .colour = device::kColourFormat,
+                                                .depth_write = false}),
       follow_up_(renderer.device(), kFollowUpSize, device::Memory::device, "dispatches"),
       early_(renderer.draws().make_buffers(renderer.device())),
       late_(renderer.draws().make_buffers(renderer.device())),
@@ -84,7 +84,8 @@ void TwoPhase::record(FrameContext& context) {
   {
     const auto pass = frame.pass("draw new objects", PassKind::draw);
     renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
-    renderer_.draw_opaque(frame, again_, tied_pipeline_, tiles_.address(), device::Recorder::Compare::equal);
+    renderer_.draw_opaque(frame, again_, equal_depth_pipeline_, tiles_.address(),
+                          device::Recorder::Compare::equal);
     renderer_.draw_transparent(frame, late_);
   }
   std::swap(early_, next_);
@@ -110,18 +111,19 @@ void TwoPhase::list_what_is_new(device::Recorder& frame) {
       next{seen, kNever, &next_};
   draws.build(frame, state_.address(), late, renderer_.transparent_order(), &next);
   // Where nothing new is opaque, what follows has no groups to run.
-  const device::Recorder::Groups fresh = draws.listed(), tied{follow_up_, kTiedGroups},
+  const device::Recorder::Groups fresh = draws.listed(), equal_depth{follow_up_, kEqualDepthGroups},
                                  scan{follow_up_, kScanGroups};
   frame.dispatch(new_tiles_,
                  NewTilesPush{scene.box_data.address(), late_.list.address(), follow_up_.address(),
                               fresh.address(), tiles_.address(), scene.objects, draws.groups(), stamp_,
                               renderer_.device().widest_dispatch()},
                  fresh);
-  frame.dispatch(tied_,
-                 TiedPush{scene.box_data.address(), scene.object_data.address(), state_.address(),
-                          tiles_.address(), scene.objects, stamp_},
-                 tied);
-  draws.build_where(frame, state_.address(), {among(stamp_, kTied, kTied), kNever, &again_}, scan);
+  frame.dispatch(equal_depth_,
+                 EqualDepthPush{scene.box_data.address(), scene.object_data.address(), state_.address(),
+                                tiles_.address(), scene.objects, stamp_},
+                 equal_depth);
+  draws.build_where(frame, state_.address(), {among(stamp_, kEqualDepth, kEqualDepth), kNever, &again_},
+                    scan);
 }
 
 void TwoPhase::read_back(Frame& frame) {

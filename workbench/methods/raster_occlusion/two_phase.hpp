@@ -30,8 +30,8 @@ private:
   void begin_frame(const device::Recorder& frame);
   void list_what_is_new(device::Recorder& frame);
 
-  device::ComputePipeline new_tiles_, tied_;
-  device::GraphicsPipeline tied_pipeline_;
+  device::ComputePipeline new_tiles_, equal_depth_;
+  device::GraphicsPipeline equal_depth_pipeline_;
   device::Buffer tiles_, follow_up_;
   device::DrawBuffers early_, late_, again_, next_;  ///< next: early in the frame that comes
 };

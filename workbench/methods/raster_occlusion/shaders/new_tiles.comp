@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 // Notes the tiles that objects drawn late may touch, and has the work done that follows from there being any.
 // VkDispatchIndirectCommands: of this shader, by what was listed late; of what follows, zeros as yet.
 layout(buffer_reference, scalar) readonly buffer ListedBuffer { uvec3 groups; uint count; };
-layout(buffer_reference, scalar) buffer FollowUpBuffer { uvec3 tied, scan; };
+layout(buffer_reference, scalar) buffer FollowUpBuffer { uvec3 equal_depth, scan; };
 
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
@@ -27,7 +27,7 @@ void main() {
   if (i >= listed.count) return;
   if (i == 0) {
     tiles.at[0] = frame;
-    follow_up.tied = in_rows((objects + 255) / 256, widest);
+    follow_up.equal_depth = in_rows((objects + 255) / 256, widest);
     follow_up.scan = uvec3(scan_groups, 1, 1);
   }
   const BoxData box = boxes.at[late.at[i]];

@@ -23,12 +23,13 @@ struct TriangleRange {
   bool operator==(const TriangleRange&) const = default;
 };
 
-/// A unit is drawn or dropped as a whole. Cell c has the units cell_start[c] … cell_start[c + 1], unit u the
-/// ranges range_start[u] … and the objects object_start[u] …; cones[u] is its facing, where units have one.
-struct Units {
+/// A batch is drawn or dropped as a whole. Cell c has the batches cell_start[c] … cell_start[c + 1], batch u
+/// the ranges range_start[u] … and the objects object_start[u] …; cones[u] is its facing, where batches have
+/// one.
+struct DrawBatches {
   std::vector<std::uint32_t> cell_start{0}, range_start{0}, object_start{0};
   std::vector<TriangleRange> ranges;
-  std::vector<ObjectId> objects;  ///< of the unit's triangles, ascending, each once
+  std::vector<ObjectId> objects;  ///< of the batch's triangles, ascending, each once
   std::vector<FacingCone> cones;
 
   [[nodiscard]] std::uint64_t bytes() const noexcept;
@@ -37,16 +38,18 @@ struct Units {
 /// The lists that ranges refer to: numbers of flat triangles, in the order they are drawn in.
 using TriangleOrder = std::vector<std::uint32_t>;
 
-/// Makes the units of a partition of opaque triangles. `order` is the global list for `simple` (every
-/// triangle, untouched); for the others the copies are appended. `with_cones` gives drawcall-wise units cones
-/// too.
-Units make_units(Strategy strategy, const FlatTriangles& flat, const partition::TrianglePartition& cells,
-                 TriangleOrder& order, bool with_cones = false);
+/// Makes the batches of a partition of opaque triangles. `order` is the global list for `simple` (every
+/// triangle, untouched); for the others the copies are appended. `with_cones` gives drawcall-wise batches
+/// cones too.
+DrawBatches make_draw_batches(Strategy strategy, const FlatTriangles& flat,
+                              const partition::TrianglePartition& cells, TriangleOrder& order,
+                              bool with_cones = false);
 
 /// The same of transparent triangles, which are drawn in order of depth and only once: whatever the strategy,
-/// units are runs of one list. `triangles` are all of them, ascending; triangles[i] stands at positions[i].
-Units make_blended_units(Strategy strategy, const FlatTriangles& flat,
-                         const partition::TrianglePartition& cells, std::span<const std::uint32_t> triangles,
-                         std::span<const std::uint32_t> positions, bool with_cones);
+/// batches are runs of one list. `triangles` are all of them, ascending; triangles[i] stands at positions[i].
+DrawBatches make_blended_batches(Strategy strategy, const FlatTriangles& flat,
+                                 const partition::TrianglePartition& cells,
+                                 std::span<const std::uint32_t> triangles,
+                                 std::span<const std::uint32_t> positions, bool with_cones);
 
 }  // namespace sightline::methods

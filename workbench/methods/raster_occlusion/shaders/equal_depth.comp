@@ -27,7 +27,7 @@ void main() {
   for (uint y = first.y; y <= last.y; ++y) {
     for (uint x = first.x; x <= last.x; ++x) {
       if (tiles.at[1 + y * columns + x] == frame) {
-        state.at[object] = state_word(frame, bits | kTied);
+        state.at[object] = state_word(frame, bits | kEqualDepth);
         return;
       }
     }
