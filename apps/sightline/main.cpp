@@ -1,4 +1,4 @@
-// The command line: a thin face on the lab. Results go to stdout, complaints to stderr.
+// The command line: a thin face on the workbench. Results go to stdout, complaints to stderr.
 #include <unistd.h>
 
 #include <algorithm>

@@ -80,7 +80,7 @@ TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
 }
 
 // Conservative and exact methods keep every object with a vertex inside the clip volume that no other hides;
-// the lab's verification does the hiding, this only what needs no picture: a lone object in view is always
+// verification does the hiding, this only what needs no picture: a lone object in view is always
 // kept.
 TEST_P(Conformance, ALoneObjectInViewIsKept) {
   Scene all = *generate_world(GetParam());

@@ -1,4 +1,4 @@
-// What readers, Vulkan and the lab throw: a sentence a user can act on.
+// What the workbench throws: a sentence a user can act on.
 #pragma once
 
 #include <stdexcept>

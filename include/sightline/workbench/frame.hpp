@@ -33,7 +33,7 @@ struct CullStats {
   std::uint64_t triangles = 0;  ///< submitted
 };
 
-/// Filled by Method::cull, reused frame after frame so that nothing is allocated once it has grown.
+/// Filled by Method::record, reused frame after frame so that nothing is allocated once it has grown.
 struct Frame {
   std::vector<ObjectId> visible;  ///< grouped by mesh as `draws` wants it; each object at most once
   std::vector<DrawCommand> draws;
