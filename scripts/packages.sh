@@ -1,6 +1,6 @@
 # Sourced by demo.sh and test.sh: makes sure that Debian's packages are there.
 
-run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev \
+run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev libmeshoptimizer-dev \
 libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
 openarena-081-maps"
 

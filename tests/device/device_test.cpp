@@ -111,6 +111,35 @@ TEST(DeviceMemory, SaysWhatThereWasNoRoomForAndLeaksNothing) {
   }
 }
 
+TEST(DeviceMemory, ManyBuffersShareFewBlocksAndNoBytes) {
+  device::DeviceOptions options;
+  options.validation = true;
+  device::Device device(options);
+  const std::uint64_t before = device.allocated();
+  std::vector<device::Buffer> buffers;
+  const auto fill = [&](std::uint32_t value) {
+    buffers.emplace_back(device, 4096 * (1 + value % 7), device::Memory::upload, "a test");
+    std::memset(buffers.back().mapped<std::byte>(), static_cast<int>(value), buffers.back().size());
+  };
+  for (std::uint32_t value = 0; value < 200; ++value) fill(value);
+  EXPECT_LE(device.memory().blocks(), 2u);
+  // Every other one goes, so that what comes after them lies in the gaps.
+  std::uint32_t at = 0;
+  std::erase_if(buffers, [&](const device::Buffer&) { return at++ % 2 == 1; });
+  for (std::uint32_t value = 1; value < 200; value += 2) fill(value);
+  EXPECT_LE(device.memory().blocks(), 2u);
+  for (const device::Buffer& buffer : buffers) {
+    const auto* bytes = buffer.mapped<std::uint8_t>();
+    EXPECT_TRUE(std::all_of(bytes, bytes + buffer.size(), [&](std::uint8_t b) { return b == bytes[0]; }));
+    EXPECT_EQ(buffer.size(), 4096u * (1 + bytes[0] % 7));
+    EXPECT_EQ(buffer.address() % 256, 0u);
+  }
+  buffers.clear();
+  EXPECT_EQ(device.allocated(), before);
+  EXPECT_LE(device.memory().blocks(), 1u);
+  EXPECT_EQ(device.messages(), 0u) << device.first_message();
+}
+
 TEST(DeviceMemory, RefusesMoreThanADeviceCanGive) {
   device::Device device;
   EXPECT_THROW(device::Buffer(device, std::uint64_t{1} << 50, device::Memory::device, "too much"), Error);

@@ -202,18 +202,45 @@ TEST(TrianglePartition, WalkFindsExactlyTheCellsThatOverlap) {
 TEST(TriangleClusters, HoldEachTriangleOnceInBoundsThatHoldIt) {
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     const Flat flat(triangles);
-    TrianglePartition partition;
-    partition.build_clusters(flat.span(), flat.ids, 32);
-    SCOPED_TRACE(name);
-    expect_sound_tree(partition, triangles.size());
-    std::size_t held = 0;
-    for (std::uint32_t cell = 0; cell < partition.cells(); ++cell) {
-      EXPECT_LE(partition.triangles(cell).size(), 32u);
-      held += partition.triangles(cell).size();
-      for (const std::uint32_t t : partition.triangles(cell))
-        ASSERT_EQ(united(partition.bounds(cell), bounds_of(triangles[t])), partition.bounds(cell));
+    for (const std::uint32_t size : {4u, 18u, 32u, 128u, 500u, 4096u}) {
+      TrianglePartition partition;
+      partition.build_clusters(flat.span(), flat.ids, size);
+      SCOPED_TRACE(name + ", size " + std::to_string(size));
+      expect_sound_tree(partition, triangles.size());
+      std::size_t held = 0;
+      for (std::uint32_t cell = 0; cell < partition.cells(); ++cell) {
+        EXPECT_LE(partition.triangles(cell).size(), size);
+        held += partition.triangles(cell).size();
+        for (const std::uint32_t t : partition.triangles(cell))
+          ASSERT_EQ(united(partition.bounds(cell), bounds_of(triangles[t])), partition.bounds(cell));
+      }
+      EXPECT_EQ(held, triangles.size());
     }
-    EXPECT_EQ(held, triangles.size());
+  }
+}
+
+// Several alike, triangles of two or three equal corners, and the same one from behind.
+TEST(TriangleClusters, TellTrianglesOfTheSameCornersApart) {
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{1, 1, 0};
+  std::vector<test::Triangle> triangles;
+  for (int i = 0; i < 10; ++i) {
+    for (const test::Triangle& triangle : {test::Triangle{a, b, c},
+                                           {b, c, a},
+                                           {c, b, a},
+                                           {b, d, c},
+                                           {a, a, b},
+                                           {a, b, a},
+                                           {b, a, a},
+                                           {a, a, a},
+                                           {d, c, d}})
+      triangles.push_back(triangle);
+  }
+  const Flat flat(triangles);
+  for (const std::uint32_t size : {4u, 16u, 64u, 256u}) {
+    TrianglePartition partition;
+    partition.build_clusters(flat.span(), flat.ids, size);
+    expect_sound_tree(partition, triangles.size());
+    EXPECT_GE(partition.cells(), triangles.size() / size);
   }
 }
 

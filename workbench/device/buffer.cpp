@@ -8,7 +8,7 @@
 namespace sightline::device {
 
 Buffer::Buffer(Device& device, vk::DeviceSize bytes, Memory memory, std::string_view what) try
-    : device_(&device), size_(std::max<vk::DeviceSize>(bytes, 16)) {
+    : size_(std::max<vk::DeviceSize>(bytes, 16)) {
   using Usage = vk::BufferUsageFlagBits;
   using Property = vk::MemoryPropertyFlagBits;
   const auto usage = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc |
@@ -16,15 +16,13 @@ Buffer::Buffer(Device& device, vk::DeviceSize bytes, Memory memory, std::string_
                      Usage::eIndirectBuffer | Usage::eShaderDeviceAddress;
   buffer_.emplace(device.handle(), vk::BufferCreateInfo{{}, size_, usage});
   const vk::MemoryPropertyFlags host = Property::eHostVisible | Property::eHostCoherent;
-  const vk::MemoryRequirements requirements = buffer_->getMemoryRequirements();
-  memory_.emplace(device.allocate(
-      requirements, memory == Memory::device ? Property::eDeviceLocal : host,
-      memory == Memory::readback ? Property::eHostCached : vk::MemoryPropertyFlags{}, true, what));
-  allocated_ = requirements.size;
-  buffer_->bindMemory(**memory_, 0);
+  memory_ = device.memory().take(
+      buffer_->getMemoryRequirements(), memory == Memory::device ? Property::eDeviceLocal : host,
+      memory == Memory::readback ? Property::eHostCached : Property{}, MemoryPool::For::buffers, what);
+  buffer_->bindMemory(memory_.memory(), memory_.offset());
   address_ = device.handle().getBufferAddress({**buffer_});
   if (memory != Memory::device) {
-    mapped_ = memory_->mapMemory(0, size_);
+    mapped_ = memory_.mapped();
     std::memset(mapped_, 0, size_);
   }
 } catch (const vk::SystemError& error) {
@@ -32,18 +30,12 @@ Buffer::Buffer(Device& device, vk::DeviceSize bytes, Memory memory, std::string_
 }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  std::swap(device_, other.device_);
   std::swap(memory_, other.memory_);
   std::swap(buffer_, other.buffer_);
   std::swap(size_, other.size_);
-  std::swap(allocated_, other.allocated_);
   std::swap(address_, other.address_);
   std::swap(mapped_, other.mapped_);
   return *this;
-}
-
-Buffer::~Buffer() {
-  if (device_) device_->released(allocated_);
 }
 
 Buffer upload_bytes(Device& device, std::span<const std::byte> bytes, std::string_view what) {

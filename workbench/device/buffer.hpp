@@ -24,7 +24,6 @@ public:
   Buffer(Device& device, vk::DeviceSize bytes, Memory memory, std::string_view what);
   Buffer(Buffer&& other) noexcept { *this = std::move(other); }
   Buffer& operator=(Buffer&& other) noexcept;
-  ~Buffer();
 
   [[nodiscard]] vk::Buffer handle() const noexcept { return **buffer_; }
   [[nodiscard]] vk::DeviceAddress address() const noexcept { return address_; }
@@ -35,10 +34,9 @@ public:
   }
 
 private:
-  Device* device_ = nullptr;
-  std::optional<vk::raii::DeviceMemory> memory_;
+  MemoryPiece memory_;
   std::optional<vk::raii::Buffer> buffer_;
-  vk::DeviceSize size_ = 0, allocated_ = 0;
+  vk::DeviceSize size_ = 0;
   vk::DeviceAddress address_ = 0;
   void* mapped_ = nullptr;
 };

@@ -13,6 +13,7 @@ namespace sightline::device {
 
 namespace {
 
+constexpr std::uint64_t kWaitNanoseconds = 1'000'000'000;  // at a time
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 vk::raii::Instance make_instance(const vk::raii::Context& context, bool validation) {
@@ -120,41 +121,31 @@ VkBool32 Device::note(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessag
   return VK_FALSE;
 }
 
-Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_limit) {
+void Device::open_instance(bool validation) {
   try {
     context_.emplace();
   } catch (const std::exception&) {
     throw Error("Vulkan: the loader libvulkan.so.1 is not installed, expected package libvulkan1");
   }
   try {
-    instance_.emplace(make_instance(*context_, options.validation));
+    instance_.emplace(make_instance(*context_, validation));
   } catch (const vk::IncompatibleDriverError&) {
     choose({}, {});  // no driver and no device are one thing to the user
   }
-  if (options.validation) {
-    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    messenger_.emplace(*instance_,
-                       vk::DebugUtilsMessengerCreateInfoEXT{{},
-                                                            Severity::eWarning | Severity::eError,
-                                                            Type::eValidation | Type::ePerformance,
-                                                            &Device::note,
-                                                            this});
-  }
-  const std::vector<vk::raii::PhysicalDevice> devices = instance_->enumeratePhysicalDevices();
-  const vk::raii::PhysicalDevice& physical = choose(devices, options.choice);
-  info_ = describe(physical);
-  limits_ = physical.getProperties().limits;
-  if (options.widest_dispatch) limits_.maxComputeWorkGroupCount[0] = options.widest_dispatch;
-  memory_ = physical.getMemoryProperties();
+  if (!validation) return;
+  using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+  using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+  messenger_.emplace(*instance_, vk::DebugUtilsMessengerCreateInfoEXT{{},
+                                                                      Severity::eWarning | Severity::eError,
+                                                                      Type::eValidation | Type::ePerformance,
+                                                                      &Device::note,
+                                                                      this});
+}
+
+std::uint32_t Device::check(const vk::raii::PhysicalDevice& physical) {
   if (physical.getProperties().apiVersion < VK_API_VERSION_1_3) {
     throw Error(fmt::format("device '{}': it has no Vulkan 1.3, which is expected", info_.name));
   }
-  largest_allocation_ =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>()
-          .get<vk::PhysicalDeviceMaintenance3Properties>()
-          .maxMemoryAllocationSize;
-  features_.emplace(physical, options.withheld);
   if (const auto missing = features_->missing(); !missing.empty()) {
     throw Error(
         fmt::format("device '{}': it lacks {}, which drawing needs", info_.name, fmt::join(missing, ", ")));
@@ -167,15 +158,22 @@ Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_
     throw Error(fmt::format("device '{}': it has no queue for both graphics and compute", info_.name));
   }
   timestamps_ = family->timestampValidBits != 0;
-  const auto family_index = static_cast<std::uint32_t>(family - families.begin());
+  return static_cast<std::uint32_t>(family - families.begin());
+}
+
+void Device::open_device(const vk::raii::PhysicalDevice& physical, std::uint32_t family) {
   constexpr float kPriority = 1;
-  const vk::DeviceQueueCreateInfo queue{{}, family_index, 1, &kPriority};
+  const vk::DeviceQueueCreateInfo queue{{}, family, 1, &kPriority};
   auto chain = features_->enabled();
   chain.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queue);
   device_.emplace(physical, chain.get<vk::DeviceCreateInfo>());
-  queue_.emplace(*device_, family_index, 0);
+  queue_.emplace(*device_, family, 0);
   command_pool_.emplace(
-      *device_, vk::CommandPoolCreateInfo{vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family_index});
+      *device_, vk::CommandPoolCreateInfo{vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family});
+  finished_.emplace(*device_, vk::FenceCreateInfo{});
+}
+
+void Device::make_layout() {
   constexpr auto kNearest = vk::Filter::eNearest;
   constexpr auto kEdge = vk::SamplerAddressMode::eClampToEdge;
   sampler_.emplace(*device_, vk::SamplerCreateInfo{{}, kNearest, kNearest, {}, kEdge, kEdge, kEdge});
@@ -187,6 +185,19 @@ Device::Device(const DeviceOptions& options) try : memory_limit_(options.memory_
   set_layout_.emplace(*device_, vk::DescriptorSetLayoutCreateInfo{{}, bindings});
   const vk::PushConstantRange push{vk::ShaderStageFlagBits::eAll, 0, 128};
   layout_.emplace(*device_, vk::PipelineLayoutCreateInfo{{}, **set_layout_, push});
+}
+
+Device::Device(const DeviceOptions& options) try {
+  open_instance(options.validation);
+  const std::vector<vk::raii::PhysicalDevice> devices = instance_->enumeratePhysicalDevices();
+  const vk::raii::PhysicalDevice& physical = choose(devices, options.choice);
+  info_ = describe(physical);
+  limits_ = physical.getProperties().limits;
+  if (options.widest_dispatch) limits_.maxComputeWorkGroupCount[0] = options.widest_dispatch;
+  features_.emplace(physical, options.withheld);
+  open_device(physical, check(physical));
+  memory_.emplace(physical, *device_, info_.name, options.memory_limit);
+  make_layout();
 } catch (const vk::SystemError& error) {
   throw Error(fmt::format("Vulkan: the device cannot be opened: {}", error.what()));
 }
@@ -199,47 +210,13 @@ void Device::require(std::string_view feature, std::string_view who) const {
   }
 }
 
-vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requirements,
-                                        vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred,
-                                        bool address, std::string_view what) {
-  const auto refuse = [&](std::string_view why) {
-    return Error(fmt::format(
-        "device '{}': no memory for {}: {:.1f} MiB asked for beside {:.1f} MiB in use, {}", info_.name, what,
-        static_cast<double>(requirements.size) / 1048576, static_cast<double>(allocated_) / 1048576, why));
-  };
-  std::optional<std::uint32_t> type;
-  for (const auto flags : {wanted | preferred, wanted}) {
-    for (std::uint32_t i = 0; i < memory_.memoryTypeCount && !type; ++i) {
-      const bool fits = requirements.memoryTypeBits >> i & 1;
-      if (fits && (memory_.memoryTypes[i].propertyFlags & flags) == flags) type = i;
-    }
-  }
-  if (!type) throw refuse("and the device has no memory of that kind");
-  const vk::DeviceSize heap = memory_.memoryHeaps[memory_.memoryTypes[*type].heapIndex].size;
-  const std::uint64_t limit = memory_limit_ ? std::min<std::uint64_t>(memory_limit_, heap) : heap;
-  if (requirements.size > largest_allocation_) {
-    throw refuse(fmt::format("expected at most {:.1f} MiB at once",
-                             static_cast<double>(largest_allocation_) / 1048576));
-  }
-  if (requirements.size > limit || allocated_ > limit - requirements.size) {
-    throw refuse(fmt::format("expected at most {:.1f} MiB in all", static_cast<double>(limit) / 1048576));
-  }
-  const vk::MemoryAllocateFlagsInfo flags{address ? vk::MemoryAllocateFlagBits::eDeviceAddress
-                                                  : vk::MemoryAllocateFlags{}};
-  try {
-    vk::raii::DeviceMemory memory(*device_, vk::MemoryAllocateInfo{requirements.size, *type, &flags});
-    allocated_ += requirements.size;
-    return memory;
-  } catch (const vk::SystemError& error) {
-    throw refuse(error.what());
-  }
-}
-
 void Device::submit_and_wait(const vk::raii::CommandBuffer& commands) const {
   try {
     const vk::CommandBufferSubmitInfo buffer{*commands};
-    queue_->submit2(vk::SubmitInfo2{{}, {}, buffer});
-    queue_->waitIdle();
+    queue_->submit2(vk::SubmitInfo2{{}, {}, buffer}, **finished_);
+    while (device_->waitForFences(**finished_, true, kWaitNanoseconds) == vk::Result::eTimeout) {
+    }
+    device_->resetFences(**finished_);
   } catch (const vk::SystemError& error) {
     throw Error(fmt::format("device '{}': the frame was not finished: {}", info_.name, error.what()));
   }

@@ -12,6 +12,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "workbench/device/features.hpp"
+#include "workbench/device/memory_pool.hpp"
 
 namespace sightline::device {
 
@@ -59,15 +60,12 @@ public:
   /// Throws Error that names `who` unless the device has the feature.
   void require(std::string_view feature, std::string_view who) const;
 
-  /// Device memory for what these requirements describe; throws Error when there is no more. `what` names it.
-  [[nodiscard]] vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& requirements,
-                                                vk::MemoryPropertyFlags wanted,
-                                                vk::MemoryPropertyFlags preferred, bool address,
-                                                std::string_view what);
-  void released(std::uint64_t bytes) noexcept { allocated_ -= bytes; }
-  [[nodiscard]] std::uint64_t allocated() const noexcept { return allocated_; }
+  /// What buffers and images take their memory from.
+  [[nodiscard]] MemoryPool& memory() noexcept { return *memory_; }
+  /// Bytes that buffers and images hold.
+  [[nodiscard]] std::uint64_t allocated() const noexcept { return memory_->in_use(); }
 
-  /// Records, submits, and waits.
+  /// Records, submits, and waits until the device has finished just this.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
   void submit_and_wait(const vk::raii::CommandBuffer& commands) const;
 
@@ -76,17 +74,20 @@ public:
   [[nodiscard]] const std::string& first_message() const noexcept { return first_message_; }
 
 private:
+  void open_instance(bool validation);
+  /// Which of the queue families serves graphics and compute; throws Error where the device is not enough.
+  std::uint32_t check(const vk::raii::PhysicalDevice& physical);
+  void open_device(const vk::raii::PhysicalDevice& physical, std::uint32_t family);
+  void make_layout();
+
   static VKAPI_ATTR VkBool32 VKAPI_CALL note(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                              VkDebugUtilsMessageTypeFlagsEXT,
                                              const VkDebugUtilsMessengerCallbackDataEXT*, void*);
 
   std::atomic<std::uint64_t> messages_ = 0;
   std::string first_message_;
-  std::uint64_t memory_limit_ = 0, allocated_ = 0;
   DeviceInfo info_;
   vk::PhysicalDeviceLimits limits_;
-  vk::PhysicalDeviceMemoryProperties memory_;
-  vk::DeviceSize largest_allocation_ = 0;
   bool timestamps_ = false;
   std::optional<vk::raii::Context> context_;
   std::optional<vk::raii::Instance> instance_;
@@ -94,7 +95,9 @@ private:
   std::optional<Features> features_;
   std::optional<vk::raii::Device> device_;
   std::optional<vk::raii::Queue> queue_;
+  std::optional<MemoryPool> memory_;
   std::optional<vk::raii::CommandPool> command_pool_;
+  std::optional<vk::raii::Fence> finished_;  // of the one submission under way
   std::optional<vk::raii::Sampler> sampler_;
   std::optional<vk::raii::DescriptorSetLayout> set_layout_;
   std::optional<vk::raii::PipelineLayout> layout_;

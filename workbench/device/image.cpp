@@ -33,10 +33,9 @@ Image::Image(Device& device, vk::Format format, std::uint32_t width, std::uint32
                                                       vk::SampleCountFlagBits::e1,
                                                       vk::ImageTiling::eOptimal,
                                                       usage});
-  const vk::MemoryRequirements requirements = image_->getMemoryRequirements();
-  memory_.emplace(device.allocate(requirements, vk::MemoryPropertyFlagBits::eDeviceLocal, {}, false, what));
-  allocated_ = requirements.size;
-  image_->bindMemory(**memory_, 0);
+  memory_ = device.memory().take(image_->getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal,
+                                 {}, MemoryPool::For::images, what);
+  image_->bindMemory(memory_.memory(), memory_.offset());
   view_.emplace(
       device.handle(),
       vk::ImageViewCreateInfo{{}, **image_, vk::ImageViewType::e2D, format, {}, {aspect_, 0, 1, 0, 1}});
@@ -45,10 +44,6 @@ Image::Image(Device& device, vk::Format format, std::uint32_t width, std::uint32
   });
 } catch (const vk::SystemError& error) {
   throw Error(fmt::format("device: no image for {}: {}", what, error.what()));
-}
-
-Image::~Image() {
-  device_.released(allocated_);
 }
 
 void Image::move_to(const vk::raii::CommandBuffer& commands, vk::ImageLayout from, vk::ImageLayout to) const {

@@ -20,7 +20,6 @@ class Image {
 public:
   Image(Device& device, vk::Format format, std::uint32_t width, std::uint32_t height, std::string_view what);
   Image(Image&&) = delete;
-  ~Image();
 
   [[nodiscard]] vk::ImageView view() const noexcept { return **view_; }
   [[nodiscard]] vk::ImageLayout layout() const noexcept { return layout_; }
@@ -44,8 +43,7 @@ private:
   std::uint32_t width_, height_;
   vk::ImageLayout layout_;
   vk::ImageAspectFlags aspect_;
-  vk::DeviceSize allocated_ = 0;
-  std::optional<vk::raii::DeviceMemory> memory_;
+  MemoryPiece memory_;
   std::optional<vk::raii::Image> image_;
   std::optional<vk::raii::ImageView> view_;
 };

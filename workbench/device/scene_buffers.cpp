@@ -34,8 +34,7 @@ std::uint32_t colour_of(ObjectId object, Surface surface) noexcept {
   return channel(5) | channel(3) << 8 | channel(1) << 16 | alpha << 24;
 }
 
-shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept {
-  const Box box = scene.bounds[object];
+shared::BoxData box_data(const Box& box, float radius) noexcept {
   const auto centre = [](float low, float high) { return 0.5f * low + 0.5f * high; };
   const auto half = [](float low, float middle, float high) {
     const float reach = std::max(high - middle, middle - low);
@@ -43,8 +42,12 @@ shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept {
   };
   const Vec3 c{centre(box.min.x, box.max.x), centre(box.min.y, box.max.y), centre(box.min.z, box.max.z)};
   return {
-      {c.x, c.y, c.z, scene.radius[object]},
+      {c.x, c.y, c.z, radius},
       {half(box.min.x, c.x, box.max.x), half(box.min.y, c.y, box.max.y), half(box.min.z, c.z, box.max.z), 0}};
+}
+
+shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept {
+  return box_data(scene.bounds[object], scene.radius[object]);
 }
 
 SceneBuffers::SceneBuffers(Device& device, const Scene& scene)

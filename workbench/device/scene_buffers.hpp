@@ -32,7 +32,8 @@ private:
 /// What an object is painted with: RGBA, 8 bits each, red lowest.
 std::uint32_t colour_of(ObjectId object, Surface surface) noexcept;
 
-/// The box with half extents rounded up, so that it holds the object after rounding.
+/// The box with half extents rounded up, so that it still holds what it held.
+shared::BoxData box_data(const Box& box, float radius) noexcept;
 shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept;
 
 }  // namespace sightline::device

@@ -4,9 +4,11 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 
 #include <sightline/workbench/io.hpp>
 
+#include "library/geometry/linear.hpp"
 #include "workbench/io/gltf_document.hpp"
 #include "workbench/io/gltf_mesh.hpp"
 #include "workbench/io/gltf_transform.hpp"
@@ -42,7 +44,7 @@ public:
   void read() {
     const Json::array_t& nodes = array_of(document_.root(), "nodes");
     std::vector<Pending> pending;
-    for (const std::uint64_t root : roots(nodes)) pending.push_back({root, 0, {}});
+    for (const std::uint64_t root : roots(nodes)) pending.push_back({root, 0, Transform(1)});
     std::reverse(pending.begin(), pending.end());
     std::vector<std::uint8_t> visited(nodes.size(), 0);
     while (!pending.empty()) {
@@ -104,7 +106,8 @@ private:
     if (const Json* matrix = find(node, "matrix")) {
       std::array<double, 16> m;
       numbers_of(*matrix, "matrix", m);
-      return {{{{m[0], m[4], m[8], m[12]}, {m[1], m[5], m[9], m[13]}, {m[2], m[6], m[10], m[14]}}}};
+      m[3] = m[7] = m[11] = 0, m[15] = 1;  // the last row is not looked at
+      return glm::make_mat4(m.data());
     }
     Parts parts;
     if (const Json* translation = find(node, "translation"))
@@ -129,9 +132,9 @@ private:
   void add_camera(const Json& node, std::uint64_t index, const Transform& world) {
     const Json& camera = document_.at("cameras", index);
     if (text_of(camera, "type") != "perspective") return;
-    const auto& r = world.rows;
     // A camera looks down its own -z.
-    const double length = std::sqrt(r[0][2] * r[0][2] + r[1][2] * r[1][2] + r[2][2] * r[2][2]);
+    const glm::dvec3 back(world[2]);
+    const double length = glm::length(back);
     const Affine affine = to_affine(world);
     const Vec3 eye{affine.rows[0].w, affine.rows[1].w, affine.rows[2].w};
     if (!(length > 0) || !std::isfinite(length) || !std::isfinite(eye.x) || !std::isfinite(eye.y) ||
@@ -141,8 +144,7 @@ private:
     std::string name = text_of(node, "name");
     if (name.empty()) name = text_of(camera, "name");
     if (name.empty()) name = fmt::format("camera_{}", scene_.viewpoints.size() + 1);
-    const auto axis = [&](std::size_t row) { return static_cast<float>(-r[row][2] / length); };
-    scene_.viewpoints.push_back({std::move(name), eye, {axis(0), axis(1), axis(2)}});
+    scene_.viewpoints.push_back({std::move(name), eye, geometry::to_vec3(-back / length)});
   }
 
   void add_objects(const Json& node, std::uint64_t mesh_index, const Transform& world) {

@@ -3,17 +3,13 @@
 
 #include <array>
 
+#include <glm/glm.hpp>
+
 #include <sightline/workbench/scene.hpp>
 
 namespace sightline::io::gltf {
 
-/// Rows of (linear part | translation).
-struct Transform {
-  std::array<std::array<double, 4>, 3> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-};
-
-/// First b, then a.
-Transform operator*(const Transform& a, const Transform& b) noexcept;
+using Transform = glm::dmat4;
 
 struct Parts {
   std::array<double, 3> translation{0, 0, 0};

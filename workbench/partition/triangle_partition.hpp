@@ -30,8 +30,8 @@ public:
   void build(Structure structure, const TriangleSpan& all, std::span<const std::uint32_t> triangles,
              std::uint32_t height);
 
-  /// Clusters: at most `size` triangles each, alike in place and facing, each triangle in exactly one. Split
-  /// at the median of whichever of position and normal varies most.
+  /// Clusters: at most `size` triangles each (4 or more), alike in place and facing, each triangle in exactly
+  /// one: meshoptimizer's meshlets, several together where `size` is large.
   void build_clusters(const TriangleSpan& all, std::span<const std::uint32_t> triangles, std::uint32_t size);
 
   [[nodiscard]] std::uint32_t cells() const noexcept {

@@ -31,9 +31,9 @@ void write_report(const std::filesystem::path& folder, const measure::Comparison
   report::PageContent content{comparison, scene, snapshot, "item-buffer.png", {}};
   report::draw_item_buffer(snapshot.view, snapshot.truth).write_png(folder / content.item_buffer);
   for (std::size_t m = 0; m < snapshot.methods.size(); ++m) {
-    content.top_views.push_back("top-view-" + std::to_string(m + 1) + ".png");
-    report::draw_top_view(scene, snapshot, snapshot.methods[m], kTopViewWidth)
-        .write_png(folder / content.top_views.back());
+    content.top_views.push_back("top-view-" + std::to_string(m + 1) + ".svg");
+    io::write_file(folder / content.top_views.back(),
+                   report::draw_top_view(scene, snapshot, snapshot.methods[m], kTopViewWidth));
   }
   // The page comes last: where it stands, its pictures do.
   io::write_file(folder / "index.html", report::make_page(content));

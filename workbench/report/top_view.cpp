@@ -1,8 +1,11 @@
+#include "workbench/report/top_view.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
-#include <vector>
+
+#include <fmt/format.h>
 
 #include "workbench/oracle/pixel_rays.hpp"
 #include "workbench/report/pictures.hpp"
@@ -10,13 +13,17 @@
 namespace sightline::report {
 namespace {
 
-constexpr Colour kFrustum{96, 104, 118, 255};
+constexpr const char* kFrustum = "#606876";
+// A drawing's units are quarters of a pixel, so that short whole numbers say where things are.
+constexpr int kUnits = 4;
+// Boxes of one outcome that a picture holds at most: below 1 MB.
+constexpr std::size_t kMostBoxes = 50'000;
 
 struct Point {
   float x, y;
 };
 
-/// From metres on x–z to pixels.
+/// From metres on x–z to a drawing's units.
 class Map {
 public:
   Map(const Box& world, const Vec3& eye, std::uint32_t width) {
@@ -66,7 +73,7 @@ std::vector<Point> hull_of(std::vector<Point> points) {
   return hull;
 }
 
-void draw_frustum(const Map& map, const View& view, Canvas& canvas) {
+std::string frustum_svg(const Map& map, const View& view) {
   const oracle::PixelRays rays(view);
   std::vector<Point> corners;
   for (const auto& [x, y] :
@@ -76,43 +83,52 @@ void draw_frustum(const Map& map, const View& view, Canvas& canvas) {
     corners.push_back(map(ray.origin.x, ray.origin.z));
     corners.push_back(map(end.x, end.z));
   }
-  const std::vector<Point> hull = hull_of(std::move(corners));
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point &a = hull[i], &b = hull[(i + 1) % hull.size()];
-    canvas.line(a.x, a.y, b.x, b.y, 5, kFrustum);
-  }
+  std::string points;
+  for (const Point& p : hull_of(std::move(corners))) points += fmt::format("{:.0f},{:.0f} ", p.x, p.y);
+  return fmt::format(R"(<polygon points="{}" fill="none" stroke="{}" stroke-width="{}"/>)", points, kFrustum,
+                     2.5 * kUnits);
 }
 
-void draw_eye(const Map& map, const Snapshot& snapshot, Canvas& canvas) {
-  const Vec3 eye = eye_position(snapshot.view), direction = view_direction(snapshot.view);
+std::string eye_svg(const Map& map, const View& view) {
+  const Vec3 eye = eye_position(view), direction = view_direction(view);
   const Point at = map(eye.x, eye.z);
-  const float length = std::hypot(direction.x, direction.z),
-              size = 0.045f * static_cast<float>(canvas.width());
+  const float length = std::hypot(direction.x, direction.z), size = 0.045f * static_cast<float>(map.width());
+  std::string svg;
   if (length > 0.1f) {
-    canvas.line(at.x, at.y, at.x + size * direction.x / length, at.y + size * direction.z / length, 6,
-                kFrustum);
+    svg = fmt::format(R"(<path d="M{:.0f} {:.0f}l{:.0f} {:.0f}" stroke="{}" stroke-width="{}"/>)", at.x, at.y,
+                      size * direction.x / length, size * direction.z / length, kFrustum, 3 * kUnits);
   }
-  canvas.disc(at.x, at.y, 18, {255, 255, 255, 255});
-  canvas.disc(at.x, at.y, 13, {30, 34, 40, 255});
+  return svg + fmt::format(R"(<circle cx="{:.0f}" cy="{:.0f}" r="{}" fill="#1e2228" stroke="#fff" )"
+                           R"(stroke-width="{}"/>)",
+                           at.x, at.y, 8 * kUnits, 2.5 * kUnits);
 }
 
-Colour faded(Colour colour, std::uint8_t alpha) {
-  colour.a = alpha;
-  return colour;
-}
-
-void draw_object(const Map& map, const Box& box, Fate fate, Canvas& canvas) {
-  const Point low = map(box.min.x, box.min.z), high = map(box.max.x, box.max.z);
-  const Colour colour = fate_colour(fate);
-  const float area = (high.x - low.x) * (high.y - low.y),
-              whole = static_cast<float>(canvas.width()) * static_cast<float>(canvas.height());
-  // What covers much of the world, such as a sky, would hide the rest.
-  const bool wide = area > 0.1f * whole;
-  const std::uint8_t fill = fate == Fate::culled ? 26 : fate == Fate::excess ? 70 : 120;
-  const std::uint8_t edge = fate == Fate::culled ? 90 : fate == Fate::excess ? 170 : 255;
-  if (!wide) canvas.fill_rectangle(low.x, low.y, high.x, high.y, faded(colour, fill));
-  const float thickness = fate == Fate::lost ? 4 : 2;
-  canvas.outline_rectangle(low.x, low.y, high.x, high.y, thickness, faded(colour, edge));
+std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<Fate>& fates, Fate fate) {
+  std::vector<FlatBox> boxes, wide;
+  const double whole = static_cast<double>(map.width()) * map.height();
+  for (ObjectId object = 0; object < bounds.size(); ++object) {
+    if (fates[object] != fate) continue;
+    const Point low = map(bounds[object].min.x, bounds[object].min.z),
+                high = map(bounds[object].max.x, bounds[object].max.z);
+    const FlatBox box{
+        static_cast<std::int32_t>(std::lround(low.x)), static_cast<std::int32_t>(std::lround(low.y)),
+        static_cast<std::int32_t>(std::lround(high.x)), static_cast<std::int32_t>(std::lround(high.y))};
+    // What covers much of the world, such as a sky, would hide the rest: its outline has to do.
+    const bool covers = (double{high.x} - low.x) * (double{high.y} - low.y) > 0.1 * whole;
+    (covers ? wide : boxes).push_back(box);
+  }
+  const Colour c = fate_colour(fate);
+  const double fill = fate == Fate::culled ? 0.1 : fate == Fate::excess ? 0.28 : 0.47;
+  const double edge = fate == Fate::culled ? 0.35 : fate == Fate::excess ? 0.67 : 1;
+  const auto path = [&](std::vector<FlatBox> some, double opacity) {
+    if (some.empty()) return std::string();
+    return fmt::format(
+        R"(<path fill="#{0:02x}{1:02x}{2:02x}" stroke="#{0:02x}{1:02x}{2:02x}" fill-opacity="{3}" )"
+        R"(stroke-opacity="{4}" stroke-width="{5}" d="{6}"/>)",
+        c.r, c.g, c.b, opacity, edge, kUnits * (fate == Fate::lost ? 2 : 1),
+        path_of(std::move(some), kMostBoxes));
+  };
+  return path(std::move(boxes), fill) + path(std::move(wide), 0);
 }
 
 }  // namespace
@@ -131,19 +147,40 @@ Colour fate_colour(Fate fate) noexcept {
   return {};
 }
 
-Canvas draw_top_view(const Scene& scene, const Snapshot& snapshot, const Snapshot::Method& method,
-                     std::uint32_t width) {
-  const Map map(extent(scene), eye_position(snapshot.view), 2 * width);
-  Canvas canvas(map.width(), map.height());
-  // The rarer and graver the fate, the later it is drawn, and so on top.
-  for (const Fate fate : {Fate::culled, Fate::excess, Fate::visible, Fate::lost}) {
-    for (ObjectId object = 0; object < scene.size(); ++object) {
-      if (method.fates[object] == fate) draw_object(map, scene.bounds[object], fate, canvas);
+std::string path_of(std::vector<FlatBox> boxes, std::size_t most) {
+  const auto sort = [&] {
+    std::ranges::sort(boxes);
+    boxes.erase(std::unique(boxes.begin(), boxes.end()), boxes.end());
+  };
+  sort();
+  for (std::int32_t grid = 2; boxes.size() > most && grid < 1 << 20; grid *= 2) {
+    for (FlatBox& box : boxes) {
+      box.x0 -= box.x0 & (grid - 1), box.y0 -= box.y0 & (grid - 1);
+      box.x1 += -box.x1 & (grid - 1), box.y1 += -box.y1 & (grid - 1);
     }
+    sort();
   }
-  draw_frustum(map, snapshot.view, canvas);
-  draw_eye(map, snapshot, canvas);
-  return canvas.halved();
+  std::string path;
+  std::int32_t x = 0, y = 0;
+  for (const FlatBox& box : boxes) {
+    const std::int32_t width = std::max(1, box.x1 - box.x0), height = std::max(1, box.y1 - box.y0);
+    fmt::format_to(std::back_inserter(path), "m{} {}h{}v{}h{}z", box.x0 - x, box.y0 - y, width, height,
+                   -width);
+    x = box.x0, y = box.y0;
+  }
+  return path;
+}
+
+std::string draw_top_view(const Scene& scene, const Snapshot& snapshot, const Snapshot::Method& method,
+                          std::uint32_t width) {
+  const Map map(extent(scene), eye_position(snapshot.view), kUnits * width);
+  std::string svg =
+      fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="{}" viewBox="0 0 {} {}">)",
+                  map.width() / kUnits, map.height() / kUnits, map.width(), map.height());
+  // The rarer and graver the fate, the later it is drawn, and so on top.
+  for (const Fate fate : {Fate::culled, Fate::excess, Fate::visible, Fate::lost})
+    svg += outcome_svg(map, scene.bounds, method.fates, fate);
+  return svg + frustum_svg(map, snapshot.view) + eye_svg(map, snapshot.view) + "</svg>\n";
 }
 
 }  // namespace sightline::report

@@ -26,13 +26,6 @@ struct Push {
   std::uint32_t interior, total;
 };
 
-device::shared::BoxData box_data(const Box& box) {
-  Scene one;  // the rounding of boxes is written once, for scenes
-  one.bounds.push_back(box);
-  one.radius.push_back(0);
-  return device::box_data(one, 0);
-}
-
 class Hroc final : public MarkAndDraw {
 public:
   Hroc(device::Renderer& renderer, const Parameters& parameters)
@@ -79,7 +72,7 @@ public:
 
 private:
   [[nodiscard]] device::shared::BoxData box_of(std::uint32_t node) const {
-    return node < tree_.interior() ? box_data(tree_.box(node))
+    return node < tree_.interior() ? device::box_data(tree_.box(node), 0)
                                    : device::box_data(renderer_.scene(), node - tree_.interior());
   }
 
