@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 #include <sightline/result.hpp>
 #include <sightline/types.hpp>
-#include <sightline/world.hpp>
+#include <sightline/view.hpp>
 
 namespace sightline {
 

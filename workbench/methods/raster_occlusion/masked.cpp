@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/world.hpp>
