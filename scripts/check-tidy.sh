@@ -25,6 +25,7 @@ export BUILD=$build OUT=$out
 } | xargs -P "$(nproc)" -L 1 bash -c 'tidy "$@"' tidy && verdict=0 || verdict=1
 
 # A finding in a header is told once, by whoever includes it.
-cat "$out"/*.txt | grep -E ' (warning|error): ' | sed "s,^$PWD/,," | sort -u || true
+cat "$out"/*.txt | grep -E ' (warning|error): ' | sed "s,^$PWD/,," | sort -u || [ $verdict = 0 ] ||
+  echo "clang-tidy-19 itself failed"
 [ $verdict = 0 ] && echo "clang-tidy finds nothing"
 exit $verdict
