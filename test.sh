@@ -1,21 +1,30 @@
 #!/usr/bin/env bash
 # The second command: installs what is missing, builds with every warning an error, and passes every test: the suite in
 # a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what uses threads under
-# ThreadSanitizer, a short run of each fuzz target, the structure of the house, and the installed package as its users see it.
+# ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and clang-tidy's findings, and
+# the installed package as its users see it.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
 start=$(date +%s)
 
 ensure_packages $test_packages
+command -v npm >/dev/null || ensure_packages npm
 
-echo "== structure"
+echo "== structure, layout and clones (jscpd)"
 scripts/check-structure.sh
+tests/structure/planted_includes.sh
+scripts/check-format.sh
+scripts/check-clones.sh
+tests/structure/planted_clones.sh
 
 echo "== release build and tests"
 cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null
 cmake --build --preset release
 ctest --preset release -j"$(nproc)"
+
+echo "== clang-tidy"
+scripts/check-tidy.sh build/release
 
 echo "== command line"
 scripts/check-command-line.sh build/release/sightline

@@ -1,80 +1,83 @@
 #!/usr/bin/env bash
-# The arrows of docs/architecture.md: a folder includes only itself and what it stands on, directly or through others.
-# Fails on any other include, on a folder it does not know, and on a public header that does not compile alone.
+# The arrows of docs/architecture.md: a folder includes only itself and what it stands on, directly or through others;
+# a public header counts as the folder that owns it. Fails on any other include, and on a folder or a header that it
+# does not know. Then every public header must compile alone (scripts/check-headers.sh), but with --arrows.
+# usage: check-structure.sh [--arrows] [ROOT]
 set -euo pipefail
-cd "${1:-$(dirname "$0")/..}"
+arrows_only=
+[ "${1:-}" != --arrows ] || { arrows_only=1; shift; }
+here=$(cd "$(dirname "$0")" && pwd)
+cd "${1:-$here/..}"
 
-# What each folder stands on; what that stands on is allowed too.
-declare -A stands_on=(
-  [library/geometry]=""
-  [library/frustum]="library/geometry"
-  [library/rays]="library/geometry"
-  [library/occlusion]="library/geometry"
-  [library/world]="library/frustum library/rays library/occlusion"
-  [library/pvs]="library/geometry"
-  [workbench/scene]="library/geometry"
-  [workbench/submission]="workbench/scene"
-  [workbench/io]="workbench/scene"
-  [workbench/partition]="workbench/scene"
-  [workbench/camera]="workbench/scene workbench/io"
-  [workbench/device]="workbench/scene workbench/submission"
-  [workbench/methods]="workbench/partition workbench/device"
-  [workbench/oracle]="workbench/scene workbench/device"
-  [workbench/measure]="workbench/methods workbench/oracle workbench/camera"
-  [workbench/report]="workbench/measure"
-  [workbench/reproduce]="workbench/report"
-  [workbench/bake]="workbench/scene workbench/io workbench/oracle workbench/partition library/pvs"
-  [apps/sightline]="workbench/reproduce workbench/bake"
-)
-# Structures that papers share with the library; all else of it the workbench takes through the public headers.
-shared=" library/world/chunk_map.hpp library/rays/bvh.hpp library/rays/wide_bvh.hpp library/rays/wide_walk-inl.hpp
- library/rays/ray_grid.hpp library/rays/ray_hits.hpp library/rays/wide_rays.hpp library/rays/crew.hpp
- library/occlusion/depth_tiles.hpp library/pvs/pvs_file.hpp library/pvs/set_coding.hpp "
-failed=0
+# What each folder stands on; what that stands on is allowed too. `face` is the library as its users see it: public headers alone.
+arrows="
+library/geometry:
+library/frustum: library/geometry
+library/rays: library/geometry
+library/occlusion: library/geometry
+library/world: library/frustum library/rays library/occlusion
+library/pvs: library/geometry
+face:
+workbench/scene:
+workbench/submission: workbench/scene
+workbench/io: workbench/scene
+workbench/partition: workbench/scene
+workbench/camera: workbench/scene workbench/io
+workbench/device: workbench/scene workbench/submission
+workbench/methods: workbench/partition workbench/device
+workbench/oracle: workbench/scene workbench/device library/geometry
+workbench/measure: workbench/methods workbench/oracle workbench/camera
+workbench/report: workbench/measure
+workbench/reproduce: workbench/report
+workbench/bake: workbench/scene workbench/io workbench/oracle workbench/partition library/pvs
+apps/sightline: workbench/reproduce workbench/bake
+bindings/c: face
+bindings/python: face
+examples: face bindings/c
+"
 
-# closure FOLDER: it and all it stands on.
-closure() {
-  local todo="$1" done=" " folder
-  while [ -n "$todo" ]; do
-    folder=${todo%% *}; todo=${todo#"$folder"}; todo=${todo# }
-    [[ $done == *" $folder "* ]] && continue
-    done+="$folder "; todo="${stands_on[$folder]} $todo"; todo=${todo# }; todo=${todo% }
-  done
-  echo "$done"
-}
+# The public headers that each folder owns. Those of the library everybody above it may include.
+owners="
+library/geometry: version.hpp types.hpp result.hpp boxes.hpp view.hpp frustum.hpp projection.hpp ray.hpp
+library/frustum: culling.hpp
+library/occlusion: occlusion.hpp
+library/world: world.hpp tbb.hpp
+library/pvs: pvs.hpp
+face: sightline.hpp
+bindings/c: sightline.h
+workbench/scene: workbench/error.hpp workbench/progress.hpp workbench/parameters.hpp workbench/level_pvs.hpp
+workbench/scene: workbench/scene.hpp workbench/worlds.hpp
+workbench/io: workbench/io.hpp
+workbench/submission: workbench/frame.hpp workbench/triangle_draws.hpp
+workbench/methods: workbench/method.hpp
+"
 
-for folder in library/*/ workbench/*/ apps/*/; do
-  folder=${folder%/}
-  if [ -z "${stands_on[$folder]+known}" ]; then
-    echo "$folder: the structure knows no such folder; add it to scripts/check-structure.sh and docs/architecture.md"
-    failed=1
-    continue
-  fi
-  allowed=$(closure "$folder")
-  while IFS=: read -r file line included; do
-    of=$(cut -d/ -f1-2 <<<"$included")
-    [ -n "${stands_on[$of]+known}" ] || continue
-    [[ $allowed == *" $of "* ]] && continue
-    [[ $folder == library/pvs && $included == workbench/io/* ]] && continue
-    [[ $folder != library/* && $of == library/* && $shared == *" $included"[[:space:]]* ]] && continue
-    echo "$file:$line: $folder must not include $included"
-    failed=1
-  done < <(grep -rnoP --include='*.[hc]pp' --include='*.h' --include='*.comp' --include='*.vert' --include='*.frag' \
-             --include='*.geom' '^\s*#\s*include\s*"\K[^"]+' "$folder" || true)
-done
+# Structures of the library's own that papers share with it, and who may include them; all else of the library the
+# workbench takes through the public headers. What nobody needs any more must go from here.
+shared="
+library/geometry/linear.hpp: workbench/scene/scene.cpp workbench/methods/draw_calls/facing.cpp
+library/geometry/linear.hpp: workbench/partition/triangle_
+library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
+library/geometry/radix_sort.hpp: workbench/submission/draw_list.cpp
+library/rays/bvh.hpp: workbench/methods/ray_pvs/
+library/rays/ray_grid.hpp: workbench/methods/ray_pvs/
+library/rays/ray_hits.hpp: workbench/methods/ray_pvs/ workbench/partition/triangle_rays
+library/rays/wide_rays.hpp: workbench/methods/ray_pvs/
+library/rays/wide_bvh.hpp: workbench/partition/triangle_rays
+library/rays/wide_walk-inl.hpp: workbench/partition/triangle_rays
+library/world/chunk_map.hpp: workbench/methods/raster_occlusion/ground_chunks workbench/reproduce/vertex_chunk
+"
 
-# The library stands alone: nothing of the workbench, no GPU, window or file-format library, no exceptions.
-if grep -rnE '#\s*include\s*["<](workbench/|sightline/workbench/|vulkan|zip|embree3|nlohmann|fmt|CLI|SDL)' library include/sightline/*.h* \
-    | grep -v '^library/pvs/'; then
-  echo "the library must not include what stands above it"
-  failed=1
-fi
+# What the library may include beside itself and the standard library: no GPU, no window, no format of a file's.
+packages="glm/ hwy/ roaring/ zstd.h sys/mman.h"
 
-for header in include/sightline/*.hpp include/sightline/workbench/*.hpp; do
-  if ! echo "#include \"$header\"" | g++ -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I. -Iinclude -x c++ -; then
-    echo "$header does not compile alone"
-    failed=1
-  fi
-done
-[ $failed = 0 ] && echo "the arrows hold, and every public header compiles alone"
-exit $failed
+{
+  printf '[%s]\n%s\n' arrows "$arrows" owners "$owners" shared "$shared" packages "$packages"
+  echo "[folders]"
+  for folder in library/*/ workbench/*/ apps/*/ bindings/*/; do echo "${folder%/}"; done
+  echo "[includes]"
+  grep -rnoP --include='*.[hc]pp' --include='*.[hc]' --include='*.comp' --include='*.vert' --include='*.frag' \
+    --include='*.geom' --include='*.glsl' '^\s*#\s*include\s*["<]\K[^">]+' \
+    include library workbench apps bindings examples || true
+} | awk -v whole="${arrows_only:-yes}" -f "$here/check-structure.awk"
+[ -n "$arrows_only" ] || "$here/check-headers.sh" .

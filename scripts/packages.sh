@@ -5,7 +5,7 @@ libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libroaring-dev libzstd-dev li
 openarena-081-maps"
 
 test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev \
-python3-numpy dpkg-dev clang-19 libclang-rt-19-dev"
+python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14"
 
 # ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
 ensure_packages() {

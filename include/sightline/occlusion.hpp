@@ -8,17 +8,19 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 #include <sightline/result.hpp>
 #include <sightline/types.hpp>
-#include <sightline/world.hpp>
+#include <sightline/view.hpp>
 
 namespace sightline {
 
 namespace occlusion {
 struct DepthTiles;
 struct OccluderTopology;
+struct TriangleBlock;
 }  // namespace occlusion
 
 /// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
@@ -37,6 +39,38 @@ public:
 
 private:
   std::unique_ptr<occlusion::OccluderTopology> topology_;
+};
+
+/// The triangles of many objects, laid out to be asked for frame after frame: what their boxes and spheres
+/// leave, OcclusionBuffer::may_see(const OccludeeTriangles&, …) tests triangle by triangle. Objects are
+/// numbered 0 … objects() - 1. Holds 576 bytes for every 16 triangles begun of an object. assign() and set()
+/// are for one thread while nobody asks.
+class OccludeeTriangles {
+public:
+  OccludeeTriangles();
+  ~OccludeeTriangles();
+  OccludeeTriangles(OccludeeTriangles&&) noexcept;
+  OccludeeTriangles& operator=(OccludeeTriangles&&) noexcept;
+
+  /// Takes all objects anew: of object o the next triangles_per_object[o] triangles of `corners`, three
+  /// finite points each, about the origin of the views that will ask. Refuses, and stays as it is, where
+  /// corners.size() is not three times the sum. Costs a copy of the corners; allocates.
+  Check assign(std::span<const Vec3> corners, std::span<const std::uint32_t> triangles_per_object);
+  /// Gives one object, which has moved, new corners. Refuses, and stays as it is, where there is no such
+  /// object or corners.size() is not 3 · triangles(object). Costs a copy; allocates nothing but a refusal.
+  Check set(std::uint32_t object, std::span<const Vec3> corners);
+
+  [[nodiscard]] std::uint32_t objects() const noexcept;
+  /// 0 where there is no such object.
+  [[nodiscard]] std::uint32_t triangles(std::uint32_t object) const noexcept;
+
+private:
+  friend class OcclusionBuffer;
+  [[nodiscard]] std::span<const occlusion::TriangleBlock> blocks(std::uint32_t object) const noexcept;
+
+  std::vector<occlusion::TriangleBlock> blocks_;  // object by object
+  std::vector<std::uint32_t> first_block_;        // one an object, and the end
+  std::vector<std::uint32_t> triangles_;
 };
 
 /// One view's depth of occluders. Drawing is for one thread, queries for many at once.
@@ -78,6 +112,13 @@ public:
   /// Whether some pixel centre may see one of the triangles, three corners each, relative to the view's
   /// origin: pixel by pixel, so closer to the truth than a box, and dearer. False is certain.
   [[nodiscard]] bool may_see(std::span<const Vec3> triangles) const noexcept;
+  /// The same of one object's triangles; true where there is no such object, false where it has none. As
+  /// dear as its triangles are many, until one is seen. Allocates nothing.
+  [[nodiscard]] bool may_see(const OccludeeTriangles& triangles, std::uint32_t object) const noexcept;
+  /// The same of many objects: keeps in front, in order, those of `objects` that may be seen, and returns how
+  /// many; what stands behind them is undefined. Faster than one by one, for the next ones' triangles are
+  /// fetched meanwhile. Allocates nothing.
+  std::size_t keep_seen(const OccludeeTriangles& triangles, std::span<std::uint32_t> objects) const noexcept;
 
   [[nodiscard]] std::uint32_t width() const noexcept;
   [[nodiscard]] std::uint32_t height() const noexcept;

@@ -2,6 +2,7 @@
 // <sightline/workbench/…>.
 #pragma once
 
+#include <sightline/boxes.hpp>
 #include <sightline/culling.hpp>
 #include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>

@@ -42,6 +42,21 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
+/// A point in metres, in double precision.
+struct WorldPoint {
+  double x = 0, y = 0, z = 0;
+  bool operator==(const WorldPoint&) const = default;
+};
+
+/// A box in metres. Valid iff min <= max on each axis and all coordinates lie within ±kWorldReach.
+struct WorldBox {
+  WorldPoint min, max;
+  bool operator==(const WorldBox&) const = default;
+};
+
+/// 10¹¹ m: beyond this boxes and views are refused.
+inline constexpr double kWorldReach = 1e11;
+
 struct Sphere {
   Vec3 centre;
   float radius = 0;

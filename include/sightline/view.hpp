@@ -15,6 +15,14 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
+/// A view from anywhere: `view` sees the world moved by -origin, so that its own matrices keep their
+/// precision. With an origin of 0 it is the view itself.
+struct WorldView {
+  View view;
+  WorldPoint origin;
+  bool operator==(const WorldView&) const = default;
+};
+
 enum class Depth : std::uint8_t {
   standard,  ///< near plane at 0, far plane at 1
   reversed,  ///< near plane at 1, far plane at 0

@@ -22,21 +22,6 @@ struct WorldState;
 }  // namespace world
 class OcclusionBuffer;
 
-/// A point in metres, in double precision.
-struct WorldPoint {
-  double x = 0, y = 0, z = 0;
-  bool operator==(const WorldPoint&) const = default;
-};
-
-/// A box in metres. Valid iff min <= max on each axis and all coordinates lie within ±kWorldReach.
-struct WorldBox {
-  WorldPoint min, max;
-  bool operator==(const WorldBox&) const = default;
-};
-
-/// 10¹¹ m: beyond this boxes and views are refused.
-inline constexpr double kWorldReach = 1e11;
-
 /// Names an object for as long as it stands in the world. A handle whose object was removed is found out, not
 /// followed: the generation of a reused index differs.
 struct Handle {
@@ -77,14 +62,6 @@ public:
 
 private:
   std::unique_ptr<world::WorldState> state_;
-};
-
-/// A view from anywhere: `view` sees the world moved by -origin, so that its own matrices keep their
-/// precision. With an origin of 0 it is the view itself.
-struct WorldView {
-  View view;
-  WorldPoint origin;
-  bool operator==(const WorldView&) const = default;
 };
 
 /// Views that one call culls together.

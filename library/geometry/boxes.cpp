@@ -1,4 +1,4 @@
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 
 namespace sightline {
 

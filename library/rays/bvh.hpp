@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 
 namespace sightline::rays {
 

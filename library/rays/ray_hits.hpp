@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 
 namespace sightline::rays {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 
 #include "library/geometry/aligned_vector.hpp"
 

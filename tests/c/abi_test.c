@@ -15,12 +15,12 @@ _Static_assert(offsetof(sightline_view, origin) == 136, "view origin");
 _Static_assert(sizeof(sightline_cull_options) == 32, "options");
 _Static_assert(sizeof(sightline_cull_result) == 32, "result");
 
-#define EXPECT(condition)                                                                             \
-  do {                                                                                                \
-    if (!(condition)) {                                                                               \
+#define EXPECT(condition)                                                                          \
+  do {                                                                                             \
+    if (!(condition)) {                                                                            \
       fprintf(stderr, "%s:%d: %s (%s)\n", __FILE__, __LINE__, #condition, sightline_last_error()); \
-      exit(1);                                                                                        \
-    }                                                                                                 \
+      exit(1);                                                                                     \
+    }                                                                                              \
   } while (0)
 
 enum { kCount = 1000 };
@@ -94,8 +94,10 @@ int main(void) {
   /* Refusals. */
   EXPECT(sightline_cull(culler, world, views, 1, NULL, ids, NULL, 10, &result) == SIGHTLINE_BUFFER_TOO_SMALL);
   EXPECT(strstr(sightline_last_error(), "room for") != NULL);
-  EXPECT(sightline_cull(culler, world, views, 0, NULL, ids, NULL, capacity, &result) == SIGHTLINE_BAD_ARGUMENT);
-  EXPECT(sightline_cull(culler, world, views, 9, NULL, ids, NULL, capacity, &result) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_cull(culler, world, views, 0, NULL, ids, NULL, capacity, &result) ==
+         SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_cull(culler, world, views, 9, NULL, ids, NULL, capacity, &result) ==
+         SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_cull(NULL, world, views, 1, NULL, ids, NULL, capacity, &result) == SIGHTLINE_BAD_ARGUMENT);
   views[1].eye_to_clip[0] = NAN;
   EXPECT(sightline_cull(culler, world, views, 2, NULL, ids, NULL, capacity, &result) == SIGHTLINE_BAD_VIEW);

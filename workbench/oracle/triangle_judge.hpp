@@ -6,7 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include <sightline/workbench/method.hpp>
+#include <sightline/workbench/frame.hpp>
+#include <sightline/workbench/triangle_draws.hpp>
 
 #include "workbench/oracle/embree_judge.hpp"
 #include "workbench/oracle/loss.hpp"

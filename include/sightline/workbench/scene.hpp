@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 #include <sightline/pvs.hpp>
 #include <sightline/result.hpp>
 #include <sightline/types.hpp>

@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numeric>
+
+#include <sightline/occlusion.hpp>
+
+#include "support/small_scenes.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+std::vector<Vec3> corners_of(Random& random, std::uint32_t triangles) {
+  std::vector<Vec3> out;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const Box box = test::box_of(random, 2.0f);
+    out.insert(out.end(), {box.min, {box.max.x, box.min.y, box.max.z}, box.max});
+  }
+  return out;
+}
+
+TEST(OccludeeTriangles, AreSeenWhereTheirTrianglesAreOneByOneAndInBatches) {
+  Random random(23);
+  std::size_t hidden = 0, seen = 0;
+  for (int round = 0; round < 100; ++round) {
+    OcclusionBuffer buffer;
+    ASSERT_FALSE(buffer.begin({test::small_view(random), {}}));
+    std::vector<Box> occluders;
+    for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, 6.0f));
+    buffer.draw_boxes(occluders);
+
+    // Whole blocks, parts of blocks, and nothing.
+    const std::vector<std::uint32_t> counts{1, 0, 16, 17, 5, 48, 2};
+    std::vector<std::vector<Vec3>> its;
+    std::vector<Vec3> all;
+    for (const std::uint32_t count : counts) {
+      its.push_back(corners_of(random, count));
+      all.insert(all.end(), its.back().begin(), its.back().end());
+    }
+    OccludeeTriangles occludees;
+    ASSERT_FALSE(occludees.assign(all, counts));
+    its[4] = corners_of(random, 5);
+    ASSERT_FALSE(occludees.set(4, its[4]));
+
+    std::vector<std::uint32_t> ids(counts.size()), expected;
+    std::iota(ids.begin(), ids.end(), 0u);
+    for (const std::uint32_t o : ids) {
+      EXPECT_EQ(occludees.triangles(o), counts[o]);
+      const bool may_see = buffer.may_see(std::span<const Vec3>(its[o]));
+      EXPECT_EQ(buffer.may_see(occludees, o), may_see) << "round " << round << " object " << o;
+      if (may_see) expected.push_back(o);
+      ++(may_see ? seen : hidden);
+    }
+    ids.resize(buffer.keep_seen(occludees, ids));
+    EXPECT_EQ(ids, expected);
+  }
+  EXPECT_GT(seen, 50u);
+  EXPECT_GT(hidden, 50u);
+}
+
+TEST(OccludeeTriangles, RefuseWhatDoesNotFitAndStayAsTheyAre) {
+  OccludeeTriangles occludees;
+  const std::array<Vec3, 6> corners{};
+  const std::array<std::uint32_t, 2> counts{1, 1}, more{1, 2};
+  ASSERT_FALSE(occludees.assign(corners, counts));
+  EXPECT_TRUE(occludees.assign(corners, more));
+  EXPECT_EQ(occludees.objects(), 2u);
+  EXPECT_EQ(occludees.triangles(1), 1u);
+  EXPECT_TRUE(occludees.set(0, corners));
+  EXPECT_TRUE(occludees.set(2, std::span(corners).first(3)));
+  EXPECT_FALSE(occludees.set(1, std::span(corners).first(3)));
+  EXPECT_EQ(occludees.triangles(2), 0u);
+}
+
+TEST(OccludeeTriangles, ThatDoNotExistMayBeSeen) {
+  Random random(24);
+  OcclusionBuffer buffer;
+  ASSERT_FALSE(buffer.begin({test::small_view(random), {}}));
+  EXPECT_TRUE(buffer.may_see(OccludeeTriangles{}, 0));
+}
+
+}  // namespace
+}  // namespace sightline
