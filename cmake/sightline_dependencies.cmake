@@ -44,3 +44,8 @@ target_link_libraries(sightline_dependencies INTERFACE ${headers})
 # Every vector target is another compilation of the same file. Processors with SSSE3 have SSE4 since 2008.
 set(SIGHTLINE_DISABLED_TARGETS "HWY_SSSE3" CACHE STRING "Highway's targets to leave out, as an expression")
 target_compile_definitions(sightline_dependencies INTERFACE HWY_DISABLED_TARGETS=${SIGHTLINE_DISABLED_TARGETS})
+# On ARM, g++ inlines nothing into lambdas where Highway raises the instruction set for a part of a source: NEON is all
+# that the library wants, and the baseline has it.
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+  target_compile_definitions(sightline_dependencies INTERFACE HWY_COMPILE_ONLY_STATIC TOOLCHAIN_MISS_SYS_AUXV_H)
+endif()
