@@ -24,17 +24,23 @@ function(sightline_target name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
 endfunction()
 
-# sightline_module(FOLDER FILES...): one folder of the library, an object library of the folder's name.
+# sightline_part(NAME FILES...): a part of the library, the object library sightline_NAME.
 # The library serves engines and WebAssembly that build without exceptions and RTTI, so it does too.
+function(sightline_part name)
+  add_library(sightline_${name} OBJECT ${ARGN})
+  sightline_target(sightline_${name})
+  target_compile_options(sightline_${name} PRIVATE -fno-exceptions -fno-rtti -fvisibility=hidden
+                         "SHELL:-include ${PROJECT_SOURCE_DIR}/library/exports.hpp")
+  # Highway includes a source again for each vector target: it has to stand alone.
+  set_target_properties(sightline_${name} PROPERTIES UNITY_BUILD OFF)
+  target_link_libraries(sightline_${name} PRIVATE sightline_dependencies)
+  set_property(GLOBAL APPEND PROPERTY sightline_parts sightline_${name})
+endfunction()
+
+# sightline_module(FOLDER FILES...): one folder of the library.
 function(sightline_module folder)
   list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE files)
-  add_library(sightline_${folder} OBJECT ${files})
-  sightline_target(sightline_${folder})
-  target_compile_options(sightline_${folder} PRIVATE -fno-exceptions -fno-rtti)
-  # Highway includes a source again for each vector target: it has to stand alone.
-  set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
-  target_link_libraries(sightline_${folder} PRIVATE sightline_dependencies)
-  set_property(GLOBAL APPEND PROPERTY sightline_modules sightline_${folder})
+  sightline_part(${folder} ${files})
 endfunction()
 
 # sightline_workbench_module(FOLDER [UNITY] FILES...): one folder of the workbench, a static library of the folder's name.
@@ -47,6 +53,7 @@ function(sightline_workbench_module folder)
     set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
   endif()
   target_link_libraries(sightline_${folder} PUBLIC sightline fmt::fmt PRIVATE sightline_dependencies)
+  set_property(GLOBAL APPEND PROPERTY sightline_workbench_modules sightline_${folder})
 endfunction()
 
 # sightline_precompile(TARGET HEADERS...): parses what most sources of the target include once. Only headers of others:

@@ -5,7 +5,6 @@
 #include <sightline/workbench/io.hpp>
 
 #include "library/pvs/cell_coding.hpp"
-#include "library/pvs/pvs_file.hpp"
 #include "library/pvs/set_coding.hpp"
 #include "sample_files.hpp"
 
@@ -46,7 +45,7 @@ int main(int argc, char** argv) try {
       cells.visible.push_back(o);
     cells.first.push_back(cells.visible.size());
   }
-  write(folder / "fuzz_pvs/twelve_cells.pvs", pvs::pack_cells(cells));
+  write(folder / "fuzz_pvs/twelve_cells.pvs", *write_pvs(cells));
   const std::vector<std::uint32_t> order = pvs::object_order(cells);
   for (const pvs::Layout layout : pvs::kLayouts) {
     write(folder / ("fuzz_pvs/layout_" + std::to_string(static_cast<int>(layout))),

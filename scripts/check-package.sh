@@ -1,33 +1,78 @@
 #!/usr/bin/env bash
-# check-package.sh BUILD: installs BUILD into a scratch root and builds and runs the examples against it as a user would:
-# C++ through find_package, C through pkg-config; the same again from the Debian package that cpack makes.
+# check-package.sh BUILD: what users get. Installs BUILD into a scratch root, and builds and runs the examples against it:
+# by find_package and by pkg-config, in C++, C and Python. The same again from the Debian packages that cpack makes, each
+# of which holds what it should and nothing of another.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-consume() {  # ROOT, the installed prefix
-  local root=$1 example
+# says TEXT COMMAND…: the command runs and says so.
+says() {
+  local text=$1 said
+  shift
+  said=$("$@" 2>&1) || { echo "$*: exit $?: $said"; exit 1; }
+  grep -q "$text" <<<"$said" || { echo "$*: did not say '$text': $said"; exit 1; }
+}
+
+# consume ROOT PYTHON: builds and runs the examples against the installed prefix and the folder of its Python module.
+consume() {
+  local root=$1 python=$2 example pc
   rm -rf "$scratch/build"
-  for example in frustum world; do
-    cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      -DCMAKE_PREFIX_PATH="$root" >/dev/null
-    cmake --build "$scratch/build/$example" >/dev/null
+  for example in frustum world c method; do
+    { cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+        -DCMAKE_PREFIX_PATH="$root" && cmake --build "$scratch/build/$example"; } >"$scratch/log" 2>&1 ||
+      { cat "$scratch/log"; echo "examples/$example does not build by find_package"; exit 1; }
   done
-  "$scratch/build/frustum/frustum" | grep -q "of 30000 trees" || { echo "examples/frustum did not say what it should"; exit 1; }
-  "$scratch/build/world/world" | grep -q "frame 2: draw [0-9]* of 100000 boxes" || { echo "examples/world did not say what it should"; exit 1; }
-  local pc
+  says "of 30000 trees" "$scratch/build/frustum/frustum"
+  says "frame 2: draw [0-9]* of 100000 boxes" "$scratch/build/world/world"
+  says "of 1000 boxes" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c/culled"
+  says "of 30000 trees in [0-9]* calls" "$scratch/build/method/method"
+
   pc=$(dirname "$(find "$root" -name sightline.pc)")
-  # shellcheck disable=SC2046
-  cc -std=c11 -Wall -Wextra -Werror examples/c/main.c $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs sightline) -o "$scratch/culled"
-  LD_LIBRARY_PATH=$pc/.. "$scratch/culled" | grep -q "of 1000 boxes" || { echo "examples/c did not say what it should"; exit 1; }
+  local flags
+  flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs sightline)
+  # shellcheck disable=SC2086
+  cc -std=c11 -Wall -Wextra -Werror examples/c/main.c $flags -o "$scratch/culled"
+  # shellcheck disable=SC2086
+  for example in frustum world; do
+    g++ -std=c++20 -Wall -Wextra -Werror examples/$example/main.cpp $flags -o "$scratch/$example"
+  done
+  says "of 1000 boxes" env LD_LIBRARY_PATH="$pc/.." "$scratch/culled"
+  says "of 30000 trees" env LD_LIBRARY_PATH="$pc/.." "$scratch/frustum"
+  says "frame 2: draw [0-9]* of 100000 boxes" env LD_LIBRARY_PATH="$pc/.." "$scratch/world"
+
+  says "500 m" env PYTHONPATH="$python" /usr/bin/python3 examples/python/flight.py
+  says "object-frustum" "$root/bin/sightline" methods
+}
+
+# holds PACKAGE ALLOWED NEEDED…: its files all match ALLOWED, and each of NEEDED is among them.
+holds() {
+  local package=$1 allowed=$2 files needed
+  files=$(dpkg-deb -c "$scratch"/deb/"$package"_*.deb | awk '{print $6}' | grep -v '/$')
+  shift 2
+  if grep -vE "^\./usr/($allowed)" <<<"$files"; then
+    echo "$package holds what is not its own"
+    exit 1
+  fi
+  for needed in "$@"; do
+    grep -qE "^\./usr/$needed$" <<<"$files" || { echo "$package lacks $needed"; exit 1; }
+  done
 }
 
 cmake --install "$1" --prefix "$scratch/root" >/dev/null
-consume "$scratch/root"
-echo "installed tree: find_package(sightline) and pkg-config build and run the examples"
+consume "$scratch/root" "$scratch/root/lib/python3/dist-packages"
+scripts/check-symbols.sh "$(echo "$scratch"/root/lib/libsightline.so.*.*.*)" "$scratch/root/lib/libsightline.a"
+echo "installed tree: the examples build by find_package and by pkg-config and run, in C++, C and Python"
 
-(cd "$1" && cpack -G DEB -B "$scratch/deb" >/dev/null)
-dpkg-deb -x "$scratch"/deb/*.deb "$scratch/debian"
-consume "$scratch/debian/usr"
-echo "Debian package: the same"
+(cd "$1" && cpack -G DEB -B "$scratch/deb") >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+holds libsightline0 'lib/libsightline\.so\.' 'lib/libsightline\.so\.0'
+holds libsightline-dev 'include/sightline/[a-z_]+\.(hpp|h)$|lib/(libsightline\.(a|so)|cmake/sightline/sightline-|cmake/sightline/sightline_targets|pkgconfig/)' \
+  'include/sightline/world\.hpp' 'lib/libsightline\.a' 'lib/libsightline\.so' 'lib/pkgconfig/sightline\.pc' \
+  'lib/cmake/sightline/sightline-config\.cmake'
+holds python3-sightline 'lib/python3/dist-packages/sightline\.' 'lib/python3/dist-packages/sightline\..*\.so'
+holds sightline 'bin/sightline$|include/sightline/workbench/|lib/(libsightline_workbench\.a$|cmake/sightline/sightline_workbench_targets)' \
+  'bin/sightline' 'include/sightline/workbench/method\.hpp' 'lib/libsightline_workbench\.a'
+for package in "$scratch"/deb/*.deb; do dpkg-deb -x "$package" "$scratch/debian"; done
+consume "$scratch/debian/usr" "$scratch/debian/usr/lib/python3/dist-packages"
+echo "Debian packages: $(cd "$scratch/deb" && echo *.deb): the same"

@@ -8,9 +8,9 @@
 #include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
-#include "library/pvs/pvs_file.hpp"
 #include "workbench/bake/bake.hpp"
 #include "workbench/bake/bake_check.hpp"
+#include "workbench/bake/pvs_file.hpp"
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/table.hpp"
 
@@ -111,7 +111,7 @@ Vec3 parse_point(const std::string& text) {
 
 int run_query(const std::string& file, const std::string& at) {
   const Vec3 point = parse_point(at);
-  const CellPvs cells = pvs::read_pvs(file);
+  const CellPvs cells = bake::read_pvs_file(file);
   const std::uint32_t cell = cells.cell_at(point);
   if (cell == kNoCell) {
     fmt::print("{},{},{}: in no open cell; everything may be seen\n", point.x, point.y, point.z);
@@ -129,8 +129,8 @@ int run_query(const std::string& file, const std::string& at) {
 
 void attach_pvs(Scene& scene, const std::string& file) {
   if (file.empty()) return;
-  auto cells = std::make_shared<CellPvs>(pvs::read_pvs(file));
-  pvs::check_belongs(*cells, file, scene);
+  auto cells = std::make_shared<CellPvs>(bake::read_pvs_file(file));
+  bake::check_belongs(*cells, file, scene);
   scene.cells = std::move(cells);
 }
 

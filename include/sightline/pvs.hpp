@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include <sightline/result.hpp>
 #include <sightline/types.hpp>
 
 namespace sightline {
@@ -31,5 +34,15 @@ struct CellPvs {
     return std::span(visible).subspan(first[cell], first[cell + 1] - first[cell]);
   }
 };
+
+/// Reads the bytes of a file that write_pvs or `sightline bake` made. Refuses, in one sentence that begins
+/// with `name`, what is damaged, truncated, of another version, or no such file at all. Safe with any bytes;
+/// allocates no more than cells and objects of a sound header allow. A library that was built without
+/// SIGHTLINE_PVS refuses all.
+Result<CellPvs> read_pvs(std::span<const std::byte> bytes, std::string_view name = "pvs");
+
+/// The bytes of a file. The same bytes for the same sets, in whichever layout is shortest; takes seconds for
+/// large ones. Refuses cells that are not as CellPvs says, and sets that are larger than read_pvs would read.
+Result<std::vector<std::byte>> write_pvs(const CellPvs& cells);
 
 }  // namespace sightline

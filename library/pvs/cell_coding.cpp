@@ -7,16 +7,10 @@
 #include <limits>
 #include <numeric>
 
-#include <sightline/workbench/error.hpp>
-
+#include "library/pvs/byte_reader.hpp"
 #include "library/pvs/set_coding.hpp"
-#include "workbench/io/byte_reader.hpp"
 
 namespace sightline::pvs {
-
-using io::Bytes;
-using io::fits;
-using io::read_at;
 
 namespace {
 
@@ -73,29 +67,29 @@ struct Rows {
 };
 
 // Reads what put_rows wrote, to the end of the bytes.
-Rows read_rows(Bytes bytes, std::size_t at, std::size_t rows, std::size_t columns, const std::string& name) {
+Complaint read_rows(Bytes bytes, std::size_t at, std::size_t rows, std::size_t columns, Rows& out) {
   const std::uint64_t stride = stride_of(columns), a_block = rows_a_block(stride);
-  Rows out;
   for (std::uint64_t first = 0; first < rows; first += a_block) {
-    if (!fits(at, 4, bytes.size())) throw Error(name + ": ends before its last cell");
+    if (!fits(at, 4, bytes.size())) return "ends before its last cell";
     const std::size_t length = read_at<std::uint32_t>(bytes, at);
     at += 4;
-    if (!fits(at, length, bytes.size())) throw Error(name + ": a bitmap ends beyond the file");
+    if (!fits(at, length, bytes.size())) return "a bitmap ends beyond the file";
     const std::uint64_t here = std::min<std::uint64_t>(a_block, rows - first);
-    walk_set(bytes.subspan(at, length), static_cast<std::uint32_t>(here * stride), name,
-             [&](std::uint32_t bit) {
-               const std::uint64_t row = first + bit / stride, column = bit % stride;
-               if (column >= columns) throw Error(name + ": holds numbers out of range");
-               if (out.members.size() >= kMostMembers)
-                 throw Error(name + ": holds more than Sightline reads");
-               while (out.first.size() <= row) out.first.push_back(out.members.size());
-               out.members.push_back(static_cast<std::uint32_t>(column));
-             });
+    auto take = [&](std::uint32_t bit) -> Complaint {
+      const std::uint64_t row = first + bit / stride, column = bit % stride;
+      if (column >= columns) return "holds numbers out of range";
+      if (out.members.size() >= kMostMembers) return kTooManyMembers;
+      while (out.first.size() <= row) out.first.push_back(out.members.size());
+      out.members.push_back(static_cast<std::uint32_t>(column));
+      return nullptr;
+    };
+    const Bytes bitmap = bytes.subspan(at, length);
+    if (const Complaint bad = walk_set(bitmap, static_cast<std::uint32_t>(here * stride), take)) return bad;
     at += length;
   }
-  if (at != bytes.size()) throw Error(name + ": goes on after its last cell");
+  if (at != bytes.size()) return "goes on after its last cell";
   out.first.resize(rows + 1, out.members.size());
-  return out;
+  return nullptr;
 }
 
 Numbers open_cells(const CellPvs& cells) {
@@ -124,6 +118,107 @@ Numbers inverse(std::span<const std::uint32_t> order) {
   Numbers place(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
   return place;
+}
+
+// All but the rows.
+struct Head {
+  Layout layout{};
+  bool ordered = false;
+  Bytes cells;             // a byte each
+  Numbers order;           // which object stands at each place, where they are ordered
+  std::size_t length = 0;  // of the head itself
+};
+
+// Which object stands at each place.
+Complaint read_order(Bytes planes, std::size_t objects, Numbers& order) {
+  order.assign(objects, 0);
+  for (std::size_t i = 0; i < 4 * objects; ++i) {
+    order[i % objects] |= static_cast<std::uint32_t>(planes[i]) << (8 * (i / objects));
+  }
+  std::vector<std::uint8_t> stands(objects, 0);
+  for (const std::uint32_t object : order) {
+    if (object >= objects || stands[object]) return "its objects stand in no order";
+    stands[object] = 1;
+  }
+  return nullptr;
+}
+
+Complaint read_head(Bytes bytes, std::size_t count, std::size_t objects, Head& head) {
+  if (!fits(2, count, bytes.size())) return "ends before its last cell";
+  head.layout = static_cast<Layout>(bytes[0]);
+  head.ordered = bytes[1] == std::byte{1};
+  if (head.layout > Layout::by_object || (!head.ordered && bytes[1] != std::byte{0})) {
+    return "its layout is unknown";
+  }
+  head.cells = bytes.subspan(2, count);
+  head.length = 2 + count;
+  for (const std::byte cell : head.cells) {
+    const bool plain = cell <= std::byte{kOpen};
+    if (cell > std::byte{kOpen + 3} || (!plain && head.layout != Layout::by_difference)) {
+      return "a cell is neither open nor closed";
+    }
+  }
+  if (!head.ordered) return nullptr;
+  if (!fits(head.length, std::uint64_t{4} * objects, bytes.size())) {
+    return "ends within the order of its objects";
+  }
+  const Bytes planes = bytes.subspan(head.length, 4 * objects);
+  head.length += 4 * objects;
+  return read_order(planes, objects, head.order);
+}
+
+Complaint decode_by_object(Bytes bytes, const Head& head, const Numbers& open, CellPvs& cells) {
+  // An order takes four bytes an object, so that there are as many objects as bytes account for.
+  if (!head.ordered) return "its objects stand in no order";
+  Rows seen;
+  if (const Complaint bad = read_rows(bytes, head.length, cells.objects, open.size(), seen)) return bad;
+  for (const std::uint32_t i : seen.members) ++cells.first[open[i] + 1];
+  std::partial_sum(cells.first.begin(), cells.first.end(), cells.first.begin());
+  cells.visible.resize(seen.members.size());
+  std::vector<std::uint64_t> next(cells.first.begin(), cells.first.end() - 1);
+  const Numbers place = inverse(head.order);
+  for (std::uint32_t object = 0; object < cells.objects; ++object) {
+    for (const std::uint32_t i : seen[place[object]]) cells.visible[next[open[i]]++] = object;
+  }
+  return nullptr;
+}
+
+// Appends what a cell sees, given how it differs from the cell that it is like. False where there is none.
+bool append_cell(CellPvs& cells, std::uint32_t cell, std::uint8_t like, const Numbers& difference) {
+  if (like == 0) {
+    cells.visible.insert(cells.visible.end(), difference.begin(), difference.end());
+    return true;
+  }
+  const std::uint32_t other = neighbour(cells, cell, like);
+  if (other == kNoCell || !cells.open[other]) return false;
+  const auto known = cells.seen_from(other);
+  const Numbers seen(known.begin(), known.end());
+  std::ranges::set_symmetric_difference(seen, difference, std::back_inserter(cells.visible));
+  return true;
+}
+
+std::string decode_by_cell(Bytes bytes, const Head& head, const Numbers& open, CellPvs& cells) {
+  Rows rows;
+  if (const Complaint bad = read_rows(bytes, head.length, open.size(), cells.objects, rows)) return bad;
+  Numbers difference;
+  std::size_t row = 0;
+  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+    if (cells.open[cell]) {
+      const auto columns = rows[row++];
+      difference.assign(columns.begin(), columns.end());
+      if (head.ordered) {
+        for (std::uint32_t& object : difference) object = head.order[object];
+        std::ranges::sort(difference);
+      }
+      const auto like = static_cast<std::uint8_t>(static_cast<std::uint8_t>(head.cells[cell]) - kOpen);
+      if (!append_cell(cells, cell, like, difference)) {
+        return "cell " + std::to_string(cell) + " is like one that is not there";
+      }
+      if (cells.visible.size() > kMostMembers) return kTooManyMembers;
+    }
+    cells.first[cell + 1] = cells.visible.size();
+  }
+  return {};
 }
 
 }  // namespace
@@ -201,80 +296,21 @@ std::vector<std::byte> code_cells(const CellPvs& cells, Layout layout, std::span
   return out;
 }
 
-void decode_cells(Bytes bytes, const std::string& name, CellPvs& cells) {
-  const auto fail = [&](const std::string& why) { throw Error(name + ": " + why); };
+Check decode_cells(Bytes bytes, const std::string& name, CellPvs& cells) {
   const std::size_t count = std::size_t{cells.counts[0]} * cells.counts[1] * cells.counts[2];
-  if (!fits(2, count, bytes.size())) fail("ends before its last cell");
-  const auto layout = static_cast<Layout>(bytes[0]);
-  const bool ordered = bytes[1] == std::byte{1};
-  if (layout > Layout::by_object || (!ordered && bytes[1] != std::byte{0})) fail("its layout is unknown");
-  std::size_t at = 2 + count;
-  const Bytes heads = bytes.subspan(2, count);
-  for (const std::byte head : heads) {
-    const bool plain = head <= std::byte{kOpen};
-    if (head > std::byte{kOpen + 3} || (!plain && layout != Layout::by_difference)) {
-      fail("a cell is neither open nor closed");
-    }
-    cells.open.push_back(head != std::byte{kClosed});
-  }
+  Head head;
+  if (const Complaint bad = read_head(bytes, count, cells.objects, head)) return Failure{name + ": " + bad};
+  for (const std::byte cell : head.cells) cells.open.push_back(cell != std::byte{kClosed});
   const Numbers open = open_cells(cells);
-  const std::size_t objects = cells.objects;
-  Numbers order;
-  if (ordered) {
-    if (!fits(at, std::uint64_t{4} * objects, bytes.size())) fail("ends within the order of its objects");
-    order.assign(objects, 0);
-    for (std::size_t i = 0; i < 4 * objects; ++i) {
-      order[i % objects] |= static_cast<std::uint32_t>(bytes[at + i]) << (8 * (i / objects));
-    }
-    at += 4 * objects;
-    std::vector<std::uint8_t> stands(objects, 0);
-    for (const std::uint32_t object : order) {
-      if (object >= objects || stands[object]) fail("its objects stand in no order");
-      stands[object] = 1;
-    }
-  }
   cells.first.assign(count + 1, 0);
-  if (layout == Layout::by_object) {
-    // An order takes four bytes an object, so that there are as many objects as bytes account for.
-    if (!ordered) fail("its objects stand in no order");
-    const Rows seen = read_rows(bytes, at, objects, open.size(), name);
-    for (const std::uint32_t i : seen.members) ++cells.first[open[i] + 1];
-    std::partial_sum(cells.first.begin(), cells.first.end(), cells.first.begin());
-    cells.visible.resize(seen.members.size());
-    std::vector<std::uint64_t> next(cells.first.begin(), cells.first.end() - 1);
-    const Numbers place = inverse(order);
-    for (std::uint32_t object = 0; object < objects; ++object) {
-      for (const std::uint32_t i : seen[place[object]]) cells.visible[next[open[i]]++] = object;
-    }
-    return;
+  std::string bad;
+  if (head.layout == Layout::by_object) {
+    if (const Complaint why = decode_by_object(bytes, head, open, cells)) bad = why;
+  } else {
+    bad = decode_by_cell(bytes, head, open, cells);
   }
-  const Rows rows = read_rows(bytes, at, open.size(), objects, name);
-  Numbers difference;
-  std::size_t row = 0;
-  for (std::uint32_t cell = 0; cell < count; ++cell) {
-    if (cells.open[cell]) {
-      const auto columns = rows[row++];
-      difference.assign(columns.begin(), columns.end());
-      if (ordered) {
-        for (std::uint32_t& object : difference) object = order[object];
-        std::ranges::sort(difference);
-      }
-      const auto like = static_cast<std::uint8_t>(heads[cell]) - kOpen;
-      if (like == 0) {
-        cells.visible.insert(cells.visible.end(), difference.begin(), difference.end());
-      } else {
-        const std::uint32_t other = neighbour(cells, cell, static_cast<std::uint8_t>(like));
-        if (other == kNoCell || !cells.open[other]) {
-          fail("cell " + std::to_string(cell) + " is like one that is not there");
-        }
-        const auto known = cells.seen_from(other);
-        const Numbers seen(known.begin(), known.end());
-        std::ranges::set_symmetric_difference(seen, difference, std::back_inserter(cells.visible));
-      }
-      if (cells.visible.size() > kMostMembers) fail("holds more than Sightline reads");
-    }
-    cells.first[cell + 1] = cells.visible.size();
-  }
+  if (!bad.empty()) return Failure{name + ": " + bad};
+  return std::nullopt;
 }
 
 }  // namespace sightline::pvs

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <sightline/result.hpp>
+
 namespace sightline::pvs {
 
 /// How members that lie close are stored.
@@ -19,26 +21,31 @@ enum class Runs {
 /// A set, ascending.
 std::vector<std::byte> pack_set(std::span<const std::uint32_t> members, Runs runs = Runs::coded);
 
+/// What is wrong, in words that follow the name of a set; null where nothing is.
+using Complaint = const char*;
+
 /// Reads one, and checks everything: members ascending and below `limit`, nothing left over. Calls
-/// visit(context, member) for each. Throws Error; `what` names the set.
-void walk_set(std::span<const std::byte> bytes, std::uint32_t limit, const std::string& what,
-              void (*visit)(void* context, std::uint32_t member), void* context);
+/// visit(context, member) for each until it complains.
+Complaint walk_set(std::span<const std::byte> bytes, std::uint32_t limit,
+                   Complaint (*visit)(void* context, std::uint32_t member), void* context);
 
 template <class Visit>
-void walk_set(std::span<const std::byte> bytes, std::uint32_t limit, const std::string& what, Visit&& visit) {
-  walk_set(
-      bytes, limit, what,
-      [](void* context, std::uint32_t member) {
-        (*static_cast<std::remove_reference_t<Visit>*>(context))(member);
+Complaint walk_set(std::span<const std::byte> bytes, std::uint32_t limit, Visit&& visit) {
+  return walk_set(
+      bytes, limit,
+      [](void* context, std::uint32_t member) -> Complaint {
+        return (*static_cast<std::remove_reference_t<Visit>*>(context))(member);
       },
       &visit);
 }
 
-/// Appends the members to `members`. Throws Error, also where there are more than Sightline reads.
-void unpack_set(std::span<const std::byte> bytes, std::uint32_t limit, const std::string& what,
-                std::vector<std::uint32_t>& members);
+/// Appends the members to `members`, and complains also where there are more than Sightline reads. `what`
+/// names the set.
+Check unpack_set(std::span<const std::byte> bytes, std::uint32_t limit, const std::string& what,
+                 std::vector<std::uint32_t>& members);
 
 /// A run is short in a file and long in memory.
 inline constexpr std::size_t kMostMembers = std::size_t{1} << 27;
+inline constexpr Complaint kTooManyMembers = "holds more than Sightline reads";
 
 }  // namespace sightline::pvs

@@ -15,7 +15,7 @@ void ChunkMap::arrange() {
       Block& b = blocks_[block];
       for (std::uint32_t i = 0; i < b.count; ++i) {
         Chunk& c = chunks_[b.chunks[i]];
-        const auto from = static_cast<std::ptrdiff_t>(c.first_lane), to = from + c.capacity;
+        const std::ptrdiff_t from = c.first_lane, to = from + static_cast<std::ptrdiff_t>(c.capacity);
         c.first_lane = b.first_lane[i] = static_cast<std::uint32_t>(ids.size());
         lanes.insert(lanes.end(), lanes_.begin() + 6 * from, lanes_.begin() + 6 * to);
         ids.insert(ids.end(), ids_.begin() + from, ids_.begin() + to);

@@ -7,8 +7,8 @@
 #include <sightline/workbench/method.hpp>
 #include <sightline/workbench/worlds.hpp>
 
-#include "library/pvs/pvs_file.hpp"
 #include "support/temporary_folder.hpp"
+#include "workbench/bake/pvs_file.hpp"
 #include "workbench/io/files.hpp"
 #include "workbench/oracle/embree_judge.hpp"
 #include "workbench/oracle/loss.hpp"
@@ -21,6 +21,16 @@ const CellOptions kCoarse{.cell = 15, .target = 1e-3};
 
 Scene forest() {
   return *generate_world("forest?trees=150&size=60");
+}
+
+TEST(PvsFile, OfAnotherSceneIsRefused) {
+  const Scene a = *generate_world("soup?triangles=200&seed=1"),
+              b = *generate_world("soup?triangles=200&seed=2");
+  CellPvs cells;
+  cells.objects = static_cast<std::uint32_t>(a.size());
+  cells.scene = fingerprint(a);
+  EXPECT_NO_THROW(check_belongs(cells, "a.pvs", a));
+  EXPECT_THROW(check_belongs(cells, "a.pvs", b), Error);
 }
 
 TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
@@ -71,7 +81,7 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   Scene scene = forest();
   const test::TemporaryFolder folder;
   const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3}, folder / "a.pvs", {});
-  scene.cells = std::make_shared<CellPvs>(pvs::read_pvs(folder / "a.pvs"));
+  scene.cells = std::make_shared<CellPvs>(bake::read_pvs_file(folder / "a.pvs"));
   const auto method = *create_method("baked", scene);
   const oracle::EmbreeJudge judge(scene);
   scene::Random random(5);

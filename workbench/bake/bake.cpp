@@ -14,9 +14,10 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "library/pvs/pvs_file.hpp"
+#include "library/pvs/checksum.hpp"
 #include "library/pvs/set_coding.hpp"
 #include "workbench/bake/journal.hpp"
+#include "workbench/bake/pvs_file.hpp"
 #include "workbench/io/byte_reader.hpp"
 
 #ifdef SIGHTLINE_MPI
@@ -145,10 +146,10 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   for (const auto& [cell, set] : done) {
     cells.open[cell] = !set.empty();
     if (!set.empty())
-      pvs::unpack_set(set, cells.objects, "bake: cell " + std::to_string(cell), cells.visible);
+      or_throw(pvs::unpack_set(set, cells.objects, "bake: cell " + std::to_string(cell), cells.visible));
     cells.first.push_back(cells.visible.size());
   }
-  pvs::write_pvs(cells, file);
+  write_pvs_file(cells, file);
   for (const auto& old : journals_of(file)) {
     std::error_code ignored;
     std::filesystem::remove(old, ignored);

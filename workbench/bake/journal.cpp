@@ -2,7 +2,7 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "library/pvs/pvs_file.hpp"
+#include "library/pvs/checksum.hpp"
 #include "workbench/io/byte_reader.hpp"
 #include "workbench/io/files.hpp"
 

@@ -1,0 +1,264 @@
+// Prints what the library answers as lines of "name hash", for one platform to be held against another:
+// visible sets, what rays meet, and depth images. Worlds and views are made by additions, multiplications and
+// square roots alone, which round alike everywhere; sine and tangent do not.
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <sightline/sightline.hpp>
+
+#include "library/rays/wide_rays.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace {
+
+using namespace sightline;
+
+class Hash {
+public:
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    unsigned char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001b3u;
+  }
+  void add_vec(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
+  void add_plane(const Plane& p) { add_vec(p.normal), add(p.distance); }
+
+  void print(const std::string& name) const {
+    std::printf("%s %016llx\n", name.c_str(), static_cast<unsigned long long>(state_));
+  }
+
+private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+template <class Range>
+void print(const std::string& name, const Range& values) {
+  Hash hash;
+  for (const auto& value : values) hash.add(value);
+  hash.print(name);
+}
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+float dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec3 normalised(const Vec3& v) {
+  const float length = std::sqrt(dot(v, v));
+  return {v.x / length, v.y / length, v.z / length};
+}
+
+enum class Kind { perspective, reversed, orthographic };
+
+View view_of(scene::Random& random, Kind kind, const Vec3& eye) {
+  const Vec3 back =
+      normalised({random.between(-1, 1), random.between(-0.3f, 0.3f), random.between(0.2f, 1.0f)});
+  const Vec3 right = normalised(cross({0, 1, 0}, back)), up = cross(back, right);
+  View view;
+  view.width = 320, view.height = 200;
+  view.world_to_eye.m = {right.x, up.x, back.x, 0, right.y,          up.y,          back.y,          0,
+                         right.z, up.z, back.z, 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1};
+  const float near = 0.1f, far = 1000, scale_x = 0.9f, scale_y = 1.44f;
+  switch (kind) {
+    case Kind::perspective:
+      view.eye_to_clip.m = {
+          scale_x, 0, 0, 0, 0, scale_y, 0, 0, 0, 0, far / (near - far), -1, 0, 0, near * far / (near - far),
+          0};
+      break;
+    case Kind::reversed:  // without a far plane
+      view.eye_to_clip.m = {scale_x, 0, 0, 0, 0, scale_y, 0, 0, 0, 0, 0, -1, 0, 0, near, 0};
+      break;
+    case Kind::orthographic:
+      view.eye_to_clip.m = {0.01f, 0, 0, 0, 0, 0.016f, 0, 0, 0, 0, -0.001f, 0, 0, 0, 0, 1};
+  }
+  return view;
+}
+
+constexpr Box kSpace{{-200, -10, -200}, {200, 30, 200}};
+
+Box box_of(scene::Random& random, float most) {
+  const Vec3 at = random.inside(kSpace);
+  const Vec3 half{random.between(0.1f, most), random.between(0.1f, most), random.between(0.1f, most)};
+  return {{at.x - half.x, at.y - half.y, at.z - half.z}, {at.x + half.x, at.y + half.y, at.z + half.z}};
+}
+
+WorldBox world_box(const Box& b) {
+  return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
+}
+
+struct NamedView {
+  std::string name;
+  View view;
+};
+
+std::vector<NamedView> views() {
+  scene::Random random(1);
+  std::vector<NamedView> all;
+  for (const auto& [name, kind] : {std::pair{"perspective", Kind::perspective},
+                                   {"reversed", Kind::reversed},
+                                   {"orthographic", Kind::orthographic}}) {
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 eye = random.inside({{-100, 0, -100}, {100, 20, 100}});
+      all.push_back({std::string(name) + "." + std::to_string(i), view_of(random, kind, eye)});
+    }
+  }
+  return all;
+}
+
+void print_geometry(const std::vector<NamedView>& views) {
+  Hash planes, points, areas, rects;
+  scene::Random random(2);
+  for (const NamedView& named : views) {
+    const Frustum frustum = make_frustum(named.view, kSpace);
+    for (const Plane& plane : frustum.planes) planes.add_plane(plane);
+    points.add_vec(eye_position(named.view)), points.add_vec(view_direction(named.view));
+    const Mat4 to_clip = world_to_clip(named.view);
+    for (const float x : to_clip.m) points.add(x);
+    const Projector projector = make_projector(named.view, kSpace);
+    for (int i = 0; i < 500; ++i) {
+      const Sphere sphere{random.inside(kSpace), random.between(0.1f, 5)};
+      areas.add(projected_area(projector, sphere)), areas.add(projected_area_bound(projector, sphere));
+      const Rect rect = projected_rect(projector, box_of(random, 4));
+      rects.add(rect.min_x), rects.add(rect.min_y), rects.add(rect.max_x), rects.add(rect.max_y);
+    }
+  }
+  planes.print("geometry.planes"), points.print("geometry.points");
+  areas.print("geometry.areas"), rects.print("geometry.rectangles");
+  // Its tangent is the C library's.
+  Hash made;
+  const Result<View> view = make_view({.eye = {1, 2, 3}, .forward = {1, 0.2f, 3}}, 1280, 720);
+  for (const float x : view->eye_to_clip.m) made.add(x);
+  made.print("geometry.make_view");
+}
+
+void print_frustum(const std::vector<NamedView>& views) {
+  scene::Random random(3);
+  Boxes boxes;
+  std::vector<float> x, y, z, radius;
+  for (int i = 0; i < 20000; ++i) {
+    boxes.push_back(box_of(random, 3));
+    const Vec3 at = random.inside(kSpace);
+    x.push_back(at.x), y.push_back(at.y), z.push_back(at.z), radius.push_back(random.between(0.1f, 4));
+  }
+  std::vector<ObjectId> visible(boxes.size() + kCullPadding);
+  for (const NamedView& named : views) {
+    const Frustum planes = make_frustum(named.view, kSpace);
+    const std::size_t seen = cull_boxes(planes, span_of(boxes), visible);
+    print("frustum.boxes." + named.name, std::span(visible).first(seen));
+    const std::size_t round =
+        cull_spheres(planes, {x.data(), y.data(), z.data(), radius.data(), x.size()}, visible);
+    print("frustum.spheres." + named.name, std::span(visible).first(round));
+  }
+}
+
+// Walls, and a mesh: a sphere's octahedron, coarse and closed.
+void draw_occluders(OcclusionBuffer& buffer) {
+  scene::Random random(4);
+  std::vector<Box> walls;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 at = random.inside(kSpace);
+    walls.push_back({{at.x - 12, -10, at.z - 1}, {at.x + 12, at.y + 5, at.z + 1}});
+  }
+  buffer.draw_boxes(walls);
+  const std::vector<Vec3> corners{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  const std::vector<std::uint32_t> faces{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                         2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  const OccluderMesh mesh(corners, faces);
+  for (int i = 0; i < 30; ++i) {
+    const Vec3 at = random.inside(kSpace);
+    const float size = random.between(1, 9);
+    Affine place;
+    place.rows = {Vec4{size, 0, 0.3f * size, at.x}, Vec4{0, size, 0, at.y},
+                  Vec4{-0.3f * size, 0, size, at.z}};
+    buffer.draw_mesh(mesh, place);
+  }
+}
+
+void print_occlusion(const std::vector<NamedView>& views) {
+  scene::Random random(5);
+  Boxes boxes;
+  for (int i = 0; i < 5000; ++i) boxes.push_back(box_of(random, 2));
+  OcclusionBuffer buffer;
+  std::vector<float> depth;
+  std::vector<std::uint8_t> seen(boxes.size());
+  for (const NamedView& named : views) {
+    if (buffer.begin({named.view, {}})) std::printf("occlusion.%s refused\n", named.name.c_str());
+    draw_occluders(buffer);
+    depth.assign(std::size_t{named.view.width} * named.view.height, 0);
+    buffer.read_nearness(depth);
+    print("occlusion.depth." + named.name, depth);
+    Hash covered;
+    for (const float nearness : depth) covered.add(static_cast<std::uint8_t>(nearness > 0));
+    covered.print("occlusion.coverage." + named.name);
+    buffer.may_see(span_of(boxes), seen);
+    print("occlusion.boxes." + named.name, seen);
+  }
+}
+
+void print_world(const std::vector<NamedView>& views) {
+  scene::Random random(6);
+  std::vector<WorldBox> boxes;
+  for (int i = 0; i < 30000; ++i) boxes.push_back(world_box(box_of(random, 3)));
+  std::vector<Handle> handles(boxes.size());
+  World world;
+  if (world.insert(boxes, handles)) std::printf("world.insert refused\n");
+  Culler culler;
+  OcclusionBuffer buffer;
+  const OcclusionBuffer* occluders = &buffer;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  for (const NamedView& named : views) {
+    for (std::size_t i = 0; i < boxes.size(); i += 7) {
+      const double step = random.between(-2, 2);
+      boxes[i].min.x += step, boxes[i].max.x += step;
+      if (world.move({&handles[i], 1}, {&boxes[i], 1})) std::printf("world.move refused\n");
+    }
+    const WorldView view{named.view, {}};
+    const CullResult all = culler.cull(world, {&view, 1}, {}, visible);
+    print("world.frustum." + named.name, std::span(visible).first(all.count));
+    if (buffer.begin(view)) std::printf("world.occlusion refused\n");
+    draw_occluders(buffer);
+    const CullOptions hidden{.min_area = 0, .occlusion = {&occluders, 1}, .jobs = {}};
+    const CullResult few = culler.cull(world, {&view, 1}, hidden, visible);
+    print("world.occlusion." + named.name, std::span(visible).first(few.count));
+    const CullOptions large{.min_area = 4, .occlusion = {}, .jobs = {}};
+    const CullResult big = culler.cull(world, {&view, 1}, large, visible);
+    print("world.contribution." + named.name, std::span(visible).first(big.count));
+  }
+}
+
+void print_rays(const std::vector<NamedView>& views) {
+  scene::Random random(7);
+  Boxes boxes;
+  for (int i = 0; i < 5000; ++i) boxes.push_back(box_of(random, 4));
+  rays::WideBvh tree;
+  tree.build(boxes);
+  rays::WideStack stack;
+  rays::RayHits hits;
+  rays::RayGrid grid;
+  for (const NamedView& named : views) {
+    grid.make(named.view, 80, 50);
+    rays::cast_wide(tree, grid, stack, hits);
+    print("rays.objects." + named.name, hits.object);
+    print("rays.distances." + named.name, hits.distance);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const std::vector<NamedView> all = views();
+  print_geometry(all);
+  print_frustum(all);
+  print_occlusion(all);
+  print_world(all);
+  print_rays(all);
+}
