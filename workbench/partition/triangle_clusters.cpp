@@ -55,7 +55,7 @@ Corners turned(std::uint32_t a, std::uint32_t b, std::uint32_t c) noexcept {
 class MeshletMaker {
 public:
   MeshletMaker(const TriangleSpan& all, std::uint32_t size)
-      : all_(all), size_(size / 4 * 4), vertices_(std::min<std::size_t>(3 * size_, 255)) {}
+      : all_(all), size_(size / 4 * 4), vertices_(std::min<std::size_t>(3 * size_, 255)) {}  // its limits
 
   std::span<const std::uint32_t> make(std::span<Place> places) {
     gather(places);
@@ -140,7 +140,7 @@ struct TrianglePartition::ClusterBuilder {
 
   // A block: clusters of one facing stand side by side, so that their draws merge.
   Box divide(std::span<Place> places) {
-    std::ranges::stable_sort(places, {}, &Place::facing);
+    std::ranges::sort(places, {}, [](const Place& place) { return std::pair(place.facing, place.triangle); });
     std::vector<std::uint32_t> counts;
     for (std::size_t at = 0; at < places.size();) {
       const auto end = std::ranges::upper_bound(places.subspan(at), places[at].facing, {}, &Place::facing);
