@@ -97,7 +97,7 @@ void occlude(Bytes& in, const View& view, const Boxes& boxes, const Spheres& sph
   for (Vec3& p : points) p = box_of(in).min;
   for (std::uint32_t& i : indices) i = in.byte() % 44;
   buffer.draw_boxes(occluders);
-  buffer.draw_balls(balls);
+  buffer.draw_spheres(balls);
   const OccluderMesh mesh(points, indices);
   Affine transform;
   if (in.byte() & 1) transform.rows[in.byte() % 3] = {in.number(), in.number(), in.number(), in.number()};

@@ -153,7 +153,7 @@ TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
           transform.rows[static_cast<std::size_t>(row)].*part = bad;
           buffer.draw_mesh(mesh, transform);
           const Sphere no_number{{bad, 0, 0}, 1}, no_size{{0, 0, 0}, std::nanf("")};
-          buffer.draw_balls(std::array{no_number, no_size});
+          buffer.draw_spheres(std::array{no_number, no_size});
           std::vector<float> drawn(64 * 48);
           buffer.read_nearness(drawn);
           for (const float nearness : drawn)
@@ -394,7 +394,7 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
     OcclusionBuffer buffer;
     EXPECT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(balls);
     buffer.draw_mesh(mesh, crossing);
     buffer.draw_mesh(mesh, {});
     std::vector<float> drawn(333 * 217);

@@ -37,7 +37,7 @@ TEST(Occlusion, DrawsBallsNowhereNearerThanTheyAreAndFillsMostOfThem) {
     for (int i = 0; i < 12; ++i) balls.push_back(test::ball_of(random, round % 3 == 0 ? 15.0f : 4.0f));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(balls);
     std::vector<float> drawn(std::size_t{view.width} * view.height);
     buffer.read_nearness(drawn);
     const std::vector<double> exact = exact_depths(ExactRays(view), view, balls);
@@ -61,7 +61,7 @@ TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
     for (int i = 0; i < 12; ++i) balls.push_back(test::ball_of(random, 8));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(balls);
     const ExactRays rays(view);
     const std::vector<double> exact = exact_depths(rays, view, balls);
     std::vector<Sphere> queries;

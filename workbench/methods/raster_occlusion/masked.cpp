@@ -236,7 +236,7 @@ private:
       drawn_balls_.push_back(
           {transform_point(to_world, ball.centre), ball.radius * geometry::scale_bounds(to_world).least});
     }
-    buffer_.draw_balls(drawn_balls_);
+    buffer_.draw_spheres(drawn_balls_);
   }
 
   void draw_picked_meshes() {
