@@ -6,6 +6,8 @@
 
 #include <sightline/types.hpp>
 
+#include "library/geometry/error_bounds.hpp"
+
 namespace sightline::geometry {
 
 /// How much shorter and longer a direction may become under a transform; `least` may be 0 where it is not
@@ -30,7 +32,7 @@ inline ScaleBounds scale_bounds(const Affine& t) noexcept {
     least = std::min(least, middle - reach);
     most = std::max(most, middle + reach);
   }
-  return {least > 0 ? std::sqrt(least) * (1 - 1e-5f) : 0, std::sqrt(most) * (1 + 1e-5f)};
+  return {least > 0 ? std::sqrt(least) * (1 - kScaleRounding) : 0, std::sqrt(most) * (1 + kScaleRounding)};
 }
 
 }  // namespace sightline::geometry

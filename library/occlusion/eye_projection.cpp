@@ -87,7 +87,7 @@ PixelRays pixel_rays(const View& view) noexcept {
     const double safe = near_plane_slack(at_eye, glm::length(rows.eye));
     out.near_plane = to_vec4(normal, at_eye - safe);
   } else {
-    out.near_plane = to_vec4(rows.w, rows.constant.z - kNearPlaneDepth);
+    out.near_plane = to_vec4(rows.w, rows.constant.z - kLeastW);
   }
   return out;
 }
