@@ -57,12 +57,16 @@ Triangle triangle(Draws& d, double thin) {
   return t;
 }
 
-// The three parts of a bound; the search looks where the wanted one makes up most of it.
+// What the three parts of a bound are multiples of. The search looks where the wanted one makes up most of
+// it, by weights of its own, so that it looks at the same cases whatever the bounds are.
 struct Terms {
   double numbers, play, normal;
-  [[nodiscard]] double sum() const { return numbers + play + normal; }
+  [[nodiscard]] double bound(double normal_rounding) const {
+    return kNearnessRounding * numbers + kPixelPlay * play + normal_rounding * normal;
+  }
   [[nodiscard]] bool mostly(int part) const {
-    return std::array{numbers, play, normal}[static_cast<std::size_t>(part)] > 0.7 * sum();
+    const std::array parts{2e-5 * numbers, play / 64, 4e-7 * normal};
+    return parts[static_cast<std::size_t>(part)] > 0.7 * (parts[0] + parts[1] + parts[2]);
   }
 };
 
@@ -87,10 +91,10 @@ TEST(ErrorBounds, PlanesOfOccluders) {
       const float across = dot(unit, vec(t.rays.across)) / scale, down = dot(unit, vec(t.rays.down)) / scale,
                   at = dot(unit, vec(t.rays.at)) / scale;
       const float sides = largest_of(pq) + largest_of(pr), slant = std::fabs(across) + std::fabs(down);
-      const Terms terms{kNearnessRounding * t.nearest, kPixelPlay * slant,
-                        kDrawnNormalRounding * t.reach * sides / (long_side * std::fabs(scale))};
+      const Terms terms{t.nearest, slant, t.reach * sides / (long_side * std::fabs(scale))};
       if (!terms.mostly(wanted)) return 0.0;
-      return ((at + t.x * across) + t.y * down - t.nearness + slant / 256) / terms.sum();
+      return ((at + t.x * across) + t.y * down - t.nearness + slant / 256) /
+             terms.bound(kDrawnNormalRounding);
     };
   };
   expect_share(worst(18, part_of(0, 1)), 0.086);
@@ -110,10 +114,10 @@ TEST(ErrorBounds, PlanesOfTrianglesAskedFor) {
       const float doubt = std::sqrt(dot(a, a) * dot(b, b)) * t.reach / std::fabs(scale);
       if (!(doubt < kMostDoubt)) return 0.0;
       const float slant = std::fabs(across) + std::fabs(down);
-      const Terms terms{t.nearest * kNearnessRounding, kPixelPlay * slant,
-                        t.nearest * kAskedNormalRounding * doubt};
+      const Terms terms{t.nearest, slant, t.nearest * doubt};
       if (!terms.mostly(wanted)) return 0.0;
-      return (t.nearness - ((at + t.x * across) + t.y * down) + slant / 256) / terms.sum();
+      return (t.nearness - ((at + t.x * across) + t.y * down) + slant / 256) /
+             terms.bound(kAskedNormalRounding);
     };
   };
   expect_share(worst(18, part_of(0, 1)), 0.097);
