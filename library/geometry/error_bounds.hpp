@@ -110,6 +110,8 @@ inline constexpr float kTileRounding = 1e-6f;
 /// orthographic view one seen under a smaller angle than `sine`, is not drawn: its nearness is a quotient by
 /// that distance. The distance is off by some 10 u of the coordinates where a triangle is no sliver: needs
 /// 0.02 for the sign to be sure; the rest keeps the quotient's digits (kNearnessRounding).
+/// The distances in metres are no bounds: they only keep the quotient finite where all coordinates are next
+/// to 0.
 inline constexpr double kEdgeOnSine = 1e-4, kEdgeOnPart = 1e-5, kEdgeOnDistance = 1e-6;
 /// The same for a box's faces, whose distance is a coordinate and off by 2 u of it: needs 0.01. Of boxes
 /// nearer than that every face is clipped and drawn by itself, in double precision.

@@ -76,7 +76,7 @@ HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
-HWY_INLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
   const F f;
   const ViewRows view = view_rows(tiles);
   MeshScratch& s = tiles.mesh;
