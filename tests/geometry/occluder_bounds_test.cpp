@@ -284,26 +284,32 @@ std::array<Number, 2> roots(const std::array<Number, 3>& row, const std::array<N
 }
 
 TEST(ErrorBounds, RectanglesOfSpheres) {
-  const auto part = [](Draws& d) {
-    const Seen s = seen(d, 1.5, 10, 1024, 1024);
-    const Vec3 p = point_in(s, d.between(-1, 1), d.between(-1, 1), d.between(0.5, 50)),
-               q = about_eye(s.rows, p);
-    const float radius = static_cast<float>(1 - std::fabs(d.any_size(0.01, 1))) * dot_row(s.rows.w, q);
-    const float reach = std::fabs(q.x) + (std::fabs(q.y) + std::fabs(q.z));
-    const Vec4 &x = s.rows.x, &w = s.rows.w;
-    const float grown = radius * (1 + kSphereGrowth) + reach * kSphereGrowth, depth = dot_row(w, q);
-    if (!(depth - grown * std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z) > kLeastClearance * depth)) return 0.0;
-    const auto found = roots<float>({x.x, x.y, x.z}, {w.x, w.y, w.z}, {q.x, q.y, q.z}, grown);
-    const glm::dmat4 rows = glm::transpose(s.clip);
-    const glm::dvec3 row = glm::dvec3(rows[0] + rows[3]) * 512.0, last(rows[3]),
-                     c = to_double(p) - to_double(s.rows.eye_high) - to_double(s.rows.eye_low);
-    const auto exact =
-        roots<double>({row.x, row.y, row.z}, {last.x, last.y, last.z}, {c.x, c.y, c.z}, radius);
-    const double slack = kSphereSlack + kSphereSlackGrowth * std::max(std::fabs(double{found[0]}),
-                                                                      std::fabs(double{found[1]}));
-    return (std::max(found[0] - exact[0], exact[1] - found[1]) + 1.0 / 256) / slack;
+  // Within `far` images' widths, and reaching that many pixels.
+  const auto part_of = [](double far, double least_widest) {
+    return [far, least_widest](Draws& d) {
+      const Seen s = seen(d, 1.5, 10, 1024, 1024);
+      const Vec3 p = point_in(s, d.between(-far, far), d.between(-far, far), d.between(0.5, 50)),
+                 q = about_eye(s.rows, p);
+      const float radius = static_cast<float>(1 - std::fabs(d.any_size(0.01, 1))) * dot_row(s.rows.w, q);
+      const float reach = std::fabs(q.x) + (std::fabs(q.y) + std::fabs(q.z));
+      const Vec4 &x = s.rows.x, &w = s.rows.w;
+      const float grown = radius * (1 + kSphereGrowth) + reach * kSphereGrowth, depth = dot_row(w, q);
+      if (!(depth - grown * std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z) > kLeastClearance * depth))
+        return 0.0;
+      const auto found = roots<float>({x.x, x.y, x.z}, {w.x, w.y, w.z}, {q.x, q.y, q.z}, grown);
+      const glm::dmat4 rows = glm::transpose(s.clip);
+      const glm::dvec3 row = glm::dvec3(rows[0] + rows[3]) * 512.0, last(rows[3]),
+                       c = to_double(p) - to_double(s.rows.eye_high) - to_double(s.rows.eye_low);
+      const auto exact =
+          roots<double>({row.x, row.y, row.z}, {last.x, last.y, last.z}, {c.x, c.y, c.z}, radius);
+      const double widest = std::max(std::fabs(double{found[0]}), std::fabs(double{found[1]}));
+      if (widest < least_widest) return 0.0;
+      const double slack = kSphereSlack + kSphereSlackGrowth * widest;
+      return (std::max(found[0] - exact[0], exact[1] - found[1]) + 1.0 / 256) / slack;
+    };
   };
-  expect_share(worst(12, part), 0.18);
+  expect_share(worst(12, part_of(1, 0)), 0.18);
+  expect_share(worst(12, part_of(20, 8000)), 0.024);
 }
 
 }  // namespace
