@@ -158,8 +158,8 @@ inline constexpr float kSphereClearance = 1e-4f, kSphereReach = 1e-6f;
 inline constexpr float kSphereGrowth = 1e-6f;
 /// Pixels, and of the rectangle's largest coordinate. The roots' numerator and denominator are differences
 /// that lose up to 1 / kLeastClearance of their digits where the sphere comes that close to the eye's plane,
-/// of its distance; closer ones are called visible. 1/256 is a rasteriser's grid. Needs 0.2, where the sphere
-/// does not grow by kSphereGrowth what it would lose.
+/// of its distance; closer ones are called visible. 1/256 is a rasteriser's grid. Needs 0.2 (of the growth
+/// alone 0.02), where the sphere does not grow by kSphereGrowth what it would lose.
 inline constexpr float kSphereSlack = 1.0f / 64, kSphereSlackGrowth = 2e-5f, kLeastClearance = 1e-2f;
 
 }  // namespace sightline::geometry

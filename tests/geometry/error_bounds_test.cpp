@@ -17,7 +17,7 @@ TEST(ErrorBounds, Planes) {
     const glm::dvec3 n = direction(d);
     const Vec3 p = point(d, 1e-4, 1e4);
     const double distance = d.any_size(1e-4, 1e4);
-    const Plane plane{to_vec3(n), static_cast<float>(distance)};
+    const Plane plane{rounded(n), static_cast<float>(distance)};
     const double exact = n.x * p.x + n.y * p.y + n.z * p.z + distance;
     const double magnitude =
         std::fabs(n.x * p.x) + std::fabs(n.y * p.y) + std::fabs(n.z * p.z) + std::fabs(distance);
@@ -111,7 +111,7 @@ TEST(ErrorBounds, SectorPlanes) {
     const double distance = d.any_size(1e-4, 1e4);
     const double magnitude =
         std::fabs(n.x * p.x) + std::fabs(n.y * p.y) + std::fabs(n.z * p.z) + std::fabs(distance);
-    const Plane moved{to_vec3(n), static_cast<float>(distance + kPlaneRounding * magnitude)};
+    const Plane moved{rounded(n), static_cast<float>(distance + kPlaneRounding * magnitude)};
     const double exact = n.x * p.x + n.y * p.y + n.z * p.z + distance;
     return (signed_distance(moved, p.x, p.y, p.z) - exact) / (kSectorRounding * magnitude);
   };

@@ -29,7 +29,7 @@ Triangle triangle(Draws& d, double thin) {
   const double size = d.any_size(0.05, 20);
   const Vec3 first = point_in(s, d.between(-1, 1), d.between(-1, 1), d.between(0.2, 50));
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 p = k == 0 ? first : to_vec3(to_double(first) + direction(d) * (k == 1 ? size : size * thin));
+    const Vec3 p = k == 0 ? first : rounded(to_double(first) + direction(d) * (k == 1 ? size : size * thin));
     t.q[k] = about_eye(s.rows, p), t.exact_q[k] = to_double(p) - eye;
     t.reach = std::max(t.reach, largest_of(t.q[k]));
     const float over_w = float_pixel(s.rows, t.q[k]).over_w;
@@ -39,7 +39,7 @@ Triangle triangle(Draws& d, double thin) {
   // Its nearness where the ray of a point within it meets its plane.
   const double a = d.between(0, 1), b = d.between(0, 1 - a);
   const ExactPixel in =
-      exact_pixel(s, to_vec3(eye + t.exact_q[0] * (1 - a - b) + t.exact_q[1] * a + t.exact_q[2] * b));
+      exact_pixel(s, rounded(eye + t.exact_q[0] * (1 - a - b) + t.exact_q[1] * a + t.exact_q[2] * b));
   t.x = std::floor(static_cast<float>(in.x)) + 0.5f, t.y = std::floor(static_cast<float>(in.y)) + 0.5f;
   const glm::dmat4 rows = glm::transpose(s.clip);
   const auto row = [&](int r) { return glm::dvec3(rows[r]); };
@@ -216,7 +216,7 @@ TEST(ErrorBounds, DiscsOfSpheres) {
   expect_share(worst(2, sheared), 0.25);
   const auto layered = [](Draws& d) {
     const float radius = d.any_float(0.5, 2), offset = 0.6f;
-    const Vec3 axis = to_vec3(direction(d)), c = point(d, 1e-3, 1e-2);
+    const Vec3 axis = rounded(direction(d)), c = point(d, 1e-3, 1e-2);
     const auto nearer = [&](float at, float along) {
       return double{at - std::fabs(radius) * (offset * along)} - at;
     };
