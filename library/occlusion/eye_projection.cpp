@@ -52,8 +52,8 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) no
   const glm::dvec3 eye =
       rows.eye + glm::dvec3(view.origin.x - origin.x, view.origin.y - origin.y, view.origin.z - origin.z);
   EyeProjection out;
-  out.eye_high = to_vec3(eye);
-  out.eye_low = to_vec3(eye - to_double(out.eye_high));
+  const Split about = split(eye);
+  out.eye_high = about.rounded, out.eye_low = about.rest;
   out.x = to_vec4(rows.x, rows.constant.x);
   out.y = to_vec4(rows.y, rows.constant.y);
   out.w = to_vec4(rows.w, rows.constant.z);

@@ -26,6 +26,19 @@ TEST(ErrorBounds, Planes) {
   expect_share(worst(7, part), 0.6);
 }
 
+TEST(ErrorBounds, SplitsKeepTheDigitsThatRoundingDrops) {
+  const auto lost = [](Draws& d) {
+    const glm::dvec3 v(d.any_size(1e-3, 1e6), d.any_size(1e-3, 1e6), d.any_size(1e-3, 1e6));
+    const Split s = split(v);
+    double most = 0;
+    for (int a = 0; a < 3; ++a)
+      most =
+          std::max(most, std::fabs(to_double(s.rounded)[a] + to_double(s.rest)[a] - v[a]) / std::fabs(v[a]));
+    return most / 0x1p-48;
+  };
+  EXPECT_LE(worst(3, lost), 1);
+}
+
 TEST(ErrorBounds, ProjectorRows) {
   const auto part = [](Draws& d) {
     const Seen s = seen(d, 2, 100, 1280, 720);
