@@ -87,17 +87,17 @@ void occlude(Bytes& in, const View& view, const Boxes& boxes, const Spheres& sph
   if (in.byte() & 1) at.origin = {in.take<double>(), in.number(), in.number()};
   if (buffer.begin(at)) return;
   std::vector<Box> occluders;
-  std::vector<Sphere> balls;
+  std::vector<Sphere> solids;
   std::vector<Vec3> points(in.byte() % 40);
   std::vector<std::uint32_t> indices(3 * (in.byte() % 30));
   for (std::size_t i = in.byte() % 20; i > 0; --i) {
     occluders.push_back(in.byte() & 7 ? box_of(in) : Box{in.point(), in.point()});
-    balls.push_back({in.point(), in.number()});
+    solids.push_back({in.point(), in.number()});
   }
   for (Vec3& p : points) p = box_of(in).min;
   for (std::uint32_t& i : indices) i = in.byte() % 44;
   buffer.draw_boxes(occluders);
-  buffer.draw_balls(balls);
+  buffer.draw_spheres(solids);
   const OccluderMesh mesh(points, indices);
   Affine transform;
   if (in.byte() & 1) transform.rows[in.byte() % 3] = {in.number(), in.number(), in.number(), in.number()};

@@ -33,7 +33,7 @@ workbench/bake: workbench/scene workbench/io workbench/oracle workbench/partitio
 apps/sightline: workbench/reproduce workbench/bake
 bindings/c: face
 bindings/python: face
-examples: face bindings/c
+examples: face bindings/c workbench/methods
 "
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
@@ -56,9 +56,10 @@ workbench/methods: workbench/method.hpp
 # workbench takes through the public headers. What nobody needs any more must go from here.
 shared="
 library/geometry/linear.hpp: workbench/scene/scene.cpp workbench/methods/draw_calls/facing.cpp
-library/geometry/linear.hpp: workbench/partition/triangle_
+library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_reader.cpp
 library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
 library/geometry/radix_sort.hpp: workbench/submission/draw_list.cpp
+library/pvs/byte_reader.hpp: workbench/io/byte_reader.hpp
 library/rays/bvh.hpp: workbench/methods/ray_pvs/
 library/rays/ray_grid.hpp: workbench/methods/ray_pvs/
 library/rays/ray_hits.hpp: workbench/methods/ray_pvs/ workbench/partition/triangle_rays

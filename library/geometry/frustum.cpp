@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
 
 namespace sightline {
@@ -14,14 +15,13 @@ namespace {
 // rounding the coefficients and evaluating signed_distance() within the extent can lose.
 Plane round_outwards(const glm::dvec4& plane, const Vec3& largest) {
   const double length = glm::length(glm::dvec3(plane));
-  if (!(length > 1e-12 * std::fabs(plane.w)) || length == 0) {
+  if (!(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0) {
     return {{0, 0, 0}, std::numeric_limits<float>::max()};  // at infinity: never rejects
   }
   const glm::dvec4 unit = plane / length;
   const double magnitude = std::fabs(unit.x) * largest.x + std::fabs(unit.y) * largest.y +
                            std::fabs(unit.z) * largest.z + std::fabs(unit.w);
-  constexpr double kRounding = 4 * std::numeric_limits<float>::epsilon();
-  return {to_vec3(glm::dvec3(unit)), static_cast<float>(unit.w + kRounding * magnitude)};
+  return {to_vec3(glm::dvec3(unit)), static_cast<float>(unit.w + kPlaneRounding * magnitude)};
 }
 
 }  // namespace

@@ -28,6 +28,20 @@ inline Vec3 to_vec3(const glm::vec3& v) noexcept {
   return {v.x, v.y, v.z};
 }
 
+/// `rest` is what `rounded` lacks. Through a volatile: where g++ 12 vectorises the three subtractions, it takes
+/// rounding to single precision and back for nothing done, and the rest for 0.
+struct Split {
+  Vec3 rounded, rest;
+};
+inline Split split(const glm::dvec3& v) noexcept {
+  const auto rest = [](double value, float near) {
+    const volatile float stored = near;
+    return static_cast<float>(value - static_cast<double>(stored));
+  };
+  const Vec3 rounded = to_vec3(v);
+  return {rounded, {rest(v.x, rounded.x), rest(v.y, rounded.y), rest(v.z, rounded.z)}};
+}
+
 inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
   Mat4 out;
   for (int c = 0; c < 4; ++c) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
 
 namespace sightline {
@@ -40,7 +41,7 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
                                   double{std::fabs(row.z)} * reach.z + std::fabs(row.w));
     }
   }
-  out.coordinate_error = static_cast<float>(6 * std::numeric_limits<float>::epsilon() * magnitude);
+  out.coordinate_error = static_cast<float>(kProjectionRounding * magnitude);
   out.eye = eye_position(view);
   out.width = static_cast<float>(view.width);
   out.height = static_cast<float>(view.height);
@@ -69,7 +70,8 @@ Rect projected_rect(const Projector& p, const Box& box) noexcept {
     ndc = {std::min(ndc.min_x, x), std::min(ndc.min_y, y), std::max(ndc.max_x, x), std::max(ndc.max_y, y)};
   }
   // The second term covers the pixel mapping's own rounding and the rasteriser's 8-bit subpixel grid.
-  const float slack_x = widest * 0.5f * p.width + 1.0f / 128, slack_y = widest * 0.5f * p.height + 1.0f / 128;
+  const float slack_x = widest * 0.5f * p.width + kSubpixelSlack,
+              slack_y = widest * 0.5f * p.height + kSubpixelSlack;
   return {(ndc.min_x + 1) * 0.5f * p.width - slack_x, (1 - ndc.max_y) * 0.5f * p.height - slack_y,
           (ndc.max_x + 1) * 0.5f * p.width + slack_x, (1 - ndc.min_y) * 0.5f * p.height + slack_y};
 }
@@ -107,8 +109,7 @@ float projected_area_bound(const Projector& p, const Sphere& sphere) noexcept {
   const float product = cos_axis * cos_axis - sine * sine;
   if (cos_axis <= 0 || product <= 0) return kInfinity;
   const float f = p.pixels_per_metre;
-  constexpr float kRounding = 1 + 1e-5f;
-  return kRounding * std::numbers::pi_v<float> * f * f * sine * sine * cosine /
+  return (1 + kAreaGrowth) * std::numbers::pi_v<float> * f * f * sine * sine * cosine /
          (product * std::sqrt(product));
 }
 

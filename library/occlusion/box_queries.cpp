@@ -18,83 +18,90 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-// Boxes a vector at a time: rectangles and nearest depths; then each against the tiles.
+// A vector of boxes about the eye.
+struct BoxCorners {
+  std::array<VPoints, 2> at;  // the least and the greatest
+  VPoints reach;              // the largest coordinates, whatever their sign
+};
+
+HWY_INLINE BoxCorners corners_of(const EyeProjection& e, const std::array<const float*, 6>& from) {
+  const F f;
+  const auto corner = [&](std::size_t first) HWY_ATTR {
+    return about_eye(
+        e, {hn::LoadU(f, from[first]), hn::LoadU(f, from[first + 1]), hn::LoadU(f, from[first + 2])});
+  };
+  BoxCorners out{{corner(0), corner(3)}, {}};
+  const auto& [low, high] = out.at;
+  out.reach = {hn::Max(hn::Abs(low.x), hn::Abs(high.x)), hn::Max(hn::Abs(low.y), hn::Abs(high.y)),
+               hn::Max(hn::Abs(low.z), hn::Abs(high.z))};
+  return out;
+}
+
+// The products of a row, and what rounding them, their sum and the row itself can lose.
+struct Terms {
+  VF x[2], y[2], z[2], error;
+};
+
+HWY_INLINE Terms terms_of(const Vec4& row, const BoxCorners& box) {
+  const F f;
+  Terms t;
+  for (int s = 0; s < 2; ++s) {
+    t.x[s] = hn::Add(hn::Mul(hn::Set(f, row.x), box.at[s].x), hn::Set(f, row.w));
+    t.y[s] = hn::Mul(hn::Set(f, row.y), box.at[s].y);
+    t.z[s] = hn::Mul(hn::Set(f, row.z), box.at[s].z);
+  }
+  const VF magnitude =
+      hn::Add(hn::Add(hn::Mul(hn::Set(f, std::fabs(row.x)), box.reach.x),
+                      hn::Mul(hn::Set(f, std::fabs(row.y)), box.reach.y)),
+              hn::Add(hn::Mul(hn::Set(f, std::fabs(row.z)), box.reach.z), hn::Set(f, std::fabs(row.w))));
+  t.error = hn::Mul(hn::Set(f, kRowRounding), magnitude);
+  return t;
+}
+
+// The rectangles of boxes on the image, and their nearest depths.
+HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box) {
+  const F f;
+  const Terms tx = terms_of(e.x, box), ty = terms_of(e.y, box), tw = terms_of(e.w, box);
+  Rectangles on_image = no_rectangles();
+  VF least_w = hn::Set(f, kInfinity);
+  for (int k = 0; k < 8; ++k) {
+    const auto sum = [&](const Terms& t)
+                         HWY_ATTR { return hn::Add(hn::Add(t.x[k & 1], t.y[k >> 1 & 1]), t.z[k >> 2]); };
+    const VF w = sum(tw);
+    const VF over_w = hn::Div(hn::Set(f, 1.0f), w);
+    least_w = hn::Min(least_w, w);
+    add_point(on_image, hn::Mul(sum(tx), over_w), hn::Mul(sum(ty), over_w));
+  }
+  const auto before = hn::Gt(least_w, hn::Add(tw.error, tw.error));
+  const VF over_least = hn::Div(hn::Set(f, 1.0f), hn::Sub(least_w, tw.error));
+  // The second term covers the pixel mapping's own rounding and a rasteriser's 8-bit subpixel grid.
+  const VF slack = hn::Add(
+      hn::Mul(hn::Add(hn::Max(tx.error, ty.error), hn::Mul(widest_of(on_image), tw.error)), over_least),
+      hn::Set(f, kSubpixelSlack));
+  VF nearest = hn::Mul(over_least, hn::Set(f, 1 + kReciprocalRounding));
+  if (e.orthographic) {
+    const Terms tn = terms_of(e.nearness, box);
+    nearest = hn::Add(hn::Add(hn::Max(tn.x[0], tn.x[1]), hn::Max(tn.y[0], tn.y[1])),
+                      hn::Add(hn::Max(tn.z[0], tn.z[1]), tn.error));
+  }
+  return {grown(on_image, slack), nearest, before};
+}
+
+// Boxes a vector at a time.
 void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxSpan& boxes,
                      std::uint8_t* visible) {
   const F f;
   const std::size_t lanes = hn::Lanes(f);
   for (std::size_t first = 0; first < boxes.count; first += lanes) {
-    // The last vector repeats boxes rather than reading beyond them.
-    alignas(64) std::array<std::array<float, 16>, 6> tail;
     const std::size_t count = std::min(lanes, boxes.count - first);
-    const float* from[6] = {boxes.min_x + first, boxes.min_y + first, boxes.min_z + first,
-                            boxes.max_x + first, boxes.max_y + first, boxes.max_z + first};
-    if (count < lanes) {
-      for (std::size_t side = 0; side < 6; ++side) {
-        for (std::size_t i = 0; i < lanes; ++i) tail[side][i] = from[side][std::min(i, count - 1)];
-        from[side] = tail[side].data();
-      }
-    }
-    const auto about_eye = [&](std::size_t side, float high, float low) HWY_ATTR {
-      return hn::Sub(hn::Sub(hn::LoadU(f, from[side]), hn::Set(f, high)), hn::Set(f, low));
-    };
-    const VF q[2][3] = {{about_eye(0, e.eye_high.x, e.eye_low.x), about_eye(1, e.eye_high.y, e.eye_low.y),
-                         about_eye(2, e.eye_high.z, e.eye_low.z)},
-                        {about_eye(3, e.eye_high.x, e.eye_low.x), about_eye(4, e.eye_high.y, e.eye_low.y),
-                         about_eye(5, e.eye_high.z, e.eye_low.z)}};
-    const VF reach_x = hn::Max(hn::Abs(q[0][0]), hn::Abs(q[1][0])),
-             reach_y = hn::Max(hn::Abs(q[0][1]), hn::Abs(q[1][1])),
-             reach_z = hn::Max(hn::Abs(q[0][2]), hn::Abs(q[1][2]));
-    // The products of a row, and what rounding them, their sum and the row itself can lose.
-    struct Terms {
-      VF x[2], y[2], z[2], error;
-    };
-    constexpr float kRounding = 8 * std::numeric_limits<float>::epsilon();
-    const auto terms = [&](const Vec4& row) HWY_ATTR {
-      Terms t;
-      for (int s = 0; s < 2; ++s) {
-        t.x[s] = hn::Add(hn::Mul(hn::Set(f, row.x), q[s][0]), hn::Set(f, row.w));
-        t.y[s] = hn::Mul(hn::Set(f, row.y), q[s][1]);
-        t.z[s] = hn::Mul(hn::Set(f, row.z), q[s][2]);
-      }
-      const VF magnitude =
-          hn::Add(hn::Add(hn::Mul(hn::Set(f, std::fabs(row.x)), reach_x),
-                          hn::Mul(hn::Set(f, std::fabs(row.y)), reach_y)),
-                  hn::Add(hn::Mul(hn::Set(f, std::fabs(row.z)), reach_z), hn::Set(f, std::fabs(row.w))));
-      t.error = hn::Mul(hn::Set(f, kRounding), magnitude);
-      return t;
-    };
-    const Terms tx = terms(e.x), ty = terms(e.y), tw = terms(e.w);
-    VF left = hn::Set(f, kInfinity), top = left, least_w = left;
-    VF right = hn::Set(f, -kInfinity), bottom = right;
-    for (int k = 0; k < 8; ++k) {
-      const auto sum = [&](const Terms& t)
-                           HWY_ATTR { return hn::Add(hn::Add(t.x[k & 1], t.y[k >> 1 & 1]), t.z[k >> 2]); };
-      const VF w = sum(tw);
-      const VF over_w = hn::Div(hn::Set(f, 1.0f), w);
-      const VF x = hn::Mul(sum(tx), over_w), y = hn::Mul(sum(ty), over_w);
-      least_w = hn::Min(least_w, w);
-      left = hn::Min(left, x), right = hn::Max(right, x), top = hn::Min(top, y), bottom = hn::Max(bottom, y);
-    }
-    const auto before = hn::Gt(least_w, hn::Add(tw.error, tw.error));
-    const VF over_least = hn::Div(hn::Set(f, 1.0f), hn::Sub(least_w, tw.error));
-    const VF widest = hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
-    // The second term covers the pixel mapping's own rounding and a rasteriser's 8-bit subpixel grid.
-    const VF slack =
-        hn::Add(hn::Mul(hn::Add(hn::Max(tx.error, ty.error), hn::Mul(widest, tw.error)), over_least),
-                hn::Set(f, 1.0f / 128));
-    VF nearest = hn::Mul(over_least, hn::Set(f, 1 + 1e-6f));
-    if (e.orthographic) {
-      const Terms tn = terms(e.nearness);
-      nearest = hn::Add(hn::Add(hn::Max(tn.x[0], tn.x[1]), hn::Max(tn.y[0], tn.y[1])),
-                        hn::Add(hn::Max(tn.z[0], tn.z[1]), tn.error));
-    }
-    test_rectangles(tiles,
-                    {hn::Sub(left, slack), hn::Add(right, slack), hn::Sub(top, slack), hn::Add(bottom, slack),
-                     nearest, before},
-                    count, visible + first);
+    std::array<const float*, 6> from{boxes.min_x + first, boxes.min_y + first, boxes.min_z + first,
+                                     boxes.max_x + first, boxes.max_y + first, boxes.max_z + first};
+    alignas(64) std::array<std::array<float, 16>, 6> room;
+    repeat_last(f, count, from, room);
+    answer(tiles, question_of(e, corners_of(e, from)), count, visible + first);
   }
 }
+
 }  // namespace sightline::occlusion::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

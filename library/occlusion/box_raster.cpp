@@ -49,14 +49,14 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
   grazing = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const VF low = hn::Load(f, out.sides[a].data()), high = hn::Load(f, out.sides[a + 3].data());
-    const VF margin =
-        hn::Add(hn::Set(f, 1e-6f), hn::Mul(hn::Set(f, 1e-5f), hn::Max(hn::Abs(low), hn::Abs(high))));
+    const VF margin = hn::Add(hn::Set(f, kFaceDistance),
+                              hn::Mul(hn::Set(f, kFacePart), hn::Max(hn::Abs(low), hn::Abs(high))));
     const VF forward = hn::Set(f, rays.forward[a]);
-    facing.low[a] = orthographic ? hn::Gt(forward, hn::Set(f, 1e-5f)) : hn::Gt(low, margin);
-    facing.high[a] = orthographic ? hn::Lt(forward, hn::Set(f, -1e-5f)) : hn::Lt(high, hn::Neg(margin));
+    facing.low[a] = orthographic ? hn::Gt(forward, hn::Set(f, kFaceSine)) : hn::Gt(low, margin);
+    facing.high[a] = orthographic ? hn::Lt(forward, hn::Set(f, -kFaceSine)) : hn::Lt(high, hn::Neg(margin));
     const auto any = orthographic ? hn::Ne(forward, zero) : hn::Or(hn::Gt(low, zero), hn::Lt(high, zero));
     const auto sure = hn::Or(facing.low[a], facing.high[a]);
-    grazing |= bits_of(hn::AndNot(sure, any));
+    grazing |= bits_of(f, hn::AndNot(sure, any));
     const VF at = hn::IfThenElse(facing.low[a], low, high);
     const VF scale = hn::Div(hn::Set(f, 1.0f), orthographic ? forward : at);
     const VF across = hn::Mul(hn::Set(f, rays.across[a]), scale),
@@ -71,14 +71,52 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
   return facing;
 }
 
+// An edge along axis a of each box, and which of the four: at the high face of b, of c.
+struct EdgePlace {
+  std::size_t a, b, c;
+  hn::Mask<F> high_b, high_c;
+};
+
+HWY_INLINE VF corner_of(const Vectors<8>& of, const EdgePlace& edge, std::size_t along) {
+  const auto at = [&](std::size_t at_b, std::size_t at_c) HWY_ATTR {
+    return hn::Load(F(), of[along << edge.a | at_b << edge.b | at_c << edge.c].data());
+  };
+  return hn::IfThenElse(edge.high_b, hn::IfThenElse(edge.high_c, at(1, 1), at(1, 0)),
+                        hn::IfThenElse(edge.high_c, at(0, 1), at(0, 0)));
+}
+
+// Bits of the boxes whose edge bounds them to the right, to the left.
+struct Bounded {
+  std::uint32_t right = 0, left = 0;
+};
+
+// Edges that rise along the axis at the outline's right where `up` says so; of those that `looks` names.
+HWY_INLINE Bounded store_edges(const EdgePlace& place, hn::Mask<F> looks, hn::Mask<F> up, VF inset,
+                               std::size_t edge, ProjectedBoxes& out) {
+  const F f;
+  const VF ax = corner_of(out.x, place, 0), ay = corner_of(out.y, place, 0), bx = corner_of(out.x, place, 1),
+           by = corner_of(out.y, place, 1);
+  const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
+           at = hn::Sub(ax, hn::Mul(ay, slope));
+  const VF inwards = hn::Mul(inset, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
+  const auto interior_left = hn::Xor(hn::Gt(rise, hn::Zero(f)), up);
+  const auto steep = hn::And(looks, hn::Ge(hn::Abs(rise), hn::Set(f, kFlatEdge)));
+  const VF none = hn::Set(f, kInfinity);
+  hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[edge].data());
+  const auto on_right = hn::And(steep, interior_left), on_left = hn::AndNot(interior_left, steep);
+  hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), none), f, out.right_at[edge].data());
+  hn::Store(hn::IfThenElse(on_left, hn::Add(at, inwards), hn::Neg(none)), f, out.left_at[edge].data());
+  return {bits_of(f, on_right), bits_of(f, on_left)};
+}
+
 // The outline of a box by which faces look at the eye (after Schmalstieg & Tobler 1999): the edges between a
 // face that does and one that does not. Along an axis a there are two or none, and which ones, the faces of
 // the other axes b and c tell: edge (j, k) lies between the low or high face of b, as j says, and that of c.
 // Returns a bit a box: it has an edge on either side.
 HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF inset, ProjectedBoxes& out) {
   const F f;
-  std::uint32_t right = 0, left = 0;
-  const auto turns = hn::MaskFromVec(hn::BitCast(f, hn::Set(hn::RebindToSigned<F>(), turns_right ? -1 : 0)));
+  Bounded all;
+  const auto turns = hn::MaskFromVec(hn::BitCast(f, hn::Set(I(), turns_right ? -1 : 0)));
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
     const auto looks_b = hn::Or(facing.low[b], facing.high[b]),
@@ -89,98 +127,91 @@ HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF i
       const auto j = e == 0 ? facing.high[b] : hn::Xor(facing.high[b], looks_c);
       const auto k = e == 0 ? hn::Or(hn::And(looks_b, facing.low[c]), hn::AndNot(looks_b, facing.high[c]))
                             : hn::Or(facing.high[c], hn::Not(looks_c));
-      const auto corner = [&](const Vectors<8>& of, std::size_t along) HWY_ATTR {
-        const auto at = [&](std::size_t at_b, std::size_t at_c)
-                            HWY_ATTR { return hn::Load(f, of[along << a | at_b << b | at_c << c].data()); };
-        return hn::IfThenElse(j, hn::IfThenElse(k, at(1, 1), at(1, 0)),
-                              hn::IfThenElse(k, at(0, 1), at(0, 0)));
-      };
-      const VF ax = corner(out.x, 0), ay = corner(out.y, 0), bx = corner(out.x, 1), by = corner(out.y, 1);
-      const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
-               at = hn::Sub(ax, hn::Mul(ay, slope));
-      const VF inwards = hn::Mul(inset, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
       // Counterclockwise round the face that looks, the outline runs up the axis at one side of it.
       const auto by_b = e == 0 ? looks_b : hn::Not(looks_c);
-      const auto up = hn::Xor(by_b, hn::Xor(j, k));
-      const auto interior_left = hn::Xor(hn::Xor(hn::Gt(rise, hn::Zero(f)), up), turns);
-      const auto steep = hn::And(looks, hn::Ge(hn::Abs(rise), hn::Set(f, kFlat)));
-      const VF none = hn::Set(f, kInfinity);
-      const std::size_t edge = 2 * a + e;
-      hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[edge].data());
-      const auto on_right = hn::And(steep, interior_left), on_left = hn::AndNot(interior_left, steep);
-      hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), none), f, out.right_at[edge].data());
-      hn::Store(hn::IfThenElse(on_left, hn::Add(at, inwards), hn::Neg(none)), f, out.left_at[edge].data());
-      right |= bits_of(on_right), left |= bits_of(on_left);
+      const auto up = hn::Xor(hn::Xor(by_b, hn::Xor(j, k)), turns);
+      const Bounded its = store_edges({a, b, c, j, k}, looks, up, inset, 2 * a + e, out);
+      all.right |= its.right, all.left |= its.left;
     }
   }
-  return right & left;
+  return all.right & all.left;
 }
 
-HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::size_t count,
-                              ProjectedBoxes& out) {
+// Sides about the eye. Returns a bit a box: its sides are in order.
+HWY_INLINE std::uint32_t load_sides(const EyeProjection& e, const Box* boxes, std::size_t count,
+                                    std::array<VPoints, 2>& at, ProjectedBoxes& out) {
   const F f;
-  const EyeProjection& e = tiles.projection;
   for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
     const Box& box = boxes[std::min(i, count - 1)];
     out.sides[0][i] = box.min.x, out.sides[1][i] = box.min.y, out.sides[2][i] = box.min.z;
     out.sides[3][i] = box.max.x, out.sides[4][i] = box.max.y, out.sides[5][i] = box.max.z;
   }
-  const float high[3] = {e.eye_high.x, e.eye_high.y, e.eye_high.z},
-              low[3] = {e.eye_low.x, e.eye_low.y, e.eye_low.z};
-  VF q[6];
-  for (std::size_t side = 0; side < 6; ++side) {
-    q[side] = hn::Sub(hn::Sub(hn::Load(f, out.sides[side].data()), hn::Set(f, high[side % 3])),
-                      hn::Set(f, low[side % 3]));
-    hn::Store(q[side], f, out.sides[side].data());
+  for (std::size_t s = 0; s < 2; ++s) {
+    auto* side = &out.sides[3 * s];
+    at[s] =
+        about_eye(e, {hn::Load(f, side[0].data()), hn::Load(f, side[1].data()), hn::Load(f, side[2].data())});
+    hn::Store(at[s].x, f, side[0].data());
+    hn::Store(at[s].y, f, side[1].data());
+    hn::Store(at[s].z, f, side[2].data());
   }
-  const auto valid = hn::And(hn::And(hn::Le(q[0], q[3]), hn::Le(q[1], q[4])), hn::Le(q[2], q[5]));
-  VF left = hn::Set(f, kInfinity), top = left, clear = left;
-  VF right = hn::Set(f, -kInfinity), bottom = right, nearest = right;
+  const auto& [low, high] = at;
+  return bits_of(f, hn::And(hn::And(hn::Le(low.x, high.x), hn::Le(low.y, high.y)), hn::Le(low.z, high.z))) &
+         ((1u << count) - 1);
+}
+
+// Boxes on the image.
+struct BoxImages {
+  Rectangles outline;
+  VF clear, nearest;  // the least distance before the near plane, the greatest nearness
+};
+
+HWY_INLINE BoxImages project_corners(const DepthTiles& tiles, const std::array<VPoints, 2>& at,
+                                     ProjectedBoxes& out) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  BoxImages image{no_rectangles(), hn::Set(f, kInfinity), hn::Set(f, -kInfinity)};
   for (std::size_t c = 0; c < 8; ++c) {
-    const VF qx = q[c & 1 ? 3 : 0], qy = q[c & 2 ? 4 : 1], qz = q[c & 4 ? 5 : 2];
-    const auto dot = [&](const Vec4& row) HWY_ATTR { return dot_row(row, qx, qy, qz); };
-    clear = hn::Min(clear, dot(tiles.rays.near_plane));
-    const VF over_w = hn::Div(hn::Set(f, 1.0f), dot(e.w));
-    const VF x = hn::Mul(dot(e.x), over_w), y = hn::Mul(dot(e.y), over_w);
-    nearest = hn::Max(nearest, e.orthographic ? dot(e.nearness) : over_w);
-    left = hn::Min(left, x), right = hn::Max(right, x), top = hn::Min(top, y), bottom = hn::Max(bottom, y);
+    const VPoints q{at[c & 1].x, at[c >> 1 & 1].y, at[c >> 2].z};
+    image.clear = hn::Min(image.clear, dot_row(tiles.rays.near_plane, q));
+    const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, q));
+    const VF x = hn::Mul(dot_row(e.x, q), over_w), y = hn::Mul(dot_row(e.y, q), over_w);
+    image.nearest = hn::Max(image.nearest, e.orthographic ? dot_row(e.nearness, q) : over_w);
+    add_point(image.outline, x, y);
     hn::Store(x, f, out.x[c].data());
     hn::Store(y, f, out.y[c].data());
   }
-  const VF farthest_out =
-      hn::Max(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom)));
-  const VF inset = hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), farthest_out));
-  std::uint32_t grazing = 0;
-  const Facing facing = find_faces(tiles, nearest, grazing, out);
-  const std::uint32_t bounded = find_edges(facing, tiles.rays.turns_right, inset, out);
+  return image;
+}
 
-  left = hn::Add(left, inset), right = hn::Sub(right, inset);
-  top = hn::Add(top, inset), bottom = hn::Sub(bottom, inset);
-  hn::Store(left, f, out.left.data());
-  hn::Store(right, f, out.right.data());
-  hn::Store(top, f, out.top.data());
-  hn::Store(bottom, f, out.bottom.data());
-  hn::Store(nearest, f, out.nearest.data());
-  // The tiles that hold the pixel centres between the sides.
-  const hn::RebindToSigned<F> i32;
-  const VF half = hn::Set(f, 0.5f);
-  const auto first = [&](VF at) HWY_ATTR { return hn::Ceil(hn::Sub(hn::Max(at, half), half)); };
-  const auto last = [&](VF at, std::uint32_t size) HWY_ATTR {
-    return hn::Floor(hn::Sub(hn::Min(at, hn::Set(f, static_cast<float>(size) - 0.5f)), half));
-  };
-  const VF x0 = first(left), x1 = last(right, tiles.width), y0 = first(top), y1 = last(bottom, tiles.height);
+HWY_INLINE void store_tiles(const PixelBounds& pixels, ProjectedBoxes& out) {
+  const I i32;
   const auto tile = [&](VF pixel) HWY_ATTR { return hn::ShiftRight<3>(hn::ConvertTo(i32, pixel)); };
-  const auto one = hn::Set(i32, 1);
-  hn::Store(tile(x0), i32, out.begin_x.data());
-  hn::Store(tile(y0), i32, out.begin_y.data());
-  hn::Store(hn::Add(tile(x1), one), i32, out.end_x.data());
-  hn::Store(hn::Add(tile(y1), one), i32, out.end_y.data());
-  const std::uint32_t some = bits_of(valid) & ((1u << count) - 1);
-  const std::uint32_t before = bits_of(hn::Ge(clear, hn::Zero(f)));
-  const std::uint32_t holds_pixels = bits_of(hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
+  const VI one = hn::Set(i32, 1);
+  hn::Store(tile(pixels.x0), i32, out.begin_x.data());
+  hn::Store(tile(pixels.y0), i32, out.begin_y.data());
+  hn::Store(hn::Add(tile(pixels.x1), one), i32, out.end_x.data());
+  hn::Store(hn::Add(tile(pixels.y1), one), i32, out.end_y.data());
+}
+
+HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::size_t count,
+                              ProjectedBoxes& out) {
+  const F f;
+  std::array<VPoints, 2> at;
+  const std::uint32_t some = load_sides(tiles.projection, boxes, count, at, out);
+  const BoxImages image = project_corners(tiles, at, out);
+  const VF widest = widest_of(image.outline), inset = inset_of(widest);
+  std::uint32_t grazing = 0;
+  const Facing facing = find_faces(tiles, image.nearest, grazing, out);
+  const std::uint32_t bounded = find_edges(facing, tiles.rays.turns_right, inset, out);
+  const Rectangles outline = shrunk(image.outline, inset);
+  store(outline, out, 0);
+  hn::Store(image.nearest, f, out.nearest.data());
+  const PixelBounds pixels = pixel_bounds(tiles, outline);
+  store_tiles(pixels, out);
+  const std::uint32_t before = bits_of(f, hn::Ge(image.clear, hn::Zero(f)));
   // Without numbers there is no saying where a box ends.
-  const std::uint32_t numbers = bits_of(hn::Lt(farthest_out, hn::Set(f, kInfinity)));
-  out.drawn = some & before & ~grazing & holds_pixels & numbers & bounded;
+  const std::uint32_t numbers = bits_of(f, hn::Lt(widest, hn::Set(f, kInfinity)));
+  out.drawn = some & before & ~grazing & bits_of(f, pixels.some) & numbers & bounded;
   out.cut = some & ~(before & ~grazing);
 }
 

@@ -1,13 +1,15 @@
 // Rectangles of pixels against the tiles of an occlusion buffer, for every SIMD width. Included by files that
 // foreach_target compiles again and again.
-#if defined(SIGHTLINE_CULLING_DEPTH_QUERY_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_CULLING_DEPTH_QUERY_INL
-#undef SIGHTLINE_CULLING_DEPTH_QUERY_INL
+#if defined(SIGHTLINE_OCCLUSION_DEPTH_QUERY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_OCCLUSION_DEPTH_QUERY_INL
+#undef SIGHTLINE_OCCLUSION_DEPTH_QUERY_INL
 #else
-#define SIGHTLINE_CULLING_DEPTH_QUERY_INL
+#define SIGHTLINE_OCCLUSION_DEPTH_QUERY_INL
 #endif
 
-#include "library/occlusion/depth_raster-inl.hpp"
+#include <bit>
+
+#include "library/occlusion/image-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
@@ -31,8 +33,8 @@ HWY_INLINE VF least_in_tile(const DepthTiles& tiles, const PixelRange& range, st
   const float* depth = &tiles.nearness[(std::size_t{ty} * tiles.stride + tx) * 64];
   VF least = hn::Set(f, kInfinity);
   for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
-    least =
-        hn::Min(least, hn::IfThenElse(pixels_at(wanted, i), hn::Load(f, depth + i), hn::Set(f, kInfinity)));
+    least = hn::Min(least,
+                    hn::IfThenElse(mask_of(f, wanted >> i), hn::Load(f, depth + i), hn::Set(f, kInfinity)));
   }
   return least;
 }
@@ -63,7 +65,7 @@ HWY_INLINE bool hidden_in_many(const DepthTiles& tiles, const PixelRange& range,
       const auto open = hn::And(wanted, hn::Le(hn::LoadU(f, farthest + tx), limit));
       // A tile of which nothing lies nearer shows what stands there.
       if (!hn::AllFalse(f, hn::And(open, hn::Lt(hn::LoadU(f, nearest + tx), limit)))) return false;
-      for (std::uint32_t bits = bits_of(open); bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = bits_of(f, open); bits != 0; bits &= bits - 1) {
         const std::uint32_t t = tx + static_cast<std::uint32_t>(std::countr_zero(bits));
         if (!hn::AllFalse(f, hn::Le(least_in_tile(tiles, range, t, ty), limit))) return false;
       }
@@ -72,74 +74,65 @@ HWY_INLINE bool hidden_in_many(const DepthTiles& tiles, const PixelRange& range,
   return true;
 }
 
-// A vector of rectangles of the image, in pixels, and what nearness nothing within them exceeds.
-struct Rectangles {
-  VF left, right, top, bottom, nearest;
+// The same of one.
+HWY_INLINE bool hidden_in_one(const DepthTiles& tiles, const PixelRange& range, float nearness) {
+  const VF least = least_in_tile(tiles, range, range.x0 / kTile, range.y0 / kTile);
+  return hn::AllFalse(F(), hn::Le(least, hn::Set(F(), nearness)));
+}
+
+// Which of the ranges of `open` show something to who looks closer than at tiles, a bit each.
+HWY_INLINE std::uint32_t look_closer(const DepthTiles& tiles, const PixelRanges& ranges, VF nearest,
+                                     std::uint32_t open) {
+  const F f;
+  const I i32;
+  alignas(64) std::array<std::int32_t, 16> left, right, top, bottom;
+  alignas(64) std::array<float, 16> nearness;
+  hn::Store(ranges.x0, i32, left.data()), hn::Store(ranges.x1, i32, right.data());
+  hn::Store(ranges.y0, i32, top.data()), hn::Store(ranges.y1, i32, bottom.data());
+  hn::Store(nearest, f, nearness.data());
+  std::uint32_t seen = 0;
+  const auto look = [&](std::uint32_t those, const auto& hides) HWY_ATTR {
+    for (; those != 0; those &= those - 1) {
+      const int i = std::countr_zero(those);
+      const PixelRange range{static_cast<std::uint32_t>(left[i]), static_cast<std::uint32_t>(top[i]),
+                             static_cast<std::uint32_t>(right[i]), static_cast<std::uint32_t>(bottom[i])};
+      seen |= std::uint32_t{!hides(tiles, range, nearness[i])} << i;
+    }
+  };
+  const auto in_one = hn::And(hn::Eq(ranges.tx0, ranges.tx1), hn::Eq(ranges.ty0, ranges.ty1));
+  const std::uint32_t one = bits_of(f, hn::RebindMask(f, in_one)),
+                      many = bits_of(f, hn::RebindMask(f, ranges.many));
+  look(open & one, hidden_in_one);
+  look(open & ~one & ~many, hidden_in_few);
+  look(open & many, hidden_in_many);
+  return seen;
+}
+
+// A vector of rectangles asked for, and what nearness nothing within them exceeds.
+struct Question {
+  Rectangles within;
+  VF nearest;
   hn::Mask<F> sure;  // else the rectangle is not to be trusted, and what it stands for is visible
 };
 
 // visible[i] = 1 where some pixel centre of rectangle i may see past the occluders, else 0; of the first
 // `count`.
-HWY_INLINE void test_rectangles(const DepthTiles& tiles, const Rectangles& r, std::size_t count,
-                                std::uint8_t* visible) {
+HWY_INLINE void answer(const DepthTiles& tiles, const Question& q, std::size_t count, std::uint8_t* visible) {
   const F f;
-  const hn::RebindToSigned<F> i32;
-  // Pixel centres c with low <= c <= high, as columns and rows [first, last].
-  const VF half = hn::Set(f, 0.5f), zero = hn::Zero(f);
-  const VF columns = hn::Set(f, static_cast<float>(tiles.width) - 1),
-           rows = hn::Set(f, static_cast<float>(tiles.height) - 1);
-  const auto first = [&](VF low) HWY_ATTR { return hn::Max(hn::Ceil(hn::Sub(low, half)), zero); };
-  const auto last = [&](VF high, VF limit)
-                        HWY_ATTR { return hn::Min(hn::Floor(hn::Sub(high, half)), limit); };
-  const VF fx0 = first(r.left), fy0 = first(r.top), fx1 = last(r.right, columns), fy1 = last(r.bottom, rows);
+  const PixelBounds bounds = pixel_bounds(tiles, q.within);
   const auto finite =
-      hn::And(hn::Lt(r.nearest, hn::Set(f, kInfinity)), hn::Gt(r.nearest, hn::Set(f, -kInfinity)));
-  const auto sure = hn::And(r.sure, finite);
-  const auto covers = hn::And(hn::Le(fx0, fx1), hn::Le(fy0, fy1));
-  const auto asked = hn::And(sure, covers);
+      hn::And(hn::Lt(q.nearest, hn::Set(f, kInfinity)), hn::Gt(q.nearest, hn::Set(f, -kInfinity)));
+  const auto sure = hn::And(q.sure, finite);
+  const auto asked = hn::And(sure, bounds.some);
   // Those not asked for look at the first tile.
-  const auto pixel = [&](VF at) HWY_ATTR { return hn::ConvertTo(i32, hn::IfThenElseZero(asked, at)); };
-  const auto x0 = pixel(fx0), y0 = pixel(fy0), x1 = pixel(fx1), y1 = pixel(fy1);
-  // What the tiles of the corners say, which are all tiles of a small rectangle.
-  const auto tx0 = hn::ShiftRight<3>(x0), tx1 = hn::ShiftRight<3>(x1), ty0 = hn::ShiftRight<3>(y0),
-             ty1 = hn::ShiftRight<3>(y1);
-  const auto stride = hn::Set(i32, static_cast<std::int32_t>(tiles.stride));
-  const auto row0 = hn::Mul(ty0, stride), row1 = hn::Mul(ty1, stride);
-  const auto least = [&](const geometry::AlignedVector<float>& of) HWY_ATTR {
-    const auto at = [&](auto row, auto column)
-                        HWY_ATTR { return hn::GatherIndex(f, of.data(), hn::Add(row, column)); };
-    return hn::Min(hn::Min(at(row0, tx0), at(row0, tx1)), hn::Min(at(row1, tx0), at(row1, tx1)));
-  };
-  const auto one = hn::Set(i32, 1);
-  const auto large = hn::Or(hn::Gt(hn::Sub(tx1, tx0), one), hn::Gt(hn::Sub(ty1, ty0), one));
-  const auto behind_all = hn::AndNot(hn::RebindMask(f, large), hn::Lt(r.nearest, least(tiles.farthest)));
-  const auto before_some = hn::Gt(r.nearest, least(tiles.nearest));
+  const PixelRanges ranges = pixel_ranges(bounds, asked);
+  const auto behind_all = hn::AndNot(hn::RebindMask(f, ranges.many),
+                                     hn::Lt(q.nearest, least_at_corners(tiles, tiles.farthest, ranges)));
+  const auto before_some = hn::Gt(q.nearest, least_at_corners(tiles, tiles.nearest, ranges));
   const auto open = hn::AndNot(hn::Or(behind_all, before_some), asked);
-  std::uint32_t seen = bits_of(hn::Or(hn::Not(sure), hn::And(asked, before_some)));
-  const std::uint32_t rest = bits_of(open) & ((1u << count) - 1);
-  if (rest != 0) {
-    alignas(64) std::array<std::int32_t, 16> left, right, top, bottom;
-    alignas(64) std::array<float, 16> nearest;
-    hn::Store(x0, i32, left.data()), hn::Store(x1, i32, right.data());
-    hn::Store(y0, i32, top.data()), hn::Store(y1, i32, bottom.data());
-    hn::Store(r.nearest, f, nearest.data());
-    const auto look_closer = [&](std::uint32_t those, const auto& hides) HWY_ATTR {
-      for (; those != 0; those &= those - 1) {
-        const int i = std::countr_zero(those);
-        const PixelRange range{static_cast<std::uint32_t>(left[i]), static_cast<std::uint32_t>(top[i]),
-                               static_cast<std::uint32_t>(right[i]), static_cast<std::uint32_t>(bottom[i])};
-        seen |= std::uint32_t{!hides(tiles, range, nearest[i])} << i;
-      }
-    };
-    const std::uint32_t one_tile = bits_of(hn::RebindMask(f, hn::And(hn::Eq(tx0, tx1), hn::Eq(ty0, ty1))));
-    const std::uint32_t many = bits_of(hn::RebindMask(f, large));
-    look_closer(rest & one_tile, [](const DepthTiles& t, const PixelRange& range, float nearness) HWY_ATTR {
-      const VF least = least_in_tile(t, range, range.x0 / kTile, range.y0 / kTile);
-      return hn::AllFalse(F(), hn::Le(least, hn::Set(F(), nearness)));
-    });
-    look_closer(rest & ~one_tile & ~many, hidden_in_few);
-    look_closer(rest & many, hidden_in_many);
-  }
+  std::uint32_t seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
+  const std::uint32_t rest = bits_of(f, open) & ((1u << count) - 1);
+  if (rest != 0) seen |= look_closer(tiles, ranges, q.nearest, rest);
   for (std::size_t i = 0; i < count; ++i) visible[i] = seen >> i & 1;
 }
 

@@ -1,56 +1,16 @@
 // Convex polygons into the tiles of an occlusion buffer, for every SIMD width. Included by files that
 // foreach_target compiles again and again.
-#if defined(SIGHTLINE_CULLING_DEPTH_RASTER_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_CULLING_DEPTH_RASTER_INL
-#undef SIGHTLINE_CULLING_DEPTH_RASTER_INL
+#if defined(SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
+#undef SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
 #else
-#define SIGHTLINE_CULLING_DEPTH_RASTER_INL
+#define SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
 #endif
 
-#include <hwy/highway.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
-#include "library/occlusion/depth_tiles.hpp"
+#include "library/occlusion/spans-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
-using VF = hn::Vec<F>;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-alignas(64) constexpr float kColumn[64] = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5,
-                                           6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3,
-                                           4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
-alignas(64) constexpr float kRow[64] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2,
-                                        2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5,
-                                        5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7};
-
-alignas(64) constexpr float kLine[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-
-// A bit a lane, from the lowest.
-HWY_INLINE std::uint32_t bits_of(hn::Mask<F> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(F(), mask, bytes);
-  std::uint32_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((1u << hn::Lanes(F())) - 1);
-}
-
-// Bits i … i + lanes - 1 of a tile's pixels.
-HWY_INLINE hn::Mask<F> pixels_at(std::uint64_t pixels, std::size_t i) {
-  const std::uint64_t part = pixels >> i;
-  std::uint8_t bytes[8];
-  std::memcpy(bytes, &part, sizeof bytes);
-  if (hn::Lanes(F()) < 8) bytes[0] &= (1u << hn::Lanes(F())) - 1;
-  return hn::LoadMaskBits(F(), bytes);
-}
 
 // What a polygon hides: the least of its planes' nearness, at + x·across + y·down.
 template <std::size_t kPlanes>
@@ -58,190 +18,85 @@ struct Planes {
   std::array<float, kPlanes> at, across, down;
 };
 
-// Tiles [begin_x, end_x) × [begin_y, end_y).
-struct TileRange {
-  std::uint32_t begin_x, end_x, begin_y, end_y;
+// A polygon's planes, and their nearness from a tile's first pixel on over two rows of it: what is the same
+// for all its tiles.
+template <std::size_t kPlanes>
+struct PlaneTile {
+  Planes<kPlanes> planes;
+  alignas(64) std::array<std::array<float, 16>, kPlanes> offset;
+  std::array<float, kPlanes> most;  // of all eight rows
 };
 
-// The tiles that hold the pixel centres of a rectangle, in pixels; none where there is no such centre.
-HWY_INLINE TileRange tiles_of(const DepthTiles& tiles, float left, float right, float top, float bottom) {
-  const auto first = [](float low) { return std::ceil(std::max(low, 0.5f) - 0.5f); };
-  const auto last = [](float high, std::uint32_t size) {
-    return std::floor(std::min(high, static_cast<float>(size) - 0.5f) - 0.5f);
-  };
-  const float x0 = first(left), x1 = last(right, tiles.width), y0 = first(top),
-              y1 = last(bottom, tiles.height);
-  if (!(x0 <= x1 && y0 <= y1)) return {};
-  return {static_cast<std::uint32_t>(x0) / kTile, static_cast<std::uint32_t>(x1) / kTile + 1,
-          static_cast<std::uint32_t>(y0) / kTile, static_cast<std::uint32_t>(y1) / kTile + 1};
-}
-
-// The spans of the scanlines of two rows of tiles as columns [begin, end); nothing where begin >= end.
-struct Spans {
-  alignas(32) std::array<std::int16_t, 2 * kTile> begin, end;
-};
-
-HWY_INLINE void store_spans(VF left, VF right, hn::Mask<F> in_rows, float width, std::size_t i, Spans& out) {
+template <std::size_t kPlanes>
+HWY_INLINE PlaneTile<kPlanes> tile_of(const Planes<kPlanes>& planes) {
   const F f;
-  const hn::RebindToSigned<F> i32;
-  const hn::Rebind<std::int16_t, F> i16;
-  // Pixel centres at integers and a half, both borders included.
-  const auto zero = hn::Zero(f), limit = hn::Set(f, width), half = hn::Set(f, 0.5f);
-  const auto begin = hn::Min(hn::Max(hn::Ceil(hn::Sub(left, half)), zero), limit);
-  const auto end = hn::Min(hn::Max(hn::Floor(hn::Add(right, half)), zero), limit);
-  // Where there is no row the span begins behind all others.
-  const auto start = hn::IfThenElse(in_rows, begin, hn::Set(f, 16384.0f));
-  hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, start)), i16, &out.begin[i]);
-  hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, hn::IfThenElseZero(in_rows, end))), i16, &out.end[i]);
-}
-
-HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
-  const F f;
-  Spans out;
-  for (std::size_t i = 0; i < 2 * kTile; i += hn::Lanes(f)) {
-    const auto y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + i));
-    auto left = hn::Set(f, polygon.left), right = hn::Set(f, polygon.right);
-    for (std::size_t e = 0; e < polygon.left_edges; ++e) {
-      left = hn::Max(left,
-                     hn::Add(hn::Set(f, polygon.left_at[e]), hn::Mul(hn::Set(f, polygon.left_slope[e]), y)));
+  PlaneTile<kPlanes> out;
+  out.planes = planes;
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    const VF across = hn::Set(f, planes.across[p]), down = hn::Set(f, planes.down[p]);
+    for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+      hn::Store(hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i))), f,
+                &out.offset[p][i]);
     }
-    for (std::size_t e = 0; e < polygon.right_edges; ++e) {
-      right = hn::Min(
-          right, hn::Add(hn::Set(f, polygon.right_at[e]), hn::Mul(hn::Set(f, polygon.right_slope[e]), y)));
-    }
-    store_spans(left, right,
-                hn::And(hn::Ge(y, hn::Set(f, polygon.top)), hn::Le(y, hn::Set(f, polygon.bottom))), width, i,
-                out);
+    out.most[p] = std::max(0.0f, 7 * planes.across[p]) + std::max(0.0f, 7 * planes.down[p]);
   }
   return out;
 }
 
-// The same of outline i among many, a lane each, whose every edge bounds it on either side.
-template <std::size_t kEdges, class Outlines>
-HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, float width) {
+// Draws into these pixels of tile (tx, ty).
+template <std::size_t kPlanes>
+HWY_INLINE void draw_tile(DepthTiles& tiles, const PlaneTile<kPlanes>& of, std::uint32_t tx, std::uint32_t ty,
+                          std::uint64_t pixels) {
   const F f;
-  Spans out;
-  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
-    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
-    VF left = hn::Set(f, of.left[i]), right = hn::Set(f, of.right[i]);
-    for (std::size_t e = 0; e < kEdges; ++e) {
-      const VF along = hn::Mul(hn::Set(f, of.slope[e][i]), y);
-      left = hn::Max(left, hn::Add(hn::Set(f, of.left_at[e][i]), along));
-      right = hn::Min(right, hn::Add(hn::Set(f, of.right_at[e][i]), along));
+  const Planes<kPlanes>& planes = of.planes;
+  const float x = static_cast<float>(tx * kTile) + 0.5f, y = static_cast<float>(ty * kTile) + 0.5f;
+  std::array<float, kPlanes> base;
+  float nearest = kInfinity;
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    base[p] = (planes.at[p] + x * planes.across[p]) + y * planes.down[p];
+    nearest = std::min(nearest, base[p] + of.most[p]);
+  }
+  const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
+  if ((pixels == 0) | !(nearest > tiles.farthest[tile])) return;
+  float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
+  // No branch on whether the tile was touched, which is hard to guess.
+  const std::size_t kind = std::size_t{tx + 1 == tiles.columns} | std::size_t{ty + 1 == tiles.rows} << 1;
+  const float* before = &tiles.untouched[kind * 64];
+  before = tiles.nearest[tile] > -kInfinity ? out : before;
+  tiles.nearest[tile] = std::max(tiles.nearest[tile], nearest + std::fabs(nearest) * kTileRounding);
+  VF least = hn::Set(f, kInfinity);
+  for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+    VF depth[kPlanes];
+    for (std::size_t p = 0; p < kPlanes; ++p)
+      depth[p] = hn::Add(hn::Set(f, base[p]), hn::Load(f, &of.offset[p][i]));
+    for (std::size_t at = i; at < 64; at += 16) {
+      VF front = depth[0];
+      for (std::size_t p = 1; p < kPlanes; ++p) front = hn::Min(front, depth[p]);
+      for (std::size_t p = 0; p < kPlanes; ++p) depth[p] = hn::Add(depth[p], hn::Set(f, 2 * planes.down[p]));
+      const VF old = hn::Load(f, before + at);
+      const VF now = hn::IfThenElse(mask_of(f, pixels >> at), hn::Max(old, front), old);
+      hn::Store(now, f, out + at);
+      least = hn::Min(least, now);
     }
-    store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, of.top[i])), hn::Le(y, hn::Set(f, of.bottom[i]))),
-                width, line, out);
   }
-  return out;
+  tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(f, least));
 }
-
-// The columns that the spans of a tile's scanlines hold; and of the tile that starts at column x the pixels,
-// a byte a scanline, a bit a pixel.
-#if HWY_TARGET == HWY_SCALAR
-HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::min_element(&spans.begin[line], &spans.begin[line] + kTile));
-}
-HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::max_element(&spans.end[line], &spans.end[line] + kTile));
-}
-HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
-  std::uint64_t pixels = 0;
-  for (std::uint32_t row = 0; row < 8; ++row) {
-    const auto column = [&](std::int16_t at) { return std::clamp(at - static_cast<int>(x), 0, 8); };
-    const std::uint32_t from = 0xffu << column(spans.begin[line + row]) & 0xff,
-                        beyond = 0xffu << column(spans.end[line + row]);
-    pixels |= std::uint64_t{from & ~beyond} << (8 * row);
-  }
-  return pixels;
-}
-#else
-HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Load(i16, &spans.begin[line]))));
-}
-HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.end[line]))));
-}
-HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  const hn::FixedTag<std::uint8_t, 8> half;
-  const hn::FixedTag<std::uint8_t, 16> u8;
-  // The bits from a column on.
-  alignas(16) static constexpr std::uint8_t kFrom[16] = {0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0};
-  const auto at = hn::Set(i16, static_cast<std::int16_t>(x));
-  const auto column = [&](const std::int16_t* columns)
-                          HWY_ATTR { return hn::DemoteTo(half, hn::Sub(hn::Load(i16, columns), at)); };
-  const auto both =
-      hn::Min(hn::Combine(u8, column(&spans.end[line]), column(&spans.begin[line])), hn::Set(u8, 8));
-  alignas(16) std::uint64_t bits[2];
-  hn::Store(hn::TableLookupBytes(hn::Load(u8, kFrom), both), u8, reinterpret_cast<std::uint8_t*>(bits));
-  return bits[0] & ~bits[1];
-}
-#endif
-
-constexpr std::uint32_t kWide = 1;  // tiles
 
 // Draws what `spans_from` says of sixteen lines from a pixel centre on, tile by tile.
 template <std::size_t kPlanes, class SpansFrom>
 HWY_INLINE void draw_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
                            const SpansFrom& spans_from) {
-  const F f;
-  // Over two rows of a tile, from their first pixel; and the most of all eight rows.
-  alignas(64) std::array<std::array<float, 16>, kPlanes> offset;
-  std::array<float, kPlanes> most;
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    const VF across = hn::Set(f, planes.across[p]), down = hn::Set(f, planes.down[p]);
-    for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
-      hn::Store(hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i))), f,
-                &offset[p][i]);
-    }
-    most[p] = std::max(0.0f, 7 * planes.across[p]) + std::max(0.0f, 7 * planes.down[p]);
-  }
+  const PlaneTile<kPlanes> of = tile_of(planes);
   Spans spans;
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
     const std::size_t line = (ty - range.begin_y) % 2 * kTile;
-    const float y = static_cast<float>(ty * kTile) + 0.5f;
-    if (line == 0) spans = spans_from(y);
-    // Of a wide polygon that lies aslant, a row of tiles holds only a part.
-    const bool wide = range.end_x - range.begin_x > kWide;
+    if (line == 0) spans = spans_from(static_cast<float>(ty * kTile) + 0.5f);
+    // Of a polygon more than a tile wide that lies aslant, a row of tiles holds only a part.
+    const bool wide = range.end_x - range.begin_x > 1;
     const std::uint32_t begin_x = wide ? first_column(spans, line) / kTile : range.begin_x,
                         end_x = wide ? (end_column(spans, line) + kTile - 1) / kTile : range.end_x;
-    for (std::uint32_t tx = begin_x; tx < end_x; ++tx) {
-      const std::uint64_t pixels = pixels_of(spans, line, tx * kTile);
-      const float x = static_cast<float>(tx * kTile) + 0.5f;
-      std::array<float, kPlanes> base;
-      float nearest = kInfinity;
-      for (std::size_t p = 0; p < kPlanes; ++p) {
-        base[p] = (planes.at[p] + x * planes.across[p]) + y * planes.down[p];
-        nearest = std::min(nearest, base[p] + most[p]);
-      }
-      const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
-      if ((pixels == 0) | !(nearest > tiles.farthest[tile])) continue;
-      float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
-      // No branch on whether the tile was touched, which is hard to guess.
-      const std::size_t kind = std::size_t{tx + 1 == tiles.columns} | std::size_t{ty + 1 == tiles.rows} << 1;
-      const float* before = &tiles.untouched[kind * 64];
-      before = tiles.nearest[tile] > -kInfinity ? out : before;
-      tiles.nearest[tile] = std::max(tiles.nearest[tile], nearest + std::fabs(nearest) * 1e-6f);
-      VF least = hn::Set(f, kInfinity);
-      for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
-        VF depth[kPlanes];
-        for (std::size_t p = 0; p < kPlanes; ++p)
-          depth[p] = hn::Add(hn::Set(f, base[p]), hn::Load(f, &offset[p][i]));
-        for (std::size_t at = i; at < 64; at += 16) {
-          VF front = depth[0];
-          for (std::size_t p = 1; p < kPlanes; ++p) front = hn::Min(front, depth[p]);
-          for (std::size_t p = 0; p < kPlanes; ++p)
-            depth[p] = hn::Add(depth[p], hn::Set(f, 2 * planes.down[p]));
-          const VF old = hn::Load(f, before + at);
-          const VF now = hn::IfThenElse(pixels_at(pixels, at), hn::Max(old, front), old);
-          hn::Store(now, f, out + at);
-          least = hn::Min(least, now);
-        }
-      }
-      tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(f, least));
-    }
+    for (std::uint32_t tx = begin_x; tx < end_x; ++tx)
+      draw_tile(tiles, of, tx, ty, pixels_of(spans, line, tx * kTile));
   }
 }
 
@@ -266,19 +121,18 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, fl
   return true;
 }
 
-// A row of a projection times a vector of points about the eye.
-HWY_INLINE VF dot_row(const Vec4& row, VF x, VF y, VF z) {
-  const F f;
-  return hn::Add(hn::Add(hn::Add(hn::Mul(hn::Set(f, row.x), x), hn::Mul(hn::Set(f, row.y), y)),
-                         hn::Mul(hn::Set(f, row.z), z)),
-                 hn::Set(f, row.w));
-}
-
-// move_back() of a vector of planes.
+// Planes moved away by what rounding can have brought them nearer: of the numbers, and of the pixel's place
+// on a surface seen edge on.
 HWY_INLINE VF moved_back(VF at, VF across, VF down, VF nearest) {
   const F f;
-  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, 1.0f / 64));
-  return hn::Sub(at, hn::Add(hn::Mul(hn::Set(f, 2e-5f), hn::Abs(nearest)), slant));
+  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay));
+  return hn::Sub(at, hn::Add(hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)), slant));
+}
+
+// How far inside its outline an occluder must hold a pixel centre whose outline reaches `widest` pixels far.
+HWY_INLINE VF inset_of(VF widest) {
+  const F f;
+  return hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), widest));
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -1,5 +1,5 @@
-// Occluding balls into the tiles: of each two discs that lie square to the view, whose depth is one and whose
-// rows are a square root each. One goes through the centre and fills nearly the whole outline; one lies
+// Occluding spheres into the tiles: of each two discs that lie square to the view, whose depth is one and
+// whose rows are a square root each. One goes through the centre and fills nearly the whole outline; one lies
 // nearer and fills the middle.
 #include <algorithm>
 #include <cmath>
@@ -41,6 +41,8 @@ HWY_INLINE Spans spans_of(const Disc& disc, float first_y, float width) {
 struct Scales {
   float x = 0, y = 0;           // · 1/w (perspective) or · 1 (orthographic): pixels
   std::array<float, 3> axis{};  // along which the view looks, of unit length
+
+  [[nodiscard]] float aspect() const { return x / y; }
 };
 
 Scales scales_of(const DepthTiles& tiles) {
@@ -58,19 +60,19 @@ Scales scales_of(const DepthTiles& tiles) {
   const V x = square_to_view(to_v(e.x)), y = square_to_view(to_v(e.y));
   const double length_x = std::sqrt(dot(x, x)), length_y = std::sqrt(dot(y, y));
   // A sheared image has no discs of this kind.
-  if (!(std::fabs(dot(x, y)) <= 1e-5 * length_x * length_y)) return {};
-  return {static_cast<float>(length_x * (1 - 2e-5)),
-          static_cast<float>(length_y * (1 - 2e-5)),
+  if (!(std::fabs(dot(x, y)) <= kMostShear * length_x * length_y)) return {};
+  return {static_cast<float>(length_x * (1 - kDiscShrink)),
+          static_cast<float>(length_y * (1 - kDiscShrink)),
           {static_cast<float>(axis[0]), static_cast<float>(axis[1]), static_cast<float>(axis[2])}};
 }
 
-// A disc of each ball, `offset` radii before its centre.
+// A disc of each sphere, `offset` radii before its centre.
 struct Layer {
   float offset, radius;
 };
-constexpr Layer kLayers[2] = {{0.6f, 0.8f * (1 - 1e-6f)}, {0, 1}};
-// Pixels: of a smaller ball the nearer disc says too little.
-constexpr float kLeastLayered = 2;
+constexpr Layer kLayers[2] = {{0.6f, 0.8f * (1 - kDiscRounding)}, {0, 1}};
+// Pixels of radius: of a smaller sphere the nearer disc says too little, and of a smaller disc any.
+constexpr float kLeastLayered = 2, kLeastDisc = 0.25f;
 
 // A vector of discs, ready to be drawn.
 struct Discs {
@@ -92,51 +94,63 @@ HWY_INLINE void draw_discs(DepthTiles& tiles, const Discs& discs, float aspect, 
   }
 }
 
-void draw_all_balls(DepthTiles& tiles, std::span<const Sphere> balls) {
+// A vector of spheres about the eye.
+struct WideSpheres {
+  VPoints centre;
+  VF radius;
+};
+
+HWY_INLINE WideSpheres spheres_of(const EyeProjection& e, std::span<const Sphere> spheres) {
+  const F f;
+  alignas(64) std::array<std::array<float, 16>, 4> in;
+  for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
+    const Sphere& s = spheres[std::min(i, spheres.size() - 1)];
+    in[0][i] = s.centre.x, in[1][i] = s.centre.y, in[2][i] = s.centre.z, in[3][i] = s.radius;
+  }
+  return {about_eye(e, {hn::Load(f, in[0].data()), hn::Load(f, in[1].data()), hn::Load(f, in[2].data())}),
+          hn::Load(f, in[3].data())};
+}
+
+HWY_INLINE void find_discs(const DepthTiles& tiles, const WideSpheres& s, const Scales& scales,
+                           const Layer& layer, Discs& out) {
   const F f;
   const EyeProjection& e = tiles.projection;
+  const auto nearer = [&](VF at, float axis) HWY_ATTR {
+    return hn::Sub(at, hn::Mul(s.radius, hn::Set(f, layer.offset * axis)));
+  };
+  const VPoints q{nearer(s.centre.x, scales.axis[0]), nearer(s.centre.y, scales.axis[1]),
+                  nearer(s.centre.z, scales.axis[2])};
+  const VF r = hn::Mul(s.radius, hn::Set(f, layer.radius));
+  const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, q));
+  const VF x = hn::Mul(dot_row(e.x, q), over_w), y = hn::Mul(dot_row(e.y, q), over_w);
+  const VF nearness = e.orthographic ? dot_row(e.nearness, q) : over_w;
+  const VF reach = hn::Add(hn::Abs(q.x), hn::Add(hn::Abs(q.y), hn::Abs(q.z)));
+  // The radius along y, less what rounding asks along either axis.
+  const VF inset = inset_of(hn::Max(hn::Abs(x), hn::Abs(y)));
+  const VF radius = hn::Sub(hn::Mul(hn::Mul(r, hn::Set(f, scales.y)), over_w),
+                            hn::Mul(inset, hn::Set(f, 1 + 1 / scales.aspect())));
+  // The whole sphere in front of the near plane: of one that it cuts, the inside is seen.
+  const VF needed =
+      hn::Add(hn::Mul(s.radius, hn::Set(f, 1 + kSphereClearance)), hn::Mul(reach, hn::Set(f, kSphereReach)));
+  const VF backwards = hn::Mul(hn::Set(f, kNearnessRounding), e.orthographic ? reach : hn::Abs(nearness));
+  hn::Store(x, f, out.x.data());
+  hn::Store(y, f, out.y.data());
+  hn::Store(radius, f, out.radius.data());
+  hn::Store(hn::Sub(nearness, backwards), f, out.near.data());
+  hn::Store(hn::Sub(dot_row(tiles.rays.near_plane, s.centre), needed), f, out.clear.data());
+}
+
+void draw_all_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) {
+  const std::size_t lanes = hn::Lanes(F());
   const Scales scales = scales_of(tiles);
   if (!(scales.x > 0 && scales.y > 0)) return;
-  const float aspect = scales.x / scales.y;
-  alignas(64) std::array<std::array<float, 16>, 4> in;
   Discs discs;
-  for (std::size_t first = 0; first < balls.size(); first += hn::Lanes(f)) {
-    const std::size_t count = std::min(hn::Lanes(f), balls.size() - first);
-    for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
-      const Sphere& ball = balls[first + std::min(i, count - 1)];
-      in[0][i] = ball.centre.x, in[1][i] = ball.centre.y, in[2][i] = ball.centre.z, in[3][i] = ball.radius;
-    }
-    const auto about_eye = [&](std::size_t a, float high, float low) HWY_ATTR {
-      return hn::Sub(hn::Sub(hn::Load(f, in[a].data()), hn::Set(f, high)), hn::Set(f, low));
-    };
-    const VF cx = about_eye(0, e.eye_high.x, e.eye_low.x), cy = about_eye(1, e.eye_high.y, e.eye_low.y),
-             cz = about_eye(2, e.eye_high.z, e.eye_low.z), ball_radius = hn::Load(f, in[3].data());
+  for (std::size_t first = 0; first < spheres.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, spheres.size() - first);
+    const WideSpheres some = spheres_of(tiles.projection, spheres.subspan(first, count));
     for (const Layer& layer : kLayers) {
-      const auto nearer = [&](VF at, float axis) HWY_ATTR {
-        return hn::Sub(at, hn::Mul(ball_radius, hn::Set(f, layer.offset * axis)));
-      };
-      const VF qx = nearer(cx, scales.axis[0]), qy = nearer(cy, scales.axis[1]),
-               qz = nearer(cz, scales.axis[2]);
-      const VF r = hn::Mul(ball_radius, hn::Set(f, layer.radius));
-      const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, qx, qy, qz));
-      const VF x = hn::Mul(dot_row(e.x, qx, qy, qz), over_w), y = hn::Mul(dot_row(e.y, qx, qy, qz), over_w);
-      const VF nearness = e.orthographic ? dot_row(e.nearness, qx, qy, qz) : over_w;
-      const VF reach = hn::Add(hn::Abs(qx), hn::Add(hn::Abs(qy), hn::Abs(qz)));
-      const VF inset =
-          hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), hn::Max(hn::Abs(x), hn::Abs(y))));
-      // The radius along y, less what rounding asks along either axis.
-      const VF radius = hn::Sub(hn::Mul(hn::Mul(r, hn::Set(f, scales.y)), over_w),
-                                hn::Mul(inset, hn::Set(f, 1 + 1 / aspect)));
-      // The whole ball in front of the near plane: of one that it cuts, the inside is seen.
-      const VF needed =
-          hn::Add(hn::Mul(ball_radius, hn::Set(f, 1 + 1e-4f)), hn::Mul(reach, hn::Set(f, 1e-6f)));
-      const VF backwards = hn::Mul(hn::Set(f, 2e-5f), e.orthographic ? reach : hn::Abs(nearness));
-      hn::Store(x, f, discs.x.data());
-      hn::Store(y, f, discs.y.data());
-      hn::Store(radius, f, discs.radius.data());
-      hn::Store(hn::Sub(nearness, backwards), f, discs.near.data());
-      hn::Store(hn::Sub(dot_row(tiles.rays.near_plane, cx, cy, cz), needed), f, discs.clear.data());
-      draw_discs(tiles, discs, aspect, count, layer.offset > 0 ? kLeastLayered : 0.25f);
+      find_discs(tiles, some, scales, layer, discs);
+      draw_discs(tiles, discs, scales.aspect(), count, layer.offset > 0 ? kLeastLayered : kLeastDisc);
     }
   }
 }
@@ -146,10 +160,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::occlusion {
-HWY_EXPORT(draw_all_balls);
+HWY_EXPORT(draw_all_spheres);
 
-void draw_balls(DepthTiles& tiles, std::span<const Sphere> balls) noexcept {
-  HWY_DYNAMIC_DISPATCH(draw_all_balls)(tiles, balls);
+void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept {
+  HWY_DYNAMIC_DISPATCH(draw_all_spheres)(tiles, spheres);
 }
 
 }  // namespace sightline::occlusion

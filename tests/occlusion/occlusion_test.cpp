@@ -96,8 +96,8 @@ TEST(Occlusion, NeverHidesWhatAPixelCentreSees) {
 
 TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
   Random random(5);
-  const scene::Shape ball = scene::sphere(2);
-  const OccluderMesh mesh(ball.positions, ball.indices);
+  const scene::Shape shape = scene::sphere(2);
+  const OccluderMesh mesh(shape.positions, shape.indices);
   EXPECT_EQ(mesh.triangles(), 320u);
   for (int round = 0; round < 30; ++round) {
     Camera camera;
@@ -109,7 +109,7 @@ TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
     buffer.draw_mesh(mesh, {});
     std::vector<float> drawn(200 * 160);
     buffer.read_nearness(drawn);
-    // The ball of radius 1 holds the mesh and is held by the mesh grown by a fiftieth.
+    // The sphere of radius 1 holds the mesh and is held by the mesh grown by a fiftieth.
     std::size_t inside = 0;
     const float limit =
         1 /
@@ -138,8 +138,8 @@ TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
 }
 
 TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
-  const scene::Shape ball = scene::sphere(2);
-  const OccluderMesh mesh(ball.positions, ball.indices);
+  const scene::Shape shape = scene::sphere(2);
+  const OccluderMesh mesh(shape.positions, shape.indices);
   for (const bool orthographic : {false, true}) {
     Camera camera{.eye = {0, 0, 9}};
     camera.orthographic_height = orthographic ? 6.0f : 0;
@@ -153,11 +153,11 @@ TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
           transform.rows[static_cast<std::size_t>(row)].*part = bad;
           buffer.draw_mesh(mesh, transform);
           const Sphere no_number{{bad, 0, 0}, 1}, no_size{{0, 0, 0}, std::nanf("")};
-          buffer.draw_balls(std::array{no_number, no_size});
+          buffer.draw_spheres(std::array{no_number, no_size});
           std::vector<float> drawn(64 * 48);
           buffer.read_nearness(drawn);
           for (const float nearness : drawn)
-            ASSERT_FALSE(nearness > 0.2f);  // nothing before the ball's place
+            ASSERT_FALSE(nearness > 0.2f);  // nothing before the sphere's place
         }
       }
     }
@@ -270,9 +270,9 @@ TEST(Occlusion, LooksCloselyAtTrianglesThatBeginBehindTheEye) {
 }
 
 TEST(Occlusion, MeshesOfManyGroupsHideTheSameHoweverTheyAreCut) {
-  // One ball in one mesh, and in pieces of 16 triangles: whole groups are left out where others hide them.
-  const scene::Shape ball = scene::sphere(4);
-  const OccluderMesh mesh(ball.positions, ball.indices);
+  // One sphere in one mesh, and in pieces of 16 triangles: whole groups are left out where others hide them.
+  const scene::Shape shape = scene::sphere(4);
+  const OccluderMesh mesh(shape.positions, shape.indices);
   Random random(18);
   for (int round = 0; round < 20; ++round) {
     Affine transform;
@@ -285,8 +285,8 @@ TEST(Occlusion, MeshesOfManyGroupsHideTheSameHoweverTheyAreCut) {
     ASSERT_FALSE(whole.begin({view, {}}));
     ASSERT_FALSE(pieces.begin({view, {}}));
     whole.draw_mesh(mesh, transform);
-    for (std::size_t i = 0; i < ball.indices.size(); i += 48)
-      pieces.draw_mesh({ball.positions, std::span(ball.indices).subspan(i, 48)}, transform);
+    for (std::size_t i = 0; i < shape.indices.size(); i += 48)
+      pieces.draw_mesh({shape.positions, std::span(shape.indices).subspan(i, 48)}, transform);
     std::vector<float> by_whole(150 * 110), by_pieces(by_whole.size());
     whole.read_nearness(by_whole);
     pieces.read_nearness(by_pieces);
@@ -375,8 +375,8 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   std::vector<Box> occluders;
   for (int i = 0; i < 200; ++i) occluders.push_back(test::box_of(random, 5));
   occluders.push_back({{-3, -3, 55}, {-1, 5, 70}});  // crosses the near plane
-  std::vector<Sphere> balls;
-  for (int i = 0; i < 100; ++i) balls.push_back(test::ball_of(random, 4));
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 100; ++i) spheres.push_back(test::sphere_of(random, 4));
   Boxes queries;
   for (int i = 0; i < 1000; ++i) queries.push_back(test::box_of(random, 1));
   std::vector<std::array<Vec3, 3>> triangles;
@@ -394,7 +394,7 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
     OcclusionBuffer buffer;
     EXPECT_FALSE(buffer.begin({view, {}}));
     buffer.draw_boxes(occluders);
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(spheres);
     buffer.draw_mesh(mesh, crossing);
     buffer.draw_mesh(mesh, {});
     std::vector<float> drawn(333 * 217);

@@ -1,4 +1,4 @@
-// Balls as occluders and as queries, held against exact rays.
+// Spheres as occluders and as queries, held against exact rays.
 #include <sightline/occlusion.hpp>
 
 #include <gtest/gtest.h>
@@ -16,31 +16,31 @@ using scene::Random;
 using test::ExactRays;
 
 // Of those that the near plane does not cut.
-std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Sphere> balls) {
+std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Sphere> spheres) {
   std::vector<double> nearness(std::size_t{view.width} * view.height, ExactRays::kMiss);
   const Plane front = make_frustum(view, test::kRoom).planes[Frustum::front];
-  for (const Sphere& ball : balls) {
-    if (signed_distance(front, ball.centre.x, ball.centre.y, ball.centre.z) < ball.radius) continue;
+  for (const Sphere& sphere : spheres) {
+    if (signed_distance(front, sphere.centre.x, sphere.centre.y, sphere.centre.z) < sphere.radius) continue;
     for (std::uint32_t i = 0; i < nearness.size(); ++i) {
-      nearness[i] = std::max(nearness[i], rays.hit(i % view.width + 0.5, i / view.width + 0.5, ball));
+      nearness[i] = std::max(nearness[i], rays.hit(i % view.width + 0.5, i / view.width + 0.5, sphere));
     }
   }
   return nearness;
 }
 
-TEST(Occlusion, DrawsBallsNowhereNearerThanTheyAreAndFillsMostOfThem) {
+TEST(Occlusion, DrawsSpheresNowhereNearerThanTheyAreAndFillsMostOfThem) {
   Random random(13);
   std::size_t covered = 0, drawn_at = 0;
   for (int round = 0; round < 200; ++round) {
     const View view = test::small_view(random);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 12; ++i) balls.push_back(test::ball_of(random, round % 3 == 0 ? 15.0f : 4.0f));
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 12; ++i) spheres.push_back(test::sphere_of(random, round % 3 == 0 ? 15.0f : 4.0f));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(spheres);
     std::vector<float> drawn(std::size_t{view.width} * view.height);
     buffer.read_nearness(drawn);
-    const std::vector<double> exact = exact_depths(ExactRays(view), view, balls);
+    const std::vector<double> exact = exact_depths(ExactRays(view), view, spheres);
     for (std::size_t i = 0; i < drawn.size(); ++i) {
       ASSERT_LE(drawn[i], exact[i]) << "round " << round << " pixel " << i % view.width << ' '
                                     << i / view.width;
@@ -57,18 +57,18 @@ TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
   std::size_t hidden = 0, dropped_by_sphere = 0;
   for (int round = 0; round < 200; ++round) {
     const View view = test::small_view(random);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 12; ++i) balls.push_back(test::ball_of(random, 8));
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 12; ++i) spheres.push_back(test::sphere_of(random, 8));
     OcclusionBuffer buffer;
     ASSERT_FALSE(buffer.begin({view, {}}));
-    buffer.draw_balls(balls);
+    buffer.draw_spheres(spheres);
     const ExactRays rays(view);
-    const std::vector<double> exact = exact_depths(rays, view, balls);
+    const std::vector<double> exact = exact_depths(rays, view, spheres);
     std::vector<Sphere> queries;
     std::array<std::vector<float>, 4> lanes;
     Boxes boxes;
     for (int i = 0; i < 21; ++i) {
-      const Sphere s = test::ball_of(random, 2);
+      const Sphere s = test::sphere_of(random, 2);
       queries.push_back(s);
       lanes[0].push_back(s.centre.x), lanes[1].push_back(s.centre.y), lanes[2].push_back(s.centre.z);
       lanes[3].push_back(s.radius);

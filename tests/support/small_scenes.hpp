@@ -25,7 +25,7 @@ inline Box box_of(scene::Random& random, float largest) {
   return {{at.x - half.x, at.y - half.y, at.z - half.z}, {at.x + half.x, at.y + half.y, at.z + half.z}};
 }
 
-inline Sphere ball_of(scene::Random& random, float largest) {
+inline Sphere sphere_of(scene::Random& random, float largest) {
   return {random.inside(kRoom), random.between(0.05f, largest)};
 }
 

@@ -214,7 +214,7 @@ private:
       const auto o = static_cast<ObjectId>(key);
       drawn_spheres_.push_back(sphere_inside(scene_.transform[o], *occluders_[scene_.mesh[o]].sphere));
     }
-    buffer_.draw_balls(drawn_spheres_);
+    buffer_.draw_spheres(drawn_spheres_);
   }
 
   void draw_picked_meshes() {

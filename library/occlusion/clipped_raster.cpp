@@ -1,0 +1,165 @@
+// Occluders that the near plane cuts, or whose faces are seen edge on: polygon by polygon, in double
+// precision.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "library/geometry/error_bounds.hpp"
+#include "library/occlusion/depth_tiles.hpp"
+#include "library/occlusion/near_clip.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "library/occlusion/clipped_raster.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include "library/occlusion/depth_raster-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion::HWY_NAMESPACE {
+
+void draw_convex(DepthTiles& tiles, const Convex& polygon) {
+  draw_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom));
+}
+
+}  // namespace sightline::occlusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion {
+HWY_EXPORT(draw_convex);
+
+using namespace geometry;
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// A plane normal · q = at.
+struct WidePlane {
+  glm::dvec3 normal;
+  double at;
+};
+
+// A polygon on the image.
+struct Outline {
+  std::array<float, Polygon::kMost> x, y;
+  std::size_t count;
+  float left = kInfinity, right = -kInfinity, top = kInfinity, bottom = -kInfinity;
+  float nearest = -kInfinity;
+  double reach = 0;  // the largest coordinate about the eye
+};
+
+Outline outline_of(const EyeProjection& e, const Polygon& polygon) {
+  Outline out;
+  out.count = polygon.count;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec3& q = polygon.points[i];
+    const double over_w = 1 / dot(e.w, q);
+    const float x = static_cast<float>(dot(e.x, q) * over_w), y = static_cast<float>(dot(e.y, q) * over_w);
+    out.x[i] = x, out.y[i] = y;
+    out.nearest = std::max(out.nearest, static_cast<float>(e.orthographic ? dot(e.nearness, q) : over_w));
+    out.reach = std::max({out.reach, std::fabs(q.x), std::fabs(q.y), std::fabs(q.z)});
+    out.left = std::min(out.left, x), out.right = std::max(out.right, x);
+    out.top = std::min(out.top, y), out.bottom = std::max(out.bottom, y);
+  }
+  return out;
+}
+
+// Twice the area, by sign as it turns.
+float area_of(const Outline& o) {
+  float area = 0;
+  for (std::size_t i = 1; i + 1 < o.count; ++i) {
+    area += (o.x[i] - o.x[0]) * (o.y[i + 1] - o.y[0]) - (o.x[i + 1] - o.x[0]) * (o.y[i] - o.y[0]);
+  }
+  return area;
+}
+
+// The plane's nearness, moved away by what rounding can have brought it nearer: of the numbers, and of the
+// pixel's place on a surface seen edge on. False where it is seen too much edge on.
+bool set_plane(const DepthTiles& tiles, const WidePlane& plane, const Outline& outline, Convex& out) {
+  const PixelRays& rays = tiles.rays;
+  const bool orthographic = tiles.projection.orthographic;
+  const auto along = [&](const std::array<float, 3>& v) {
+    return plane.normal.x * v[0] + plane.normal.y * v[1] + plane.normal.z * v[2];
+  };
+  const double scale = orthographic ? along(rays.forward) : plane.at;
+  if (!(std::fabs(scale) > (orthographic ? kEdgeOnSine : kEdgeOnPart * outline.reach + kEdgeOnDistance)))
+    return false;
+  out.across = static_cast<float>(along(rays.across) / scale);
+  out.down = static_cast<float>(along(rays.down) / scale);
+  out.at = static_cast<float>((orthographic ? along(rays.at) - plane.at : along(rays.at)) / scale);
+  out.at -= kNearnessRounding * std::fabs(outline.nearest) +
+            (std::fabs(out.across) + std::fabs(out.down)) * kPixelPlay;
+  return true;
+}
+
+// Adds the edge from corner i on, moved inwards by `inset` pixels.
+void add_edge(const Outline& outline, std::size_t i, bool turns_right, float inset, Convex& out) {
+  const std::size_t next = (i + 1) % outline.count;
+  const float ax = outline.x[i], ay = outline.y[i], bx = outline.x[next], by = outline.y[next];
+  const float dy = by - ay;
+  if (!(std::fabs(dy) >= kFlatEdge)) return;
+  const float slope = (bx - ax) / dy, at = ax - ay * slope;
+  const float inwards = inset * (1 + std::fabs(slope));
+  if ((by > ay) == turns_right) {
+    out.right_at[out.right_edges] = at - inwards;
+    out.right_slope[out.right_edges++] = slope;
+  } else {
+    out.left_at[out.left_edges] = at + inwards;
+    out.left_slope[out.left_edges++] = slope;
+  }
+}
+
+// A polygon that lies on the plane.
+void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane) {
+  if (!clip_to_view(tiles, 0, polygon)) return;
+  if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
+  const Outline outline = outline_of(tiles.projection, polygon);
+  const float area = area_of(outline);
+  Convex out;
+  if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return;
+  const float inset = kInset + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
+  for (std::size_t i = 0; i < outline.count; ++i) add_edge(outline, i, area > 0, inset, out);
+  out.left = outline.left + inset, out.right = outline.right - inset;
+  out.top = outline.top + inset, out.bottom = outline.bottom - inset;
+  HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out);
+}
+
+}  // namespace
+
+void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
+                      const std::array<float, 3>& high) noexcept {
+  for (int a = 0; a < 3; ++a) {
+    for (const bool up : {false, true}) {
+      const float at = up ? high[a] : low[a];
+      const bool faces_eye =
+          tiles.projection.orthographic ? (tiles.rays.forward[a] < 0) == up : (at < 0) == up;
+      if (!faces_eye || at == 0) continue;
+      Polygon face;
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      for (const auto& [s, t] : {std::pair{false, false}, {true, false}, {true, true}, {false, true}}) {
+        glm::dvec3& p = face.points[face.count++];
+        p[a] = at, p[b] = s ? high[b] : low[b], p[c] = t ? high[c] : low[c];
+      }
+      glm::dvec3 normal(0);
+      normal[a] = 1;
+      draw_clipped(tiles, face, {normal, at});
+    }
+  }
+}
+
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners) noexcept {
+  Polygon polygon;
+  for (const auto& c : corners) polygon.points[polygon.count++] = {c[0], c[1], c[2]};
+  const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
+  const glm::dvec3 normal = glm::cross(q - p, r - p);
+  const double length = glm::length(normal);
+  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)});
+}
+
+}  // namespace sightline::occlusion
+#endif

@@ -1,0 +1,95 @@
+#include "library/occlusion/eye_projection.hpp"
+
+#include <cmath>
+
+#include "library/geometry/error_bounds.hpp"
+#include "library/geometry/linear.hpp"
+
+namespace sightline::occlusion {
+
+using namespace geometry;
+
+namespace {
+
+Vec4 to_vec4(const glm::dvec3& v, double w) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
+}
+
+// The rows (pixel x, pixel y, w) of a projection about the eye, in double precision.
+struct Rows {
+  glm::dvec3 eye;  // in the view's own space
+  glm::dvec3 x, y, w;
+  glm::dvec3 constant;
+  glm::dvec3 forward;  // unit
+  bool orthographic = false;
+};
+
+Rows rows_of(const View& view) {
+  const glm::dmat4 clip = to_double(view.eye_to_clip) * to_double(view.world_to_eye);
+  const glm::dmat4 rows = glm::transpose(clip);
+  Rows out;
+  out.orthographic = is_orthographic(view);
+  out.forward = glm::normalize(-glm::dvec3(glm::inverse(to_double(view.world_to_eye))[2]));
+  const double half_width = 0.5 * view.width, half_height = 0.5 * view.height;
+  const glm::dvec4 x = (rows[0] + rows[3]) * half_width, y = (rows[3] - rows[1]) * half_height, w = rows[3];
+  out.x = glm::dvec3(x), out.y = glm::dvec3(y), out.w = glm::dvec3(w);
+  if (out.orthographic) {
+    out.eye = glm::dvec3(glm::inverse(to_double(view.world_to_eye))[3]);
+  } else {
+    // Where x, y and w are all 0.
+    const glm::dmat3 matrix = glm::transpose(glm::dmat3(out.x, out.y, out.w));
+    out.eye = -(glm::inverse(matrix) * glm::dvec3(x.w, y.w, w.w));
+  }
+  const auto at_eye = [&](const glm::dvec4& row) { return glm::dot(glm::dvec3(row), out.eye) + row.w; };
+  out.constant = out.orthographic ? glm::dvec3(at_eye(x), at_eye(y), at_eye(w)) : glm::dvec3(0);
+  return out;
+}
+
+}  // namespace
+
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept {
+  const Rows rows = rows_of(view.view);
+  const glm::dvec3 eye =
+      rows.eye + glm::dvec3(view.origin.x - origin.x, view.origin.y - origin.y, view.origin.z - origin.z);
+  EyeProjection out;
+  const Split about = split(eye);
+  out.eye_high = about.rounded, out.eye_low = about.rest;
+  out.x = to_vec4(rows.x, rows.constant.x);
+  out.y = to_vec4(rows.y, rows.constant.y);
+  out.w = to_vec4(rows.w, rows.constant.z);
+  out.nearness = to_vec4(-rows.forward, 0);
+  out.orthographic = rows.orthographic;
+  return out;
+}
+
+PixelRays pixel_rays(const View& view) noexcept {
+  const Rows rows = rows_of(view);
+  PixelRays out;
+  const glm::dvec3 last = rows.orthographic ? rows.forward : rows.w;
+  const glm::dmat3 inverse = glm::inverse(glm::transpose(glm::dmat3(rows.x, rows.y, last)));
+  const double scale = rows.orthographic ? rows.constant.z : 1;
+  const glm::dvec3 across = inverse[0] * scale, down = inverse[1] * scale;
+  const glm::dvec3 at =
+      rows.orthographic ? -(inverse[0] * rows.constant.x + inverse[1] * rows.constant.y) : inverse[2];
+  for (int a = 0; a < 3; ++a) {
+    out.at[a] = static_cast<float>(at[a]);
+    out.across[a] = static_cast<float>(across[a]);
+    out.down[a] = static_cast<float>(down[a]);
+    out.forward[a] = static_cast<float>(rows.forward[a]);
+  }
+  const double turn = glm::determinant(glm::dmat3(rows.x, rows.y, last));
+  out.turns_right = turn * scale < 0;
+  const Plane front = make_frustum(view, {}).planes[Frustum::front];
+  const glm::dvec3 normal(front.normal.x, front.normal.y, front.normal.z);
+  if (glm::length(normal) > 0.5) {
+    const double at_eye = glm::dot(normal, rows.eye) + front.distance;
+    // A little behind the plane: what is cut off must not be drawn.
+    const double safe = near_plane_slack(at_eye, glm::length(rows.eye));
+    out.near_plane = to_vec4(normal, at_eye - safe);
+  } else {
+    out.near_plane = to_vec4(rows.w, rows.constant.z - kLeastW);
+  }
+  return out;
+}
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,36 @@
+// A view prepared for drawing and querying: coordinates about its eye.
+#pragma once
+
+#include <array>
+
+#include <sightline/culling.hpp>
+#include <sightline/types.hpp>
+#include <sightline/world.hpp>
+
+namespace sightline::occlusion {
+
+/// A view's projection about its eye, so that coordinates near the eye keep their digits: a point p is first
+/// moved to q = (p - eye_high) - eye_low. Then (pixel x, pixel y, 1)·w = rows · (q, 1).
+struct EyeProjection {
+  Vec3 eye_high, eye_low;
+  Vec4 x, y, w;
+  Vec4 nearness;  ///< · (q, 1): orthographic only, minus the depth along the view; else 1/w is used
+  bool orthographic = false;
+};
+
+/// What drawing needs besides: which way a pixel looks.
+struct PixelRays {
+  /// Per axis a: L_a(x, y) = at + x·across + y·down. Perspective: the direction through pixel (x, y) that has
+  /// w = 1; orthographic: where its ray crosses depth 0, relative to the eye.
+  std::array<float, 3> at{}, across{}, down{};
+  std::array<float, 3> forward{};  ///< orthographic: the ray's direction
+  Vec4 near_plane;                 ///< · (q, 1) >= 0 in front of the near plane
+  /// Corners that go counterclockwise round a face do so to the right on the image.
+  bool turns_right = false;
+};
+
+/// Of the same view about another origin.
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept;
+PixelRays pixel_rays(const View& view) noexcept;
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,243 @@
+// A mesh's triangles made ready to be drawn, a vector at a time, for every SIMD width. Included by files that
+// foreach_target compiles again and again.
+#if defined(SIGHTLINE_OCCLUSION_MESH_SETUP_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_OCCLUSION_MESH_SETUP_INL
+#undef SIGHTLINE_OCCLUSION_MESH_SETUP_INL
+#else
+#define SIGHTLINE_OCCLUSION_MESH_SETUP_INL
+#endif
+
+#include "library/occlusion/depth_raster-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion::HWY_NAMESPACE {
+
+constexpr std::size_t kGroup = OccluderTopology::kGroup;
+
+// A vector of triangles' corners about the eye, from triangle 16·group + lane on.
+HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh,
+                                     const Affine& transform, std::size_t group, std::size_t lane) {
+  const F f;
+  Corners out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + lane];
+    const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
+    out[k] = about_eye(
+        e, {dot_row(transform.rows[0], p), dot_row(transform.rows[1], p), dot_row(transform.rows[2], p)});
+  }
+  return out;
+}
+
+// Which way a triangle turns on the image: 1 or -1; 0: too small; kCut: the near plane cuts it.
+constexpr float kCut = 2;
+
+HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image) {
+  const F f;
+  const VF area = area_of(image);
+  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
+  const VF facing = hn::IfThenElse(hn::Gt(area, least), one,
+                                   hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
+  // Not a number counts as behind, too.
+  const auto before = [&](std::size_t k)
+                          HWY_ATTR { return hn::Ge(dot_row(tiles.rays.near_plane, corners[k]), zero); };
+  const auto a = before(0), b = before(1), c = before(2);
+  return hn::IfThenElse(hn::And(hn::And(a, b), c), facing,
+                        hn::IfThenElseZero(hn::Or(hn::Or(a, b), c), hn::Set(f, kCut)));
+}
+
+// Found when first asked for.
+void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                 std::size_t group) {
+  const F f;
+  MeshScratch& s = tiles.mesh;
+  if (s.known[group] == s.turn) return;
+  s.known[group] = s.turn;
+  for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
+    const auto corners = corners_about_eye(tiles.projection, mesh, transform, group, lane);
+    hn::Store(facing_of(tiles, corners, on_image(tiles.projection, corners)), f,
+              &s.facing[group * kGroup + lane]);
+  }
+}
+
+// A group of triangles, ready to be drawn.
+struct ReadyTriangles {
+  alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
+  alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
+  std::array<std::uint32_t, 3> on_right{}, steep{};  // a bit a triangle: the edge bounds it to the right
+  std::uint32_t drawn = 0, cut = 0;
+  // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
+  std::uint32_t sound = 0, to_right = 0, flat = 0;
+};
+
+// A vector of triangles on their way to be ready, from triangle 16·group + lane of the mesh on.
+struct Candidates {
+  std::size_t group, lane;
+  Corners corners;
+  OnImage image;
+  VF facing;
+  Rectangles outline;
+  hn::Mask<F> drawn;        // as far as is known
+  VF nearness[3], nearest;  // found where some are drawn
+};
+
+HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                                    std::size_t group, std::size_t lane) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  Candidates c;
+  c.group = group, c.lane = lane;
+  c.corners = corners_about_eye(e, mesh, transform, group, lane);
+  c.image = on_image(e, c.corners);
+  c.facing = facing_of(tiles, c.corners, c.image);
+  if (hn::Lanes(f) == kGroup) {
+    hn::Store(c.facing, f, &tiles.mesh.facing[group * kGroup]);
+    tiles.mesh.known[group] = tiles.mesh.turn;
+  }
+  const VF *x = c.image.x, *y = c.image.y;
+  c.outline = {hn::Min(hn::Min(x[0], x[1]), x[2]), hn::Max(hn::Max(x[0], x[1]), x[2]),
+               hn::Min(hn::Min(y[0], y[1]), y[2]), hn::Max(hn::Max(y[0], y[1]), y[2])};
+  c.drawn = hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f));
+  return c;
+}
+
+// Leaves those with no pixel centre between their sides within the image, and those behind the tiles of their
+// corners where those are all. False where none remains.
+HWY_INLINE bool keep_those_that_show(const DepthTiles& tiles, Candidates& c) {
+  const F f;
+  const PixelBounds bounds = pixel_bounds(tiles, c.outline);
+  c.drawn = hn::And(c.drawn, bounds.some);
+  if (hn::AllFalse(f, c.drawn)) return false;
+  const EyeProjection& e = tiles.projection;
+  for (std::size_t k = 0; k < 3; ++k)
+    c.nearness[k] = e.orthographic ? dot_row(e.nearness, c.corners[k]) : c.image.over_w[k];
+  c.nearest = hn::Max(hn::Max(c.nearness[0], c.nearness[1]), c.nearness[2]);
+  const PixelRanges ranges = pixel_ranges(bounds, c.drawn);
+  const auto before = hn::Lt(least_at_corners(tiles, tiles.farthest, ranges), c.nearest);
+  c.drawn = hn::And(c.drawn, hn::Or(hn::RebindMask(f, ranges.many), before));
+  return !hn::AllFalse(f, c.drawn);
+}
+
+// From the nearest corner the normal's error counts the least.
+HWY_INLINE VPoints nearest_of(const Candidates& c) {
+  const auto is_first = hn::Eq(c.nearness[0], c.nearest), is_second = hn::Eq(c.nearness[1], c.nearest);
+  const auto choose = [&](VF p, VF q, VF r)
+                          HWY_ATTR { return hn::IfThenElse(is_first, p, hn::IfThenElse(is_second, q, r)); };
+  const auto& [p, q, r] = c.corners;
+  return {choose(p.x, q.x, r.x), choose(p.y, q.y, r.y), choose(p.z, q.z, r.z)};
+}
+
+// Nearness of the triangles' planes, never more than it is; those seen too much edge on are not drawn.
+HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {
+  const F f;
+  const PixelRays& rays = tiles.rays;
+  const bool orthographic = tiles.projection.orthographic;
+  const auto& [p, q, r] = c.corners;
+  const VPoints pq = minus(q, p), pr = minus(r, p), normal = cross(pq, pr);
+  const VF length = hn::Sqrt(dot(normal, normal));
+  const VPoints unit{hn::Div(normal.x, length), hn::Div(normal.y, length), hn::Div(normal.z, length)};
+  const VF reach = reach_of(c.corners);
+  const VF plane_at = dot(unit, nearest_of(c));
+  const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
+  const VF least = orthographic ? hn::Set(f, static_cast<float>(kEdgeOnSine))
+                                : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
+                                          hn::Set(f, static_cast<float>(kEdgeOnDistance)));
+  const auto sound = hn::And(hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f)),
+                             hn::And(hn::Gt(length, hn::Zero(f)), hn::Gt(hn::Abs(scale), least)));
+  c.drawn = hn::And(c.drawn, sound);
+  out.sound |= bits_of(f, sound) << c.lane;
+  const VF across = hn::Div(dot(unit, rays.across), scale), down = hn::Div(dot(unit, rays.down), scale);
+  const VF ray_at = dot(unit, rays.at);
+  const VF start = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
+  // The normal is as uncertain as the corners are far and the triangle is thin.
+  const VF sides = hn::Add(largest(pq), largest(pr));
+  VF doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
+                     hn::Mul(length, hn::Abs(scale)));
+  if (orthographic) doubt = hn::Mul(doubt, hn::Add(sides, sides));
+  hn::Store(hn::Sub(moved_back(start, across, down, c.nearest), doubt), f, &out.at[c.lane]);
+  hn::Store(across, f, &out.across[c.lane]);
+  hn::Store(down, f, &out.down[c.lane]);
+  hn::Store(c.nearest, f, &out.nearest[c.lane]);
+}
+
+// An edge of each triangle, from a to b.
+struct Edges {
+  VF ax, ay, bx, by;
+};
+
+// From the vertex nearer the image's middle, where rounding is least; of two as near, from that of lower
+// number: both sides of a seam compute the same bits.
+HWY_INLINE Edges edges_of(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
+                          std::size_t k) {
+  const F f;
+  const auto from_middle = [&](VF x, VF y) HWY_ATTR {
+    return hn::Add(hn::Abs(hn::Sub(x, hn::Set(f, 0.5f * static_cast<float>(tiles.width)))),
+                   hn::Abs(hn::Sub(y, hn::Set(f, 0.5f * static_cast<float>(tiles.height)))));
+  };
+  const std::size_t next = (k + 1) % 3;
+  const VF *x = c.image.x, *y = c.image.y;
+  const VF here = from_middle(x[k], y[k]), there = from_middle(x[next], y[next]);
+  const auto higher_first = mask_of(f, std::uint64_t{mesh.groups[c.group].turned[k]} >> c.lane);
+  const auto turned = hn::Or(hn::Lt(there, here), hn::And(hn::Eq(there, here), higher_first));
+  return {hn::IfThenElse(turned, x[next], x[k]), hn::IfThenElse(turned, y[next], y[k]),
+          hn::IfThenElse(turned, x[k], x[next]), hn::IfThenElse(turned, y[k], y[next])};
+}
+
+// Edge k of each triangle, moved inwards by `inset` where no other triangle that turns the same way goes on
+// there; what bounds the rows narrows `outline`.
+HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
+                         std::size_t k, VF inset, Rectangles& outline, ReadyTriangles& out) {
+  const F f;
+  const I i32;
+  const VF* y = c.image.y;
+  const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
+  const auto has_other = hn::Gt(other, hn::Set(i32, -1));
+  const VF others = hn::GatherIndex(f, tiles.mesh.facing.data(), hn::Max(other, hn::Zero(i32)));
+  const auto seam = hn::And(hn::RebindMask(f, has_other), hn::Eq(others, c.facing));
+  const auto falls = hn::Gt(y[(k + 1) % 3], y[k]);
+  const auto on_right = hn::Not(hn::Xor(falls, hn::Gt(c.facing, hn::Zero(f))));
+  const auto [ax, ay, bx, by] = edges_of(tiles, mesh, c, k);
+  const VF rise = hn::Sub(by, ay), slope = hn::Div(hn::Sub(bx, ax), rise),
+           at = hn::Sub(ax, hn::Mul(ay, slope));
+  const VF inwards = hn::Mul(hn::IfThenZeroElse(seam, inset), hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
+  const auto steep = hn::Ge(hn::Abs(rise), hn::Set(f, kFlatEdge));
+  out.steep[k] |= bits_of(f, steep) << c.lane;
+  out.on_right[k] |= bits_of(f, on_right) << c.lane;
+  hn::Store(slope, f, &out.slope[k][c.lane]);
+  hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), hn::Add(at, inwards)), f, &out.edge_at[k][c.lane]);
+  // A flat edge that is no seam bounds the rows.
+  const auto bounds = hn::AndNot(seam, hn::Not(steep));
+  out.flat |= bits_of(f, bounds) << c.lane;
+  const auto above = hn::Gt(y[(k + 2) % 3], ay);
+  const VF top = hn::Max(outline.top, hn::Add(hn::Max(ay, by), inset)),
+           bottom = hn::Min(outline.bottom, hn::Sub(hn::Min(ay, by), inset));
+  outline.top = hn::IfThenElse(hn::And(bounds, above), top, outline.top);
+  outline.bottom = hn::IfThenElse(hn::AndNot(above, bounds), bottom, outline.bottom);
+}
+
+// Triangles 16·group + lane … of the mesh.
+HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+                       std::size_t group, std::size_t lane, ReadyTriangles& out) {
+  const F f;
+  Candidates c = candidates_of(tiles, mesh, transform, group, lane);
+  const std::uint32_t cut = bits_of(f, hn::Eq(c.facing, hn::Set(f, kCut)));
+  const VF exact = hn::Zero(f);
+  if (cut != 0) out.cut |= (cut & ~beyond_a_side(tiles, c.corners, {exact, exact, exact})) << lane;
+  if (!keep_those_that_show(tiles, c)) return;
+  set_planes(tiles, c, out);
+  out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << lane;
+  know_facing(tiles, mesh, transform, group);
+  const OccluderTopology::Group& its = mesh.groups[group];
+  for (std::uint32_t i = its.first_beside; i < its.end_beside; ++i)
+    know_facing(tiles, mesh, transform, mesh.beside[i]);
+  const VF inset = inset_of(widest_of(c.outline));
+  Rectangles outline = c.outline;
+  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, outline, out);
+  // Where only seams bound a corner of the outline, rounding may carry them beyond it.
+  store(shrunk(outline, inset), out, lane);
+  out.drawn |= bits_of(f, c.drawn) << lane;
+}
+
+}  // namespace sightline::occlusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

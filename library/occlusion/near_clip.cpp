@@ -1,0 +1,45 @@
+#include "library/occlusion/near_clip.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace sightline::occlusion {
+
+namespace {
+
+// Sutherland & Hodgman 1974, one plane.
+bool clip(const Vec4& plane, double slack, Polygon& polygon) {
+  const auto side = [&](const glm::dvec3& p) { return dot(plane, p) + slack; };
+  const auto outside = [&](const glm::dvec3& p) { return !(side(p) >= 0); };
+  if (std::ranges::none_of(std::span(polygon.points).first(polygon.count), outside)) return true;
+  Polygon out;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec3 &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
+    const double at = side(a), next = side(b);
+    if (out.count + 2 > Polygon::kMost) return false;
+    if (at >= 0) out.points[out.count++] = a;
+    if ((at >= 0) != (next >= 0)) out.points[out.count++] = a + (b - a) * (at / (at - next));
+  }
+  polygon = out;
+  return true;
+}
+
+}  // namespace
+
+bool clip_to_view(const DepthTiles& tiles, double slack, Polygon& polygon) noexcept {
+  const EyeProjection& e = tiles.projection;
+  const auto w = static_cast<float>(tiles.width), h = static_cast<float>(tiles.height);
+  const auto beyond = [&](const Vec4& row, float scale, float shift) {
+    return Vec4{scale * row.x + shift * e.w.x, scale * row.y + shift * e.w.y, scale * row.z + shift * e.w.z,
+                scale * row.w + shift * e.w.w};
+  };
+  if (!clip(tiles.rays.near_plane, slack, polygon)) return false;
+  for (const Vec4& plane :
+       {beyond(e.x, 1, w), beyond(e.x, -1, 2 * w), beyond(e.y, 1, h), beyond(e.y, -1, 2 * h)}) {
+    if (polygon.count < 3) return true;
+    if (!clip(plane, 0, polygon)) return false;
+  }
+  return true;
+}
+
+}  // namespace sightline::occlusion

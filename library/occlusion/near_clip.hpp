@@ -1,0 +1,31 @@
+// Polygons clipped to what a view can show: the one place where the near plane cuts.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstddef>
+
+#include "library/occlusion/depth_tiles.hpp"
+
+namespace sightline::occlusion {
+
+/// A convex polygon about the eye; in double precision, for what the near plane cuts may reach far behind the
+/// eye, and its plane must still be right before it.
+struct Polygon {
+  static constexpr std::size_t kMost = 12;
+  std::array<glm::dvec3, kMost> points;
+  std::size_t count = 0;
+};
+
+/// Vec4 · (q, 1).
+inline double dot(const Vec4& row, const glm::dvec3& q) noexcept {
+  return row.x * q.x + row.y * q.y + row.z * q.z + row.w;
+}
+
+/// Keeps what lies no farther behind the near plane than `slack` and no farther beyond the image than the
+/// image is wide or high; nothing remains where count < 3. False where rounding has bent the polygon so that
+/// it gets more corners than there is room for.
+bool clip_to_view(const DepthTiles& tiles, double slack, Polygon& polygon) noexcept;
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,86 @@
+// Occluders out of triangles: vertices joined, neighbours found.
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+
+#include <sightline/occlusion.hpp>
+
+#include "library/occlusion/occluder_topology.hpp"
+
+namespace sightline {
+
+namespace {
+
+using occlusion::OccluderTopology;
+
+struct Hash {
+  std::size_t operator()(const Vec3& v) const noexcept {
+    std::uint64_t h = 0;
+    for (const float f : {v.x, v.y, v.z})
+      h = (h ^ std::bit_cast<std::uint32_t>(f + 0.0f)) * 0x9e3779b97f4a7c15u, h ^= h >> 31;
+    return h;
+  }
+};
+
+// Triangles of joined vertices; those that keep fewer than three corners are left out.
+void add_triangles(OccluderTopology& mesh, std::span<const Vec3> positions,
+                   std::span<const std::uint32_t> indices) {
+  std::unordered_map<Vec3, std::uint32_t, Hash> joined;
+  const auto vertex = [&](std::uint32_t index) {
+    const auto [at, added] =
+        joined.try_emplace(positions[index], static_cast<std::uint32_t>(mesh.positions.size()));
+    if (added) mesh.positions.push_back(positions[index]);
+    return at->second;
+  };
+  for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
+    const auto corners = indices.subspan(i, 3);
+    if (std::ranges::any_of(corners, [&](std::uint32_t index) { return index >= positions.size(); }))
+      continue;
+    const std::array<std::uint32_t, 3> corner{vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
+    if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0])
+      mesh.triangles.push_back(corner);
+  }
+}
+
+// The second triangle at an edge makes both neighbours; a third parts them again.
+void find_neighbours(OccluderTopology& mesh) {
+  struct Sides {
+    std::uint32_t triangle[2], edge[2], count = 0;
+  };
+  std::unordered_map<std::uint64_t, Sides> edges;
+  constexpr std::uint32_t kNone = OccluderTopology::kNone;
+  mesh.neighbours.assign(mesh.triangles.size(), {kNone, kNone, kNone});
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint64_t a = mesh.triangles[i][k], b = mesh.triangles[i][(k + 1) % 3];
+      Sides& sides = edges[std::min(a, b) << 32 | std::max(a, b)];
+      if (sides.count < 2) sides.triangle[sides.count] = i, sides.edge[sides.count] = k;
+      ++sides.count;
+    }
+  }
+  for (const auto& [key, sides] : edges) {
+    if (sides.count != 2) continue;
+    mesh.neighbours[sides.triangle[0]][sides.edge[0]] = sides.triangle[1];
+    mesh.neighbours[sides.triangle[1]][sides.edge[1]] = sides.triangle[0];
+  }
+}
+
+}  // namespace
+
+OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices)
+    : topology_(std::make_unique<OccluderTopology>()) {
+  add_triangles(*topology_, positions, indices);
+  sort_along_curve(*topology_);
+  find_neighbours(*topology_);
+  pair_up(*topology_);
+  topology_->lay_out();
+}
+
+OccluderMesh::~OccluderMesh() = default;
+OccluderMesh::OccluderMesh(OccluderMesh&&) noexcept = default;
+OccluderMesh& OccluderMesh::operator=(OccluderMesh&&) noexcept = default;
+std::size_t OccluderMesh::triangles() const noexcept {
+  return topology_->triangles.size();
+}
+
+}  // namespace sightline

@@ -1,0 +1,94 @@
+// How triangles are laid out for drawing.
+#include "library/occlusion/occluder_topology.hpp"
+
+#include <algorithm>
+
+#include "library/geometry/error_bounds.hpp"
+#include "library/geometry/linear.hpp"
+
+namespace sightline::occlusion {
+
+using namespace geometry;
+
+namespace {
+
+struct Bounds {
+  glm::dvec3 low{1e300}, high{-1e300};
+  void add(const Vec3& p) { low = glm::min(low, to_double(p)), high = glm::max(high, to_double(p)); }
+};
+
+// Per 16 groups the middles of their boxes, and half their sizes.
+void store_box(OccluderTopology& mesh, std::size_t group, const Bounds& bounds) {
+  const Vec3 middle = to_vec3(0.5 * bounds.low + 0.5 * bounds.high);
+  const glm::dvec3 half =
+      glm::max(bounds.high - to_double(middle), to_double(middle) - bounds.low) * (1 + kGroupGrowth);
+  float* out = &mesh.box[group / 16 * 96 + group % 16];
+  out[0] = middle.x, out[16] = middle.y, out[32] = middle.z;
+  for (int a = 0; a < 3; ++a) out[48 + 16 * a] = static_cast<float>(half[a]);
+}
+
+// Corners, edges and neighbours of the group's triangle i, which stands for none where `triangle` is beyond
+// the last.
+void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds& bounds) {
+  constexpr std::size_t kGroup = OccluderTopology::kGroup;
+  OccluderTopology::Group& group = mesh.groups[g];
+  const std::size_t at = g * kGroup + i, last = mesh.triangles.size() - 1;
+  const auto& triangle = mesh.triangles[std::min(at, last)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& p = mesh.positions[at <= last ? triangle[k] : triangle[0]];
+    float* out = &mesh.corners[(g * 9 + 3 * k) * kGroup + i];
+    out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
+    bounds.add(p);
+    if (at > last) continue;
+    group.first_half |= std::uint32_t{mesh.first_half[at]} << i;
+    group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
+    const std::uint32_t other = mesh.neighbours[at][k];
+    mesh.neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
+    if (other != OccluderTopology::kNone && other / kGroup != g) mesh.beside.push_back(other / kGroup);
+  }
+}
+
+}  // namespace
+
+void OccluderTopology::lay_out() {
+  const std::size_t count = (triangles.size() + kGroup - 1) / kGroup;
+  groups.resize(count);
+  corners.resize(count * 9 * kGroup);
+  neighbour.assign(count * 3 * kGroup, -1);
+  box.assign((count + 15) / 16 * 96, 0);
+  for (std::size_t g = 0; g < count; ++g) {
+    Group& group = groups[g];
+    Bounds bounds;
+    group.first_beside = static_cast<std::uint32_t>(beside.size());
+    for (std::size_t i = 0; i < kGroup; ++i) store_triangle(*this, g, i, bounds);
+    std::sort(beside.begin() + group.first_beside, beside.end());
+    beside.erase(std::unique(beside.begin() + group.first_beside, beside.end()), beside.end());
+    group.end_beside = static_cast<std::uint32_t>(beside.size());
+    store_box(*this, g, bounds);
+  }
+}
+
+void sort_along_curve(OccluderTopology& mesh) {
+  Bounds bounds;
+  for (const Vec3& p : mesh.positions) bounds.add(p);
+  const glm::dvec3 size = glm::max(bounds.high - bounds.low, glm::dvec3(1e-30));
+  const auto key = [&](const std::array<std::uint32_t, 3>& t) {
+    const glm::dvec3 middle = (to_double(mesh.positions[t[0]]) + to_double(mesh.positions[t[1]]) +
+                               to_double(mesh.positions[t[2]])) /
+                              3.0;
+    const glm::dvec3 at = (middle - bounds.low) / size * 1023.0;
+    std::uint32_t out = 0;
+    for (int bit = 9; bit >= 0; --bit) {
+      for (int a = 0; a < 3; ++a)
+        out = out << 1 | (static_cast<std::uint32_t>(std::clamp(at[a], 0.0, 1023.0)) >> bit & 1);
+    }
+    return out;
+  };
+  std::vector<std::pair<std::uint32_t, std::array<std::uint32_t, 3>>> keyed;
+  for (const auto& t : mesh.triangles) keyed.emplace_back(key(t), t);
+  std::stable_sort(keyed.begin(), keyed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < keyed.size(); ++i) mesh.triangles[i] = keyed[i].second;
+}
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,50 @@
+// The triangles of an OccluderMesh, laid out for drawing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <sightline/types.hpp>
+
+#include "library/geometry/aligned_vector.hpp"
+
+namespace sightline::occlusion {
+
+struct OccluderTopology {
+  std::vector<Vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
+  std::vector<std::array<std::uint32_t, 3>> neighbours;
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
+  /// diagonal.
+  std::vector<std::uint8_t> first_half;
+
+  /// Runs of triangles with a box that holds them: what is out of view or hidden as a whole is not set up.
+  static constexpr std::uint32_t kGroup = 16;
+  struct Group {
+    /// A bit a triangle and edge: its second corner has the lower number.
+    std::array<std::uint32_t, 3> turned{};
+    std::uint32_t first_half = 0;                    ///< a bit a triangle
+    std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
+  };
+  std::vector<Group> groups;          ///< group g holds triangles 16·g …
+  std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
+  /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
+  geometry::AlignedVector<float> box;
+  /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last
+  /// triangle its first corner three times, no neighbours.
+  geometry::AlignedVector<float> corners;
+  geometry::AlignedVector<std::int32_t> neighbour;
+  /// Fills the arrays from `groups` on out of those before.
+  void lay_out();
+};
+
+/// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
+void sort_along_curve(OccluderTopology& mesh);
+/// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
+/// places.
+void pair_up(OccluderTopology& mesh);
+
+}  // namespace sightline::occlusion
