@@ -114,7 +114,7 @@ struct CullResult {
   std::size_t count = 0;               ///< objects written
   CullError error = CullError::none;   ///< what was wrong with the call; nothing was culled then
   std::uint64_t tested = 0;            ///< objects tested one by one
-  std::uint64_t nodes_visited = 0;     ///< regions, blocks and chunks looked at
+  std::uint64_t nodes_visited = 0;     ///< regions, groups and chunks looked at
   std::uint64_t culled_occlusion = 0;  ///< objects that only occlusion dropped, summed over the views
 };
 

@@ -1,4 +1,4 @@
-// Keys, chunks and the k-d tree inside a key; blocks and bounds are in chunk_bounds.cpp.
+// Keys, chunks and the k-d tree inside a key; groups and bounds are in chunk_bounds.cpp.
 #include "library/world/chunk_map.hpp"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 }
 
 void ChunkMap::free_chunk(std::uint32_t chunk) {
-  take_from_block(chunk);
+  take_from_group(chunk);
   Chunk& c = chunks_[chunk];
   give_lanes(c.first_lane, c.capacity);
   c.count = 0;
@@ -275,11 +275,11 @@ bool ChunkMap::split(std::uint32_t chunk) {
   replace_reference(low.key, low.parent, chunk | kChunkBit, node);
   low.parent = high.parent = node;
 
-  const std::uint32_t block = low.block;
-  add_objects(block, -static_cast<std::int32_t>(high.count));
+  const std::uint32_t group = low.group;
+  add_objects(group, -static_cast<std::int32_t>(high.count));
   set_bounds(chunk, tight(low));
   note_change(chunk);
-  put_in_block(added, block, tight(high));
+  put_in_group(added, group, tight(high));
   return true;
 }
 
@@ -341,8 +341,8 @@ void ChunkMap::try_merge(std::uint32_t chunk) {
   const Box moved = chunk_bounds(chunk);
   for (std::uint32_t i = 0; i < c.count; ++i) write(sibling, s.count++, ids_[c.first_lane + i], box_at(c, i));
   const auto taken = static_cast<std::int32_t>(c.count);
-  add_objects(c.block, -taken);
-  add_objects(s.block, taken);
+  add_objects(c.group, -taken);
+  add_objects(s.group, taken);
   extend(sibling, moved);
   axis_of(s.cell.min, split.axis) =
       std::min(axis_of(s.cell.min, split.axis), axis_of(c.cell.min, split.axis));
@@ -358,10 +358,10 @@ void ChunkMap::try_merge(std::uint32_t chunk) {
 void ChunkMap::append(std::uint32_t chunk, ObjectId object, const Box& box) {
   const std::uint32_t slot = chunks_[chunk].count++;
   write(chunk, slot, object, box);
-  if (chunks_[chunk].block == kNone) {
-    put_in_block(chunk, kNone, box);
+  if (chunks_[chunk].group == kNone) {
+    put_in_group(chunk, kNone, box);
   } else {
-    add_objects(chunks_[chunk].block, 1);
+    add_objects(chunks_[chunk].group, 1);
     extend(chunk, box);
   }
   note_change(chunk);
@@ -403,7 +403,7 @@ void ChunkMap::remove(ObjectId object) {
   erase_slot(at.chunk, at.slot);
   (*locations_)[object] = {};
   --size_;
-  add_objects(chunks_[at.chunk].block, -1);
+  add_objects(chunks_[at.chunk].group, -1);
   note_change(at.chunk);
   if (chunks_[at.chunk].count == 0) return unlink(at.chunk);
   shrink(at.chunk, box);

@@ -11,8 +11,8 @@ void ChunkMap::arrange() {
   geometry::LargeVector<ObjectId> ids;
   lanes.reserve(lanes_.size()), ids.reserve(ids_.size());
   for (const Node& node : nodes_) {
-    for (const std::uint32_t block : node.blocks) {
-      Block& b = blocks_[block];
+    for (const std::uint32_t group : node.groups) {
+      Group& b = groups_[group];
       for (std::uint32_t i = 0; i < b.count; ++i) {
         Chunk& c = chunks_[b.chunks[i]];
         const auto from = static_cast<std::ptrdiff_t>(c.first_lane), to = from + c.capacity;

@@ -23,20 +23,20 @@ void walk(const ChunkMap& map, const Frustum& frustum, ChunkWalk& out) {
       if (overlap == Overlap::outside) continue;
       inside = overlap == Overlap::inside;
     }
-    for (const std::uint32_t b : node.blocks) {
-      const ChunkMap::Block& block = map.blocks()[b];
+    for (const std::uint32_t b : node.groups) {
+      const ChunkMap::Group& group = map.groups()[b];
       ++out.nodes_visited;
-      const Overlap overlap = inside ? Overlap::inside : classify(frustum, block.box);
+      const Overlap overlap = inside ? Overlap::inside : classify(frustum, group.box);
       if (overlap == Overlap::outside) continue;
       if (overlap == Overlap::inside) {
-        out.inside.insert(out.inside.end(), block.chunks.begin(), block.chunks.begin() + block.count);
+        out.inside.insert(out.inside.end(), group.chunks.begin(), group.chunks.begin() + group.count);
         continue;
       }
-      for (std::uint32_t i = 0; i < block.count; ++i) {
+      for (std::uint32_t i = 0; i < group.count; ++i) {
         ++out.nodes_visited;
-        const Overlap one = classify(frustum, map.chunk_bounds(block.chunks[i]));
+        const Overlap one = classify(frustum, map.chunk_bounds(group.chunks[i]));
         if (one != Overlap::outside)
-          (one == Overlap::inside ? out.inside : out.crossing).push_back(block.chunks[i]);
+          (one == Overlap::inside ? out.inside : out.crossing).push_back(group.chunks[i]);
       }
     }
     if (node.first_child == ChunkMap::kNone) continue;
@@ -66,9 +66,9 @@ Check ChunkMap::check() const {
     }
     if (c.count == 0) return bad("no object in chunk", i);
     if (c.count > c.capacity || c.capacity >= 100) return bad("too many objects in chunk", i);
-    if (c.block == kNone || blocks_[c.block].chunks[c.index_in_block] != i)
-      return bad("wrong block of chunk", i);
-    if (blocks_[c.block].node != keys_[c.key].node) return bad("wrong region of chunk", i);
+    if (c.group == kNone || groups_[c.group].chunks[c.index_in_group] != i)
+      return bad("wrong group of chunk", i);
+    if (groups_[c.group].node != keys_[c.key].node) return bad("wrong region of chunk", i);
     if (chunk_bounds(i) != tight(c)) return bad("bounds not tight of chunk", i);
     for (std::uint32_t slot = 0; slot < c.count; ++slot) {
       const ObjectId object = ids_[c.first_lane + slot];
@@ -89,26 +89,26 @@ Check ChunkMap::check() const {
   for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
     const Node& node = nodes_[n];
     std::size_t below = 0;
-    for (std::size_t i = 0; i < node.blocks.size(); ++i) {
-      const Block& block = blocks_[node.blocks[i]];
-      if (block.node != n || block.index_in_node != i || block.count == 0)
-        return bad("wrong block", node.blocks[i]);
-      if (block.box != tight(block)) return bad("bounds not tight of block", node.blocks[i]);
-      if (!holds(node.bounds, block.box)) return bad("bounds too small of region", n);
-      const auto& rows = node.block_boxes.sides;
+    for (std::size_t i = 0; i < node.groups.size(); ++i) {
+      const Group& group = groups_[node.groups[i]];
+      if (group.node != n || group.index_in_node != i || group.count == 0)
+        return bad("wrong group", node.groups[i]);
+      if (group.box != tight(group)) return bad("bounds not tight of group", node.groups[i]);
+      if (!holds(node.bounds, group.box)) return bad("bounds too small of region", n);
+      const auto& rows = node.group_boxes.sides;
       const Box row{{rows[0][i], rows[1][i], rows[2][i]}, {rows[3][i], rows[4][i], rows[5][i]}};
-      if (row != block.box) return bad("wrong bounds in the region of block", node.blocks[i]);
+      if (row != group.box) return bad("wrong bounds in the region of group", node.groups[i]);
       std::size_t held = 0;
-      for (std::uint32_t k = 0; k < block.count; ++k) {
-        held += chunks_[block.chunks[k]].count;
-        const ChunkView here = chunk(block, k), there = chunk(block.chunks[k]);
+      for (std::uint32_t k = 0; k < group.count; ++k) {
+        held += chunks_[group.chunks[k]].count;
+        const ChunkView here = chunk(group, k), there = chunk(group.chunks[k]);
         if (here.objects != there.objects || here.count != there.count || here.min_y != there.min_y ||
             here.max_z != there.max_z)
-          return bad("wrong lanes in the block of chunk", block.chunks[k]);
+          return bad("wrong lanes in the group of chunk", group.chunks[k]);
       }
-      if (held != block.objects) return bad("wrong number of objects in block", node.blocks[i]);
+      if (held != group.objects) return bad("wrong number of objects in group", node.groups[i]);
       below += held;
-      chunks += block.count;
+      chunks += group.count;
     }
     if (node.first_child != kNone) {
       for (std::uint32_t i = 0; i < 4; ++i) {

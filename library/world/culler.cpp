@@ -1,4 +1,4 @@
-// Culling a world: the regions and blocks are sorted here, one by one; what is left goes to the SIMD passes,
+// Culling a world: the regions and groups are sorted here, one by one; what is left goes to the SIMD passes,
 // in as many jobs as the caller has threads.
 #include <algorithm>
 #include <bit>
@@ -31,7 +31,7 @@ struct Job {
 struct CullerState {
   std::vector<const ChunkMap*> maps;  // of the sectors that some view may see
   std::vector<SectorView> views;      // of these
-  std::vector<BlockEntry> entries;
+  std::vector<GroupEntry> entries;
   std::array<Job, kMaxJobs> jobs;
   /// The plane that failed last, one a view and region: the next frame tries it first.
   std::vector<std::vector<std::uint8_t>> failed;  // by the world's sector
@@ -134,8 +134,8 @@ private:
     ++visited_;
     std::uint8_t* failed = failed_ + index * kMaxViews;
     if (node.objects == 0 || !narrow(node.bounds, planes, failed)) return;
-    visited_ += node.blocks.size();
-    find_blocks(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
+    visited_ += node.groups.size();
+    find_groups(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
                 state_.entries);
     if (node.first_child == ChunkMap::kNone) return;
     for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
@@ -153,17 +153,17 @@ void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
-  job.counts = cull_blocks(state.input, entries, state.out + job.first_output,
+  job.counts = cull_groups(state.input, entries, state.out + job.first_output,
                            state.masks ? state.masks + job.first_output : nullptr);
 }
 
 // Parts of about equally many objects; each writes to where it would stand if all were visible.
 std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
-  const auto objects_of = [&](const BlockEntry& e) {
-    return state.maps[e.sector]->blocks()[e.block].objects;
+  const auto objects_of = [&](const GroupEntry& e) {
+    return state.maps[e.sector]->groups()[e.group].objects;
   };
   std::size_t total = 0;
-  for (const BlockEntry& entry : state.entries) total += objects_of(entry);
+  for (const GroupEntry& entry : state.entries) total += objects_of(entry);
   std::uint32_t jobs = 0;
   std::size_t before = 0;
   for (std::size_t e = 0; e < state.entries.size(); ++e) {

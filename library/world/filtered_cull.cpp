@@ -47,20 +47,20 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
 }
 
 // Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold.
-std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const SectorView& view,
+std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& group, const SectorView& view,
                                  ChunkBits& bits) {
   std::uint64_t dropped = 0;
-  const auto& b = block.bounds;
-  std::array<std::uint8_t, kBlock> visible;
+  const auto& b = group.bounds;
+  std::array<std::uint8_t, kGroup> visible;
   occlusion::query_boxes(
       *view.occluders, view.projection,
-      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), block.count},
+      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
       visible.data());
   for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    dropped += map.chunk(block.chunks[i]).count;
+    dropped += map.chunk(group.chunks[i]).count;
   }
   return dropped;
 }
@@ -83,7 +83,7 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
 }
 
 // Any views, any tests.
-PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> entries,
+PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> entries,
                           ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
   const F f;
   const U u;
@@ -96,23 +96,23 @@ PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> en
   std::array<std::uint64_t, kMaxViews> times;  // that the caller asks for the view
   for (std::size_t v = 0; v < kMaxViews; ++v)
     times[v] = static_cast<std::uint64_t>(std::popcount(input.bits[v]));
-  std::array<ChunkMap::ChunkView, kBlock> chunks;
-  for (const BlockEntry& entry : entries) {
+  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  for (const GroupEntry& entry : entries) {
     const ChunkMap& map = *input.maps[entry.sector];
-    const ChunkMap::Block& block = map.blocks()[entry.block];
+    const ChunkMap::Group& group = map.groups()[entry.group];
     const SectorView* views = &input.views[entry.sector * input.view_count];
     std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
       bits[v] = {};
-      if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
+      if (entry.planes[v] != kOutside) bits[v] = classify_chunks(group, views[v], entry.planes[v]);
       if (views[v].occluders && bits[v].kept != 0)
-        counts.occluded += times[v] * drop_hidden_chunks(map, block, views[v], bits[v]);
+        counts.occluded += times[v] * drop_hidden_chunks(map, group, views[v], bits[v]);
       any |= bits[v].kept;
     }
-    counts.chunks += block.count;
+    counts.chunks += group.count;
     for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      chunks[i] = map.chunk(block, static_cast<std::uint32_t>(i));
+      chunks[i] = map.chunk(group, static_cast<std::uint32_t>(i));
       prefetch_ids(chunks[i]);
     }
     for (; any != 0; any &= any - 1) {
@@ -165,7 +165,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::world {
 HWY_EXPORT(filtered_views);
 
-PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+PassCounts cull_filtered_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                                 std::uint8_t* masks) noexcept {
   return HWY_DYNAMIC_DISPATCH(filtered_views)(input, entries, out, masks);
 }

@@ -16,7 +16,7 @@ using world::ChunkMapOptions;
 namespace {
 
 constexpr float kHalfSide = static_cast<float>(kSectorSide / 2);
-// One level would do for culling; with some, large objects stay out of the small ones' blocks.
+// One level would do for culling; with some, large objects stay out of the small ones' groups.
 constexpr ChunkMapOptions kSectorMap{
     {{-kHalfSide, -kHalfSide, -kHalfSide}, {kHalfSide, kHalfSide, kHalfSide}}, 0};
 

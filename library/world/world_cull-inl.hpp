@@ -1,4 +1,4 @@
-// What the passes over a world's blocks share, for every SIMD width: bounds and boxes against planes.
+// What the passes over a world's groups share, for every SIMD width: bounds and boxes against planes.
 // Included by files that foreach_target compiles again and again.
 #if defined(SIGHTLINE_CULLING_WORLD_CULL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_CULLING_WORLD_CULL_INL
@@ -26,7 +26,7 @@ using F = hn::CappedTag<float, 16>;
 using U = hn::RebindToUnsigned<F>;
 using VF = hn::Vec<F>;
 
-constexpr std::size_t kBlock = ChunkMap::kBlockCapacity;
+constexpr std::size_t kGroup = ChunkMap::kGroupCapacity;
 
 // signed_distance() of a vector of points: mul and add apart, in its order, so that it rounds alike.
 HWY_INLINE VF distance(const Plane& plane, VF x, VF y, VF z) {
@@ -44,18 +44,18 @@ HWY_INLINE std::uint32_t bits_of(hn::Mask<F> mask) {
   return bits & ((1u << hn::Lanes(F())) - 1);
 }
 
-// What one view sees of a block's chunks, a bit a chunk.
+// What one view sees of a group's chunks, a bit a chunk.
 struct ChunkBits {
   std::uint32_t kept = 0;                              // not outside
   std::uint32_t crossing = 0;                          // some plane
   std::array<std::uint32_t, Frustum::sides> planes{};  // crossing this one
 };
 
-// The bounds of a block's chunks or a node's blocks, from the lane at which a bit 0 stands.
+// The bounds of a group's chunks or a node's groups, from the lane at which a bit 0 stands.
 using Sides = std::array<const float*, 6>;
 
-HWY_INLINE Sides sides_of(const ChunkMap::Block& block) {
-  const auto& b = block.bounds;
+HWY_INLINE Sides sides_of(const ChunkMap::Group& group) {
+  const auto& b = group.bounds;
   return {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data()};
 }
 
@@ -86,8 +86,8 @@ HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, con
   return out;
 }
 
-HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorView& view, PlaneSet planes) {
-  return classify_boxes(sides_of(block), block.count, view, planes);
+HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Group& group, const SectorView& view, PlaneSet planes) {
+  return classify_boxes(sides_of(group), group.count, view, planes);
 }
 
 // Those of the planes `among` that a chunk crosses.

@@ -1,4 +1,4 @@
-// Culling by frustum: the blocks of a node, then their chunks and objects, for one view or several.
+// Culling by frustum: the groups of a node, then their chunks and objects, for one view or several.
 #include "library/world/world_cull.hpp"
 
 #include <bit>
@@ -15,13 +15,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::world::HWY_NAMESPACE {
 
-void find_node_blocks(const ChunkMap::Node& node, std::span<const SectorView> views,
+void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
                       std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
-                      std::vector<BlockEntry>& entries) {
+                      std::vector<GroupEntry>& entries) {
   constexpr std::uint32_t kSome = 32;
   std::array<ChunkBits, kMaxViews> bits;
-  const auto& rows = node.block_boxes.sides;
-  const auto count = static_cast<std::uint32_t>(node.blocks.size());
+  const auto& rows = node.group_boxes.sides;
+  const auto count = static_cast<std::uint32_t>(node.groups.size());
   for (std::uint32_t first = 0; first < count; first += kSome) {
     const Sides sides{&rows[0][first], &rows[1][first], &rows[2][first],
                       &rows[3][first], &rows[4][first], &rows[5][first]};
@@ -34,7 +34,7 @@ void find_node_blocks(const ChunkMap::Node& node, std::span<const SectorView> vi
     }
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
-      BlockEntry entry{sector, node.blocks[first + i], {}};
+      GroupEntry entry{sector, node.groups[first + i], {}};
       entry.planes.fill(kOutside);
       for (std::size_t v = 0; v < views.size(); ++v) {
         if (bits[v].kept >> i & 1) entry.planes[v] = planes_of(bits[v], i);
@@ -44,32 +44,32 @@ void find_node_blocks(const ChunkMap::Node& node, std::span<const SectorView> vi
   }
 }
 
-// Of the block that comes after the next, for by then it will have arrived.
-HWY_INLINE void prefetch_block(const PassInput& input, std::span<const BlockEntry> entries, std::size_t e) {
+// Of the group that comes after the next, for by then it will have arrived.
+HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntry> entries, std::size_t e) {
   if (e + 2 >= entries.size()) return;
-  const BlockEntry& entry = entries[e + 2];
-  const auto* from = reinterpret_cast<const std::uint8_t*>(&input.maps[entry.sector]->blocks()[entry.block]);
-  for (std::size_t at = 0; at < sizeof(ChunkMap::Block); at += 64) hwy::Prefetch(from + at);
+  const GroupEntry& entry = entries[e + 2];
+  const auto* from = reinterpret_cast<const std::uint8_t*>(&input.maps[entry.sector]->groups()[entry.group]);
+  for (std::size_t at = 0; at < sizeof(ChunkMap::Group); at += 64) hwy::Prefetch(from + at);
 }
 
-PassCounts one_view(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* HWY_RESTRICT out) {
+PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* at = out;
   for (std::size_t e = 0; e < entries.size(); ++e) {
-    const BlockEntry& entry = entries[e];
-    prefetch_block(input, entries, e);
+    const GroupEntry& entry = entries[e];
+    prefetch_group(input, entries, e);
     const ChunkMap& map = *input.maps[entry.sector];
-    const ChunkMap::Block& block = map.blocks()[entry.block];
+    const ChunkMap::Group& group = map.groups()[entry.group];
     const SectorView& view = input.views[entry.sector];
-    const ChunkBits bits = classify_chunks(block, view, entry.planes[0]);
-    counts.chunks += block.count;
-    // Memory is what this waits for: the whole block's is asked for before any of it is used.
-    std::array<ChunkMap::ChunkView, kBlock> chunks;
-    std::array<PlaneSet, kBlock> planes;
+    const ChunkBits bits = classify_chunks(group, view, entry.planes[0]);
+    counts.chunks += group.count;
+    // Memory is what this waits for: the whole group's is asked for before any of it is used.
+    std::array<ChunkMap::ChunkView, kGroup> chunks;
+    std::array<PlaneSet, kGroup> planes;
     std::size_t kept = 0;
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      chunks[kept] = map.chunk(block, i);
+      chunks[kept] = map.chunk(group, i);
       planes[kept] = planes_of(bits, i, entry.planes[0]);
       prefetch_ids(chunks[kept]);
       ++kept;
@@ -141,13 +141,13 @@ HWY_INLINE void write_masks(const ChunkMap::ChunkView& chunk, std::uint8_t whole
   }
 }
 
-// A byte a chunk of a block: the views in whose words the chunk's bit is set.
-using ViewsOfChunk = std::array<std::uint8_t, kBlock>;
+// A byte a chunk of a group: the views in whose words the chunk's bit is set.
+using ViewsOfChunk = std::array<std::uint8_t, kGroup>;
 
 HWY_INLINE ViewsOfChunk turn(const std::array<std::uint32_t, kMaxViews>& words, std::size_t views) {
   const U u;
   alignas(64) ViewsOfChunk out;
-  for (std::uint32_t i = 0; i < kBlock; i += static_cast<std::uint32_t>(hn::Lanes(u))) {
+  for (std::uint32_t i = 0; i < kGroup; i += static_cast<std::uint32_t>(hn::Lanes(u))) {
     const auto chunk = hn::Shl(hn::Set(u, 1), hn::Iota(u, i));
     auto of_chunk = hn::Zero(u);
     for (std::size_t v = 0; v < views; ++v) {
@@ -160,13 +160,13 @@ HWY_INLINE ViewsOfChunk turn(const std::array<std::uint32_t, kMaxViews>& words, 
 }
 
 // Several views, frustum only.
-PassCounts frustum_views(const PassInput& input, std::span<const BlockEntry> entries,
+PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> entries,
                          ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
   PassCounts counts;
   std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
   std::array<std::uint32_t, kMaxViews> whole{}, crossing{};
-  std::array<ChunkMap::ChunkView, kBlock> chunks;
+  std::array<ChunkMap::ChunkView, kGroup> chunks;
   ChunkViews crossed;
   std::array<std::uint8_t, 1 << kMaxViews> bits_of_views;  // of a mask
   for (std::size_t set = 0; set < bits_of_views.size(); ++set) {
@@ -174,25 +174,25 @@ PassCounts frustum_views(const PassInput& input, std::span<const BlockEntry> ent
     for (std::size_t v = 0; v < input.view_count; ++v) bits_of_views[set] |= set >> v & 1 ? input.bits[v] : 0;
   }
   for (std::size_t e = 0; e < entries.size(); ++e) {
-    const BlockEntry& entry = entries[e];
-    prefetch_block(input, entries, e);
+    const GroupEntry& entry = entries[e];
+    prefetch_group(input, entries, e);
     const ChunkMap& map = *input.maps[entry.sector];
-    const ChunkMap::Block& block = map.blocks()[entry.block];
+    const ChunkMap::Group& group = map.groups()[entry.group];
     const SectorView* views = &input.views[entry.sector * input.view_count];
     std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
       whole[v] = crossing[v] = 0;
       if (entry.planes[v] == kOutside) continue;
-      bits[v] = classify_chunks(block, views[v], entry.planes[v]);
+      bits[v] = classify_chunks(group, views[v], entry.planes[v]);
       any |= bits[v].kept;
       crossing[v] = bits[v].crossing, whole[v] = bits[v].kept & ~bits[v].crossing;
     }
-    counts.chunks += block.count;
+    counts.chunks += group.count;
     const ViewsOfChunk seen_by = turn(whole, input.view_count), crossed_by = turn(crossing, input.view_count);
-    // Memory is what this waits for: the whole block's is asked for before any of it is used.
+    // Memory is what this waits for: the whole group's is asked for before any of it is used.
     for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-      chunks[i] = map.chunk(block, i);
+      chunks[i] = map.chunk(group, i);
       prefetch_ids(chunks[i]);
     }
     for (; any != 0; any &= any - 1) {
@@ -249,19 +249,19 @@ namespace sightline::world {
 using world::ChunkMap;
 HWY_EXPORT(one_view);
 HWY_EXPORT(frustum_views);
-HWY_EXPORT(find_node_blocks);
+HWY_EXPORT(find_node_groups);
 
-void find_blocks(const ChunkMap::Node& node, std::span<const SectorView> views,
+void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
                  std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
-                 std::vector<BlockEntry>& entries) noexcept {
-  HWY_DYNAMIC_DISPATCH(find_node_blocks)(node, views, planes, sector, entries);
+                 std::vector<GroupEntry>& entries) noexcept {
+  HWY_DYNAMIC_DISPATCH(find_node_groups)(node, views, planes, sector, entries);
 }
 
-PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept {
   bool plain = true;
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
-  if (!plain) return cull_filtered_blocks(input, entries, out, masks);
+  if (!plain) return cull_filtered_groups(input, entries, out, masks);
   if (input.view_count == 1 && !masks) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);
   return HWY_DYNAMIC_DISPATCH(frustum_views)(input, entries, out, masks);
 }
