@@ -3,24 +3,15 @@
 #include <cmath>
 #include <limits>
 
+#include "library/geometry/box_math.hpp"
 #include "library/world/chunk_map.hpp"
+#include "library/world/free_list.hpp"
 
 namespace sightline::world {
 
+using namespace geometry;
+
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Box kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-
-Box united(const Box& a, const Box& b) {
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
-bool holds(const Box& outer, const Box& inner) {
-  return outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
-         outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z;
-}
 
 // Whether taking `inner` away can make `outer` smaller.
 bool touches(const Box& outer, const Box& inner) {
@@ -87,7 +78,7 @@ void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
 void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
   const Box bounds = chunk_bounds(chunk);
   if (holds(bounds, box)) return;
-  set_bounds(chunk, world::united(bounds, box));
+  set_bounds(chunk, united(bounds, box));
   extend_group(chunks_[chunk].group, box);
 }
 
@@ -118,9 +109,9 @@ void ChunkMap::set_box(std::uint32_t group, const Box& box) noexcept {
 void ChunkMap::extend_group(std::uint32_t group, const Box& box) noexcept {
   Group& b = groups_[group];
   if (holds(b.box, box)) return;
-  set_box(group, world::united(b.box, box));
+  set_box(group, united(b.box, box));
   for (std::uint32_t n = b.node; n != kNone && !holds(nodes_[n].bounds, box); n = nodes_[n].parent) {
-    nodes_[n].bounds = world::united(nodes_[n].bounds, box);
+    nodes_[n].bounds = united(nodes_[n].bounds, box);
   }
 }
 
@@ -156,10 +147,10 @@ void ChunkMap::tighten() {
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents
     if (!loose_[n]) continue;
     loose_[n] = 0;
-    Box box = kNothing;
-    for (const std::uint32_t group : nodes_[n].groups) box = world::united(box, groups_[group].box);
+    Box box = kEmptyBox;
+    for (const std::uint32_t group : nodes_[n].groups) box = united(box, groups_[group].box);
     if (nodes_[n].first_child != kNone) {
-      for (int i = 0; i < 4; ++i) box = world::united(box, nodes_[nodes_[n].first_child + i].bounds);
+      for (int i = 0; i < 4; ++i) box = united(box, nodes_[nodes_[n].first_child + i].bounds);
     }
     nodes_[n].bounds = box;
   }
@@ -176,20 +167,13 @@ void ChunkMap::add_objects(std::uint32_t group, std::int32_t change) noexcept {
 }
 
 std::uint32_t ChunkMap::add_group(std::uint32_t node) {
-  std::uint32_t group;
-  if (free_groups_.empty()) {
-    group = static_cast<std::uint32_t>(groups_.size());
-    groups_.emplace_back();
-  } else {
-    group = free_groups_.back();
-    free_groups_.pop_back();
-    groups_[group] = {};
-  }
+  const std::uint32_t group = take_element(groups_, free_groups_);
+  groups_[group] = {};
   groups_[group].node = node;
   groups_[group].index_in_node = static_cast<std::uint32_t>(nodes_[node].groups.size());
   nodes_[node].groups.push_back(group);
   nodes_[node].group_boxes.resize(nodes_[node].groups.size());
-  set_box(group, kNothing);
+  set_box(group, kEmptyBox);
   return group;
 }
 
@@ -200,8 +184,7 @@ void ChunkMap::put_in_group(std::uint32_t chunk, std::uint32_t group, const Box&
     const auto& all = nodes_[node].groups;
     group = !all.empty() && groups_[all.back()].count < kGroupCapacity ? all.back() : add_group(node);
   } else if (groups_[group].count == kGroupCapacity) {
-    split_group(group, bounds);
-    group = keep_in_;
+    group = split_group(group, bounds);
   }
   Chunk& c = chunks_[chunk];
   Group& b = groups_[group];
@@ -239,9 +222,9 @@ void ChunkMap::take_from_group(std::uint32_t chunk) {
   free_groups_.push_back(group);
 }
 
-// Moves the upper half of a full group's chunks, along the longest axis of their centres, to a new group, and
-// leaves in keep_in_ the one nearer to `newcomer`.
-void ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
+// Moves the upper half of a full group's chunks, along the longest axis of their centres, to a new group.
+// Returns the one nearer to `newcomer`.
+std::uint32_t ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
   const std::uint32_t added = add_group(groups_[group].node);
   Group &low = groups_[group], &high = groups_[added];
   std::uint32_t axis = 0;
@@ -283,10 +266,7 @@ void ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
   low.objects -= moved_objects;
   high.objects += moved_objects;
   const float at = centre[order[kGroupCapacity / 2]];
-  const float to = axis == 0   ? 0.5f * newcomer.min.x + 0.5f * newcomer.max.x
-                   : axis == 1 ? 0.5f * newcomer.min.y + 0.5f * newcomer.max.y
-                               : 0.5f * newcomer.min.z + 0.5f * newcomer.max.z;
-  keep_in_ = to >= at ? added : group;
+  return coordinate(centre_of(newcomer), axis) >= at ? added : group;
 }
 
 // --- what others read ---

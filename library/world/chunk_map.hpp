@@ -184,6 +184,10 @@ private:
     std::uint32_t node = 0;      // of the quadtree
     std::uint32_t root = kNone;  // k-d reference
   };
+  // A k-d reference is a split, or a chunk with the highest bit set.
+  static constexpr std::uint32_t kChunkBit = 0x80000000u;
+  static constexpr bool is_chunk(std::uint32_t reference) { return reference & kChunkBit; }
+
   struct Split {
     float at = 0;
     std::uint32_t axis = 0, parent = kNone;
@@ -204,7 +208,7 @@ private:
   std::uint32_t find_chunk(const Key& key, const Vec3& centre) const noexcept;
   std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell);
   void free_chunk(std::uint32_t chunk);
-  void make_room(std::uint32_t chunk, const Vec3& centre, std::uint32_t& target);
+  std::uint32_t make_room(std::uint32_t chunk, const Vec3& centre);
   bool split(std::uint32_t chunk);
   void grow(std::uint32_t chunk);
   void unlink(std::uint32_t chunk);
@@ -222,7 +226,7 @@ private:
   std::uint32_t add_group(std::uint32_t node);
   void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);
   void take_from_group(std::uint32_t chunk);
-  void split_group(std::uint32_t group, const Box& newcomer);
+  std::uint32_t split_group(std::uint32_t group, const Box& newcomer);
   void add_objects(std::uint32_t group, std::int32_t change) noexcept;
   void set_bounds(std::uint32_t chunk, const Box& box) noexcept;
   void extend(std::uint32_t chunk, const Box& box) noexcept;
@@ -230,6 +234,9 @@ private:
   void extend_group(std::uint32_t group, const Box& box) noexcept;
   void shrink(std::uint32_t chunk, const Box& gone) noexcept;
   void shrink_group(std::uint32_t group, const Box& gone) noexcept;
+  Check check_chunk(std::uint32_t chunk) const;
+  Check check_group(std::uint32_t group) const;
+  Check check_node(std::uint32_t node) const;
   Box tight(const Chunk& chunk) const noexcept;
   Box tight(const Group& group) const noexcept;
   void loosen(std::uint32_t node, const Box& gone) noexcept;
@@ -248,8 +255,7 @@ private:
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;
-  std::size_t misplaced_ = 0;      // how many chunks took lanes anywhere since arrange()
-  std::uint32_t keep_in_ = kNone;  // split_group's answer
+  std::size_t misplaced_ = 0;  // how many chunks were given lanes anywhere since arrange()
 
   std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_, free_small_, free_large_;
   std::vector<std::uint32_t> changed_;

@@ -4,8 +4,8 @@
 namespace sightline::world {
 
 void ChunkMap::arrange() {
-  constexpr std::size_t kFew = 64;
-  if (misplaced_ < kFew || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
+  constexpr std::size_t kFewestWorthIt = 64;  // chunks: fewer lie in a few pages anyway
+  if (misplaced_ < kFewestWorthIt || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
   misplaced_ = 0;
   geometry::LargeVector<float> lanes;
   geometry::LargeVector<ObjectId> ids;

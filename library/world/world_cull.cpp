@@ -246,7 +246,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::world {
-using world::ChunkMap;
 HWY_EXPORT(one_view);
 HWY_EXPORT(frustum_views);
 HWY_EXPORT(find_node_groups);

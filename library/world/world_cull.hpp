@@ -44,8 +44,8 @@ struct PassCounts {
 
 /// The maps and the views of a cull, of the sectors that some view may see; views lie sector by sector.
 struct PassInput {
-  std::span<const world::ChunkMap* const> maps;  ///< one a sector
-  std::span<const SectorView> views;             ///< sectors × view_count
+  std::span<const ChunkMap* const> maps;  ///< one a sector
+  std::span<const SectorView> views;      ///< sectors × view_count
   std::size_t view_count = 1;
   /// Of each view, the bits of a mask: several where the caller's views are the same.
   std::array<std::uint8_t, kMaxViews> bits{};
@@ -53,7 +53,7 @@ struct PassInput {
 
 /// Sorts the groups of a node: adds those that some view may see to `entries`. `views` are the sector's,
 /// `planes` what each has still to be tested against.
-void find_groups(const world::ChunkMap::Node& node, std::span<const SectorView> views,
+void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
                  std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
                  std::vector<GroupEntry>& entries) noexcept;
 
