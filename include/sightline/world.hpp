@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 
+#include <sightline/jobs.hpp>
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
 
@@ -46,7 +47,7 @@ struct Handle {
 };
 
 /// Boxes in sectors of 3,200 m, each with a double-precision origin, so that a box keeps its place to half a
-/// millimetre anywhere (Done outwards: what is stored holds what was given). Inside a sector, a chunk map.
+/// millimetre anywhere, rounded outwards: what is stored holds what was given. Inside a sector, a chunk map.
 /// Not for use by two threads at once, unless both only read; culling with a Culler each only reads.
 class World {
 public:
@@ -89,15 +90,6 @@ struct WorldView {
 
 /// Views that one call culls together.
 inline constexpr std::size_t kMaxViews = 8;
-
-/// Runs job(data, 0) … job(data, count - 1), on any threads, and returns when all are done.
-struct JobSystem {
-  void (*run)(void* user, std::uint32_t count, void (*job)(void* data, std::uint32_t index),
-              void* data) = nullptr;
-  void* user = nullptr;
-  std::uint32_t threads = 1;  ///< how many jobs to make; 1 … kMaxJobs
-};
-inline constexpr std::uint32_t kMaxJobs = 64;
 
 struct CullOptions {
   /// Drops what covers fewer px² than this by its bounding sphere (Lee & Shin 2023, equation 1, mended):

@@ -199,6 +199,60 @@ DifferentViews different_views(std::span<const WorldView> views, const CullOptio
   return out;
 }
 
+// Sorts the sectors: adds to the state those that some view may see, and their groups. Returns how many
+// regions and groups it looked at.
+std::uint64_t find_entries(CullerState& state, const World& world, std::span<const WorldView> views,
+                           const DifferentViews& different, const CullOptions& options) {
+  const auto& sectors = world.state().sectors;
+  const auto of_different = std::span(different.first).first(different.count);
+  state.maps.clear(), state.views.clear(), state.entries.clear();
+  for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]]);
+  // Room for all sectors, so that a camera that turns allocates nothing.
+  state.maps.reserve(sectors.size());
+  state.views.reserve(sectors.size() * different.count);
+  for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
+    state.failed.emplace_back();
+    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
+  }
+  std::uint64_t visited = 0;
+  for (std::size_t s = 0; s < sectors.size(); ++s) {
+    const Sector& sector = sectors[s];
+    if (!sector.map) continue;
+    bool missed = true;
+    for (std::size_t d = 0; d < different.count && missed; ++d)
+      missed = state.tests[d].misses(sector.origin, sector.bounds);
+    if (missed) {
+      ++visited;  // its root: that is what the walk would have looked at
+      continue;
+    }
+    const auto kept = static_cast<std::uint32_t>(state.maps.size());
+    state.maps.push_back(sector.map.get());
+    for (const std::uint8_t v : of_different) {
+      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
+      state.views.push_back(sector_view(views[v], sector, options, occlusion));
+    }
+    state.failed[s].resize(sector.map->nodes().size() * kMaxViews, 0);
+    visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
+  }
+  return visited;
+}
+
+// Moves what the jobs wrote together, and adds their counts to the result.
+void join_outputs(const CullerState& state, std::uint32_t jobs, CullResult& result) {
+  for (const Job& job : std::span(state.jobs).first(jobs)) {
+    if (job.first_output != result.count) {
+      std::memmove(state.out + result.count, state.out + job.first_output,
+                   job.counts.written * sizeof(ObjectId));
+      if (state.masks)
+        std::memmove(state.masks + result.count, state.masks + job.first_output, job.counts.written);
+    }
+    result.count += job.counts.written;
+    result.tested += job.counts.tested;
+    result.nodes_visited += job.counts.chunks;
+    result.culled_occlusion += job.counts.occluded;
+  }
+}
+
 CullError check_call(const World& world, std::span<const WorldView> views, const CullOptions& options,
                      std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
   if (views.empty() || views.size() > kMaxViews) return CullError::views;
@@ -238,39 +292,8 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   if (result.error != CullError::none) return result;
 
   world::CullerState& state = *state_;
-  const auto& sectors = world.state().sectors;
-  state.maps.clear(), state.views.clear(), state.entries.clear();
   const world::DifferentViews different = world::different_views(views, options);
-  const auto of_different = std::span(different.first).first(different.count);
-  for (std::size_t d = 0; d < different.count; ++d)
-    state.tests[d] = world::SectorTest(views[different.first[d]]);
-  // Room for all sectors, so that a camera that turns allocates nothing.
-  state.maps.reserve(sectors.size());
-  state.views.reserve(sectors.size() * different.count);
-  for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
-    state.failed.emplace_back();
-    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
-  }
-  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    if (!sectors[s].map) continue;
-    bool missed = true;
-    for (std::size_t d = 0; d < different.count && missed; ++d)
-      missed = state.tests[d].misses(sectors[s].origin, sectors[s].bounds);
-    if (missed) {
-      ++result.nodes_visited;  // its root: that is what the walk would have looked at
-      continue;
-    }
-    const auto kept = static_cast<std::uint32_t>(state.maps.size());
-    state.maps.push_back(sectors[s].map.get());
-    for (const std::uint8_t v : of_different) {
-      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
-      state.views.push_back(world::sector_view(views[v], sectors[s], options, occlusion));
-    }
-    std::vector<std::uint8_t>& failed = state.failed[s];
-    failed.resize(state.maps[kept]->nodes().size() * kMaxViews, 0);
-    result.nodes_visited += world::RegionWalk(state, kept, different.count, failed.data()).run();
-  }
-
+  result.nodes_visited = world::find_entries(state, world, views, different, options);
   state.input = {state.maps, state.views, different.count, different.bits};
   state.out = visible.data();
   state.masks = masks.empty() ? nullptr : masks.data();
@@ -281,19 +304,7 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   } else if (jobs == 1) {
     world::run_job(&state, 0);
   }
-  for (std::uint32_t j = 0; j < jobs; ++j) {
-    const world::Job& job = state.jobs[j];
-    if (job.first_output != result.count) {
-      std::memmove(state.out + result.count, state.out + job.first_output,
-                   job.counts.written * sizeof(ObjectId));
-      if (state.masks)
-        std::memmove(state.masks + result.count, state.masks + job.first_output, job.counts.written);
-    }
-    result.count += job.counts.written;
-    result.tested += job.counts.tested;
-    result.nodes_visited += job.counts.chunks;
-    result.culled_occlusion += job.counts.occluded;
-  }
+  world::join_outputs(state, jobs, result);
   return result;
 }
 

@@ -1,0 +1,122 @@
+// What the SIMD kernels of all folders share, for every width. Included by files that foreach_target compiles
+// again and again; D is a Highway tag of floats, V a vector of it. Nothing is fused: mul and add round apart,
+// in the order of the scalar twins, so that every width gives the same bits.
+#if defined(SIGHTLINE_GEOMETRY_SIMD_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_GEOMETRY_SIMD_INL
+#undef SIGHTLINE_GEOMETRY_SIMD_INL
+#else
+#define SIGHTLINE_GEOMETRY_SIMD_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include <sightline/frustum.hpp>
+#include <sightline/types.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::geometry::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A bit a lane, from the lowest; of at most 32 lanes.
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint32_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & static_cast<std::uint32_t>((std::uint64_t{1} << hn::Lanes(d)) - 1);
+}
+
+// The other way round; bits beyond the last lane mean nothing.
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, std::uint64_t bits) {
+  std::uint8_t bytes[8];
+  std::memcpy(bytes, &bits, sizeof bytes);
+  if (hn::Lanes(d) < 8) bytes[0] &= (1u << hn::Lanes(d)) - 1;
+  return hn::LoadMaskBits(d, bytes);
+}
+
+// Writes the values of the mask's lanes one after another and returns how many there are; a whole vector is
+// written. Packed in a register first: the packing store is microcoded on some processors.
+template <class D>
+HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
+  hn::StoreU(hn::Compress(values, keep), d, out);
+  return hn::CountTrue(d, keep);
+}
+
+// Lets `from` point at a vector of values each: where fewer than a vector's are left they are copied to
+// `room`, the last one repeated, rather than read beyond.
+template <std::size_t kArrays, class D>
+HWY_INLINE void repeat_last(D d, std::size_t count, std::array<const float*, kArrays>& from,
+                            std::array<std::array<float, 16>, kArrays>& room) {
+  if (count >= hn::Lanes(d)) return;
+  for (std::size_t a = 0; a < kArrays; ++a) {
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) room[a][i] = from[a][std::min(i, count - 1)];
+    from[a] = room[a].data();
+  }
+}
+
+// Asks for all lines of memory that an object fills, which begins on one.
+template <class T>
+HWY_INLINE void prefetch_lines(const T& object) {
+  constexpr std::size_t kLine = 64;
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&object);
+  for (std::size_t at = 0; at < sizeof(T); at += kLine) hwy::Prefetch(bytes + at);
+}
+
+// A vector of points, or of directions.
+template <class V>
+struct Points {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE V dot(const Points<V>& a, const Points<V>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+template <class V>
+HWY_INLINE V dot(const Points<V>& a, const std::array<float, 3>& b) {
+  const hn::DFromV<V> d;
+  return dot(a, Points<V>{hn::Set(d, b[0]), hn::Set(d, b[1]), hn::Set(d, b[2])});
+}
+template <class V>
+HWY_INLINE Points<V> minus(const Points<V>& a, const Points<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Points<V> cross(const Points<V>& a, const Points<V>& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+// The largest coordinate, whatever its sign.
+template <class V>
+HWY_INLINE V largest(const Points<V>& p) {
+  return hn::Max(hn::Max(hn::Abs(p.x), hn::Abs(p.y)), hn::Abs(p.z));
+}
+
+// A row of a matrix times (point, 1).
+template <class V>
+HWY_INLINE V dot_row(const Vec4& row, const Points<V>& p) {
+  const hn::DFromV<V> d;
+  return hn::Add(hn::Add(hn::Add(hn::Mul(hn::Set(d, row.x), p.x), hn::Mul(hn::Set(d, row.y), p.y)),
+                         hn::Mul(hn::Set(d, row.z), p.z)),
+                 hn::Set(d, row.w));
+}
+// signed_distance(), with its roundings.
+template <class V>
+HWY_INLINE V distance(const Plane& plane, const Points<V>& p) {
+  return dot_row(Vec4{plane.normal.x, plane.normal.y, plane.normal.z, plane.distance}, p);
+}
+
+}  // namespace sightline::geometry::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
