@@ -112,7 +112,6 @@ HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
 PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> entries,
                           ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
   PassCounts counts;
-  std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
   ChunkViews parts;
   std::array<ChunkMap::ChunkView, kGroup> chunks;
@@ -136,7 +135,7 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
       const ChunkMap::ChunkView& chunk = chunks[i];
       const ChunkViewers viewers = viewers_of(input, at, bits, i);
       if (viewers.part == 0 || (viewers.whole != 0 && masks == nullptr)) {
-        kept += write_whole(chunk, viewers.whole, kept, ids, masks);
+        counts.written += write_whole(chunk, viewers.whole, counts.written, ids, masks);
         continue;
       }
       parts.count = 0;
@@ -148,10 +147,9 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
         view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
         if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
       }
-      kept += write_parts(chunk, viewers.whole, parts, kept, ids, masks);
+      counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
     }
   }
-  counts.written = kept;
   return counts;
 }
 

@@ -11,7 +11,6 @@
 #include <hwy/highway.h>
 
 #include <bit>
-#include <cstring>
 
 #include <sightline/culling.hpp>
 
@@ -169,13 +168,7 @@ static_assert(ChunkMap::kCapacity <= 128);
 // Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
-  std::uint8_t from[8];
-  if (hn::Lanes(d) < 8) {
-    from[0] = static_cast<std::uint8_t>(bits.words[i / 64] >> (i % 64) & ((1u << hn::Lanes(d)) - 1));
-  } else {
-    std::memcpy(from, reinterpret_cast<const std::uint8_t*>(&bits.words) + i / 8, hn::Lanes(d) / 8);
-  }
-  return hn::LoadMaskBits(d, from);
+  return mask_of(d, bits.words[i / 64] >> (i % 64));
 }
 
 HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {

@@ -98,7 +98,7 @@ HWY_INLINE ViewsOfChunk turn(const std::array<std::uint32_t, kMaxViews>& words, 
 // The bits of a mask that each set of views stands for.
 HWY_INLINE std::array<std::uint8_t, 1 << kMaxViews> bits_of_views(const PassInput& input) {
   std::array<std::uint8_t, 1 << kMaxViews> out{};
-  for (std::size_t set = 0; set < out.size(); ++set) {
+  for (std::size_t set = 0; set < std::size_t{1} << input.view_count; ++set) {
     for (std::size_t v = 0; v < input.view_count; ++v) out[set] |= set >> v & 1 ? input.bits[v] : 0;
   }
   return out;
@@ -131,7 +131,7 @@ struct CrossedChunk {
   const EntryGroup& at;
   const GroupBits& bits;
   const ChunkMap::ChunkView& chunk;
-  std::uint32_t i;
+  std::uint32_t i;  // the chunk's place in the group
 
   HWY_INLINE std::size_t corners(int v, Corner* out) const {
     return corners_of(chunk, at.views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
@@ -186,13 +186,14 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
         continue;
       }
       const CrossedChunk crossing{input, entry, at, bits, chunk, i};
-      counts.tested += static_cast<std::size_t>(std::popcount(by)) * chunk.count;
       if (whole == 0 && std::has_single_bit(by)) {
+        counts.tested += chunk.count;
         kept += crossing.write_one(std::countr_zero(by), kept, ids, masks);
-      } else {
-        crossing.test(by, crossed);
-        kept += write_parts(chunk, whole, crossed, kept, ids, masks);
+        continue;
       }
+      crossing.test(by, crossed);
+      counts.tested += crossed.count * chunk.count;
+      kept += write_parts(chunk, whole, crossed, kept, ids, masks);
     }
   }
   counts.written = kept;
