@@ -117,9 +117,9 @@ HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry
   for (std::size_t v = 0; v < input.view_count; ++v) {
     out.whole[v] = out.crossing[v] = 0;
     if (entry.planes[v] == kOutside) continue;
-    const ChunkBits& bits = out.bits[v] = classify_chunks(at.group, at.views[v], entry.planes[v]);
-    any |= bits.kept;
-    out.crossing[v] = bits.crossing, out.whole[v] = bits.kept & ~bits.crossing;
+    out.bits[v] = classify_chunks(at.group, at.views[v], entry.planes[v]);
+    any |= out.bits[v].kept;
+    out.crossing[v] = out.bits[v].crossing, out.whole[v] = out.bits[v].kept & ~out.bits[v].crossing;
   }
   return any;
 }
@@ -128,13 +128,13 @@ HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry
 struct CrossedChunk {
   const PassInput& input;
   const GroupEntry& entry;
-  const EntryGroup& at;
+  const SectorView* views;
   const GroupBits& bits;
   const ChunkMap::ChunkView& chunk;
   std::uint32_t i;  // the chunk's place in the group
 
   HWY_INLINE std::size_t corners(int v, Corner* out) const {
-    return corners_of(chunk, at.views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
+    return corners_of(chunk, views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
   }
 
   // One view alone: its mask is the same for all.
@@ -185,7 +185,7 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
         kept += write_whole(chunk, whole, kept, ids, masks);
         continue;
       }
-      const CrossedChunk crossing{input, entry, at, bits, chunk, i};
+      const CrossedChunk crossing{input, entry, at.views, bits, chunk, i};
       if (whole == 0 && std::has_single_bit(by)) {
         counts.tested += chunk.count;
         kept += crossing.write_one(std::countr_zero(by), kept, ids, masks);
