@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include <sightline/tbb.hpp>
 #include <sightline/workbench/worlds.hpp>
 
 #include "embree_boxes.hpp"
@@ -104,11 +105,11 @@ void BM_WideRays(benchmark::State& state) {
   });
 }
 void BM_WideRaysAllCores(benchmark::State& state) {
-  rays::Crew crew(0);
-  std::vector<rays::WideStack> stacks(crew.size());
+  const JobSystem jobs = tbb_jobs();
+  std::vector<rays::WideStack> stacks(jobs.threads);
   run(state,
-      [&](const Setting& s, rays::RayHits& hits) { rays::cast_wide(s.wide, s.grid, crew, stacks, hits); });
-  state.counters["threads"] = crew.size();
+      [&](const Setting& s, rays::RayHits& hits) { rays::cast_wide(s.wide, s.grid, jobs, stacks, hits); });
+  state.counters["threads"] = jobs.threads;
 }
 void BM_Boca(benchmark::State& state) {
   run(state,

@@ -5,6 +5,7 @@
 #include <sightline/boxes.hpp>
 #include <sightline/culling.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/jobs.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/pvs.hpp>

@@ -1,4 +1,4 @@
-// Culling on oneTBB's threads. Header only and apart from <sightline/sightline.hpp>, so that the library
+// oneTBB's threads as a JobSystem. Header only and apart from <sightline/sightline.hpp>, so that the library
 // itself needs no oneTBB: link TBB::tbb, or sightline::tbb where the package found it.
 #pragma once
 
@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <sightline/world.hpp>
+#include <sightline/jobs.hpp>
 
 namespace sightline {
 
-/// Jobs for CullOptions::jobs that run in the calling thread's task arena. `threads` is how many jobs a cull
-/// is split into, 1 … kMaxJobs; 0: as many as oneTBB has threads. The answer is the same for every number.
+/// Jobs that run in the calling thread's task arena. `threads` is how many jobs a call is split into, 1 …
+/// kMaxJobs; 0: as many as oneTBB has threads. The answer is the same for every number.
 inline JobSystem tbb_jobs(std::uint32_t threads = 0) {
   if (threads == 0) threads = static_cast<std::uint32_t>(std::max(tbb::info::default_concurrency(), 1));
   const auto run = [](void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {

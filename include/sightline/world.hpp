@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 
+#include <sightline/jobs.hpp>
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
 
@@ -31,7 +32,7 @@ struct Handle {
 };
 
 /// Boxes in sectors of 3,200 m, each with a double-precision origin, so that a box keeps its place to half a
-/// millimetre anywhere (Done outwards: what is stored holds what was given). Inside a sector, a chunk map.
+/// millimetre anywhere, rounded outwards: what is stored holds what was given. Inside a sector, a chunk map.
 /// Not for use by two threads at once, unless both only read; culling with a Culler each only reads.
 class World {
 public:
@@ -67,15 +68,6 @@ private:
 /// Views that one call culls together.
 inline constexpr std::size_t kMaxViews = 8;
 
-/// Runs job(data, 0) … job(data, count - 1), on any threads, and returns when all are done.
-struct JobSystem {
-  void (*run)(void* user, std::uint32_t count, void (*job)(void* data, std::uint32_t index),
-              void* data) = nullptr;
-  void* user = nullptr;
-  std::uint32_t threads = 1;  ///< how many jobs to make; 1 … kMaxJobs
-};
-inline constexpr std::uint32_t kMaxJobs = 64;
-
 struct CullOptions {
   /// Drops what covers fewer px² than this by its bounding sphere (Lee & Shin 2023, equation 1, mended):
   /// approximate. 0 drops nothing.
@@ -91,7 +83,7 @@ struct CullResult {
   std::size_t count = 0;               ///< objects written
   CullError error = CullError::none;   ///< what was wrong with the call; nothing was culled then
   std::uint64_t tested = 0;            ///< objects tested one by one
-  std::uint64_t nodes_visited = 0;     ///< regions, blocks and chunks looked at
+  std::uint64_t nodes_visited = 0;     ///< regions, groups and chunks looked at
   std::uint64_t culled_occlusion = 0;  ///< objects that only occlusion dropped, summed over the views
 };
 

@@ -8,6 +8,8 @@
 
 #include <hwy/highway.h>
 
+#include "library/geometry/simd-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::frustum::HWY_NAMESPACE {
 
@@ -16,21 +18,23 @@ using F = hn::ScalableTag<float>;
 using U = hn::RebindToUnsigned<F>;
 using VF = hn::Vec<F>;
 
+using Points = geometry::HWY_NAMESPACE::Points<VF>;
+
 // A plane spread over the lanes, held in registers through a loop.
 struct WidePlane {
-  VF x, y, z, distance;
+  Points normal;
+  VF distance;
 };
 
 HWY_INLINE WidePlane spread(const Plane& plane) {
   const F f;
-  return {hn::Set(f, plane.normal.x), hn::Set(f, plane.normal.y), hn::Set(f, plane.normal.z),
+  return {{hn::Set(f, plane.normal.x), hn::Set(f, plane.normal.y), hn::Set(f, plane.normal.z)},
           hn::Set(f, plane.distance)};
 }
 
-// signed_distance() of a vector of points: mul and add apart, in its order, so that it rounds alike.
-HWY_INLINE VF distance(const WidePlane& plane, VF x, VF y, VF z) {
-  const VF xy = hn::Add(hn::Mul(plane.x, x), hn::Mul(plane.y, y));
-  return hn::Add(hn::Add(xy, hn::Mul(plane.z, z)), plane.distance);
+// signed_distance() of a vector of points, with its roundings.
+HWY_INLINE VF distance(const WidePlane& plane, const Points& p) {
+  return hn::Add(geometry::HWY_NAMESPACE::dot(plane.normal, p), plane.distance);
 }
 
 // Calls test(first) -> mask for each vector and packs the indices that pass; the rest that fills no vector
@@ -56,9 +60,7 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
     if (hn::AllFalse(f, mask)) continue;
     const auto ids = hn::Iota(u, static_cast<std::uint32_t>(i));
     const auto keep = hn::RebindMask(u, mask);
-    // Packed in a register and stored whole: the packing store is microcoded on some processors.
-    hn::StoreU(hn::Compress(ids, keep), u, out + kept);
-    kept += hn::CountTrue(u, keep);
+    kept += geometry::HWY_NAMESPACE::store_kept(u, ids, keep, out + kept);
   }
   one_by_one(count);
   return kept;
@@ -82,7 +84,7 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
   const auto at = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
-    return distance(plane, hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i));
+    return distance(plane, {hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)});
   };
   return pack(
       boxes.count, boxes.min_x, out,
@@ -106,10 +108,10 @@ std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* 
   return pack(
       s.count, s.x, out,
       [&](std::size_t i) HWY_ATTR {
-        const VF x = hn::LoadU(f, s.x + i), y = hn::LoadU(f, s.y + i), z = hn::LoadU(f, s.z + i);
-        const VF a = hn::Min(distance(p0, x, y, z), distance(p1, x, y, z)),
-                 b = hn::Min(distance(p2, x, y, z), distance(p3, x, y, z)),
-                 c = hn::Min(distance(p4, x, y, z), distance(p5, x, y, z));
+        const Points at{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
+        const VF a = hn::Min(distance(p0, at), distance(p1, at)),
+                 b = hn::Min(distance(p2, at), distance(p3, at)),
+                 c = hn::Min(distance(p4, at), distance(p5, at));
         return hn::Ge(hn::Min(hn::Min(a, b), c), hn::Neg(hn::LoadU(f, s.radius + i)));
       },
       [&](std::size_t i) {

@@ -1,30 +1,20 @@
 #include "library/rays/bvh.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
+
+#include "library/geometry/box_math.hpp"
 
 namespace sightline::rays {
 
+using namespace geometry;
+
 namespace {
 
-float coordinate(const Vec3& v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
-void include(Vec3& low, Vec3& high, const Vec3& other_low, const Vec3& other_high) {
-  low = {std::min(low.x, other_low.x), std::min(low.y, other_low.y), std::min(low.z, other_low.z)};
-  high = {std::max(high.x, other_high.x), std::max(high.y, other_high.y), std::max(high.z, other_high.z)};
-}
-
 BvhNode bounds_of(const Boxes& boxes, std::span<const ObjectId> objects) {
-  const Box first = boxes[objects[0]];
-  BvhNode node{first.min, 0, first.max, kNoObject};
-  for (const ObjectId object : objects.subspan(1)) {
-    const Box box = boxes[object];
-    include(node.min, node.max, box.min, box.max);
-  }
-  return node;
+  Box bounds = boxes[objects[0]];
+  for (const ObjectId object : objects.subspan(1)) bounds = united(bounds, boxes[object]);
+  return {bounds.min, 0, bounds.max, kNoObject};
 }
 
 }  // namespace
@@ -49,7 +39,7 @@ void Bvh::build(const Boxes& boxes, std::span<ObjectId> objects) {
   const BvhNode& node = nodes_[index];
   const Vec3 size{0.5f * node.max.x - 0.5f * node.min.x, 0.5f * node.max.y - 0.5f * node.min.y,
                   0.5f * node.max.z - 0.5f * node.min.z};
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::uint32_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const float middle = 0.5f * coordinate(node.min, axis) + 0.5f * coordinate(node.max, axis);
   const auto centre = [&](ObjectId object) {
     const Box box = boxes[object];
@@ -80,8 +70,8 @@ void Bvh::refit(const Boxes& boxes) noexcept {
     }
     const BvhNode& first = nodes_[i + 1];
     const BvhNode& second = nodes_[i + 2 + first.descendants];
-    node.min = first.min, node.max = first.max;
-    include(node.min, node.max, second.min, second.max);
+    const Box both = united({first.min, first.max}, {second.min, second.max});
+    node.min = both.min, node.max = both.max;
   }
 }
 

@@ -13,8 +13,7 @@ namespace sightline::rays {
 /// 32 bytes, the same in C++, GLSL (std430: two vec4) and a web page's arrays.
 struct BvhNode {
   Vec3 min;
-  std::uint32_t descendants =
-      0;  ///< Arr_b: nodes below this one; where a ray misses, i + 1 + descendants is next
+  std::uint32_t descendants = 0;  ///< Arr_b: nodes below this one; a miss goes on at i + 1 + descendants
   Vec3 max;
   ObjectId object = kNoObject;  ///< of a leaf; kNoObject in an inner node
 };

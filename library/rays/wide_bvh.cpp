@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "library/geometry/box_math.hpp"
 
 namespace sightline::rays {
 
+using namespace geometry;
+
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kBins = 16;
-constexpr Box kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
 void include(Box& box, const Box& other) {
-  box.min = {std::min(box.min.x, other.min.x), std::min(box.min.y, other.min.y),
-             std::min(box.min.z, other.min.z)};
-  box.max = {std::max(box.max.x, other.max.x), std::max(box.max.y, other.max.y),
-             std::max(box.max.z, other.max.z)};
+  box = united(box, other);
 }
 
 // Half the surface; 0 for nothing. Doubles, so that no finite box overflows.
@@ -49,7 +47,7 @@ void WideNode::set(std::uint32_t lane, const Box& box) noexcept {
 }
 
 void WideNode::clear(std::uint32_t lane) noexcept {
-  set(lane, kNothing);
+  set(lane, kEmptyBox);
   child[lane] = kNoObject;
 }
 
@@ -65,7 +63,7 @@ struct WideBvh::Builder {
   std::uint32_t depth = 0;
 
   [[nodiscard]] Range range(std::uint32_t first, std::uint32_t last) const {
-    Range made{first, last, kNothing, 0};
+    Range made{first, last, kEmptyBox, 0};
     for (std::uint32_t i = first; i < last; ++i) include(made.box, references[i].box);
     made.area = half_area(made.box);
     return made;
@@ -89,21 +87,21 @@ struct WideBvh::Builder {
       if (!(low[axis] < high[axis])) continue;
       std::array<Box, kBins> boxes;
       std::array<std::uint32_t, kBins> counts{};
-      boxes.fill(kNothing);
+      boxes.fill(kEmptyBox);
       for (std::uint32_t i = r.first; i < r.last; ++i) {
         const std::uint32_t bin = bin_of(references[i].centre[axis], low[axis], high[axis]);
         include(boxes[bin], references[i].box);
         ++counts[bin];
       }
       std::array<double, kBins> right{};
-      Box sum = kNothing;
+      Box sum = kEmptyBox;
       std::uint32_t count = 0;
       for (std::uint32_t bin = kBins; bin-- > 1;) {
         include(sum, boxes[bin]);
         count += counts[bin];
         right[bin] = half_area(sum) * count;
       }
-      sum = kNothing, count = 0;
+      sum = kEmptyBox, count = 0;
       for (std::uint32_t bin = 1; bin < kBins; ++bin) {
         include(sum, boxes[bin - 1]);
         count += counts[bin - 1];
@@ -186,11 +184,8 @@ void WideBvh::build(const Boxes& boxes) {
   Builder builder{{}, nodes_};
   builder.references.reserve(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box b = boxes[i];
-    builder.references.push_back(
-        {b,
-         {0.5f * b.min.x + 0.5f * b.max.x, 0.5f * b.min.y + 0.5f * b.max.y, 0.5f * b.min.z + 0.5f * b.max.z},
-         static_cast<ObjectId>(i)});
+    const Vec3 centre = centre_of(boxes[i]);
+    builder.references.push_back({boxes[i], {centre.x, centre.y, centre.z}, static_cast<ObjectId>(i)});
   }
   builder.add_inner(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 1);
   depth_ = builder.depth;

@@ -7,8 +7,8 @@
 #include <new>
 #include <utility>
 
-#ifndef SIGHTLINE_PVS_WIDE_TURNS
-#define SIGHTLINE_PVS_WIDE_TURNS
+#ifndef SIGHTLINE_RAYS_WIDE_TURNS
+#define SIGHTLINE_RAYS_WIDE_TURNS
 namespace sightline::rays {
 constexpr std::size_t kTurns = 16;  // rays that wait for memory together, where each goes its own way
 }
@@ -48,17 +48,45 @@ struct Packet {
   alignas(64) std::uint32_t object[kPacket];
 };
 
-constexpr int kFew = 3;
+constexpr int kFewestTogether = 4;  // rays; fewer go on one by one
 
 struct PacketSlab {
   VP origin, inverse;
   std::size_t first, last;
 };
 
-HWY_INLINE std::uint32_t bits_of(hn::Mask<P> mask) {
-  std::uint8_t some[8] = {};
-  hn::StoreMaskBits(P(), mask, some);
-  return some[0] | std::uint32_t{some[1]} << 8;
+HWY_INLINE void spread_slabs(const Packet& packet, PacketSlab (&slabs)[3]) {
+  const P p;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t low = axis * kWide, high = low + 3 * kWide;
+    const bool backwards = packet.inverse[axis][0] < 0;
+    slabs[axis] = {hn::Load(p, packet.origin[axis]), hn::Load(p, packet.inverse[axis]),
+                   backwards ? high : low, backwards ? low : high};
+  }
+}
+
+// intersect() of one box with all rays: which of them it meets no farther than `exit`, and where.
+HWY_INLINE hn::Mask<P> meet(const PacketSlab (&slabs)[3], const float* planes, std::uint32_t lane, VP exit,
+                            VP& entry) {
+  const P p;
+  entry = hn::Zero(p);
+  for (const PacketSlab& slab : slabs) {
+    const VP first = hn::Set(p, planes[slab.first + lane]), last = hn::Set(p, planes[slab.last + lane]);
+    entry = hn::Max(hn::Mul(hn::Sub(first, slab.origin), slab.inverse), entry);
+    exit = hn::Min(hn::Mul(hn::Sub(last, slab.origin), slab.inverse), exit);
+  }
+  return hn::Le(entry, exit);
+}
+
+// Each of the rays `going` by itself, from `start` down.
+HWY_INLINE void walk_alone(const WideNode* nodes, std::uint32_t start, std::uint32_t going, Packet& packet,
+                           const PreparedRay* const* rays, std::uint64_t* stack, Work& work) {
+  for (; going != 0; going &= going - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(going));
+    WideResult alone{packet.best[i], packet.object[i]};
+    walk_as<false>(nodes, start, *rays[i], alone, stack, work);
+    packet.best[i] = alone.distance, packet.object[i] = alone.object;
+  }
 }
 
 // All directions have the same signs, and none is 0.
@@ -67,32 +95,22 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
   const P p;
   const PU pu;
   PacketSlab slabs[3];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t low = axis * kWide, high = low + 3 * kWide;
-    const bool backwards = packet.inverse[axis][0] < 0;
-    slabs[axis] = {hn::Load(p, packet.origin[axis]), hn::Load(p, packet.inverse[axis]),
-                   backwards ? high : low, backwards ? low : high};
-  }
+  spread_slabs(packet, slabs);
   VP best = hn::Load(p, packet.best);
   auto object = hn::Load(pu, packet.object);
   std::size_t waits = 0;
   std::uint32_t current = WideNode::kInner;
-  while (true) {
+  bool found = true;
+  while (found) {
     const WideNode& node = nodes[current & WideNode::kIndex];
-    const float* planes = node.min_x.data();
     const bool leaf = (current & WideNode::kLeaf) != 0;
     (leaf ? work.leaves : work.inner) += hn::Lanes(p);
     const std::size_t before = waits;
     for (std::uint32_t lane = 0; lane < kWide; ++lane) {
       const std::uint32_t child = node.child[lane];
       if (child == kNoObject) break;  // filled from the first lane on
-      VP entry = hn::Zero(p), exit = best;
-      for (const PacketSlab& slab : slabs) {
-        const VP first = hn::Set(p, planes[slab.first + lane]), last = hn::Set(p, planes[slab.last + lane]);
-        entry = hn::Max(hn::Mul(hn::Sub(first, slab.origin), slab.inverse), entry);
-        exit = hn::Min(hn::Mul(hn::Sub(last, slab.origin), slab.inverse), exit);
-      }
-      const auto hit = hn::Le(entry, exit);
+      VP entry;
+      const auto hit = meet(slabs, node.min_x.data(), lane, best, entry);
       if (leaf || child < WideNode::kInner) {
         const auto id = hn::Set(pu, child);
         const auto lower = hn::RebindMask(p, hn::Lt(id, object));
@@ -101,39 +119,29 @@ HWY_INLINE void cast_packet(const WideNode* nodes, Packet& packet, const Prepare
         object = hn::IfThenElse(hn::RebindMask(pu, nearer), id, object);
         continue;
       }
-      const std::uint32_t meeting = bits_of(hit);
+      const std::uint32_t meeting = bits_of(p, hit);
       if (meeting == 0) continue;
-      const float nearest = hn::GetLane(
-          hn::MinOfLanes(p, hn::IfThenElse(hit, entry, hn::Set(p, std::numeric_limits<float>::max()))));
-      const std::uint64_t entry_bits = waiting(nearest, child);
+      const auto far = hn::Set(p, std::numeric_limits<float>::max());
+      const float nearest = hn::GetLane(hn::MinOfLanes(p, hn::IfThenElse(hit, entry, far)));
+      const std::uint64_t waiting_entry = waiting(nearest, child);
       std::size_t at = waits++;
-      for (; at > before && stack[at - 1] < entry_bits; --at) {
+      for (; at > before && stack[at - 1] < waiting_entry; --at)
         stack[at] = stack[at - 1], stack_rays[at] = stack_rays[at - 1];
-      }
-      stack[at] = entry_bits, stack_rays[at] = meeting;
+      stack[at] = waiting_entry, stack_rays[at] = meeting;
     }
-    bool found = false;
-    while (!found && waits > 0) {
+    for (found = false; !found && waits > 0;) {
       const std::uint64_t next = stack[--waits];
       const float distance = std::bit_cast<float>(static_cast<std::uint32_t>(next >> 32));
       current = static_cast<std::uint32_t>(next);
-      std::uint32_t going = stack_rays[waits] & bits_of(hn::Ge(best, hn::Set(p, distance)));
-      if (std::popcount(going) > kFew) {
-        found = true;
-      } else if (going != 0) {
-        hn::Store(best, p, packet.best);
-        hn::Store(object, pu, packet.object);
-        for (; going != 0; going &= going - 1) {
-          const auto i = static_cast<std::size_t>(std::countr_zero(going));
-          WideResult alone{packet.best[i], packet.object[i]};
-          walk_as<false>(nodes, current, *rays[i], alone, stack + waits, work);
-          packet.best[i] = alone.distance, packet.object[i] = alone.object;
-        }
-        best = hn::Load(p, packet.best);
-        object = hn::Load(pu, packet.object);
-      }
+      const std::uint32_t going = stack_rays[waits] & bits_of(p, hn::Ge(best, hn::Set(p, distance)));
+      found = std::popcount(going) >= kFewestTogether;
+      if (found || going == 0) continue;
+      hn::Store(best, p, packet.best);
+      hn::Store(object, pu, packet.object);
+      walk_alone(nodes, current, going, packet, rays, stack + waits, work);
+      best = hn::Load(p, packet.best);
+      object = hn::Load(pu, packet.object);
     }
-    if (!found) break;
   }
   hn::Store(best, p, packet.best);
   hn::Store(object, pu, packet.object);
@@ -191,7 +199,7 @@ HWY_INLINE void cast_by_turns(const WideNode* nodes, const PreparedRay* rays, co
     for (std::size_t place = 0; place < going;) {
       Turn& turn = turns[place];
       if (step<false>(nodes, turn.slabs, turn.way, turn.best, stacks[place], work)) {
-        prefetch(nodes[turn.way.current & WideNode::kIndex]);
+        prefetch_lines(nodes[turn.way.current & WideNode::kIndex]);
         ++place;
         continue;
       }
@@ -300,28 +308,50 @@ void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, WideStack& stack, 
   cast_wide(bvh, grid.prepared, grid.order, hits.object, hits.distance, stack, hits.stats);
 }
 
-void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, Crew& crew, std::span<WideStack> stacks,
-               RayHits& hits) {
-  hits.reset(grid.size());
-  if (bvh.nodes().empty()) return;
-  // Some rows of tiles at a time, to whoever is free; the same pieces for any crew, so that the work is too.
-  constexpr std::size_t kPiece = 1024;
-  const std::size_t count = grid.size();
-  const bool together = go_together(bvh, count);
+namespace {
+
+// A grid that jobs cast some rows of tiles of at a time, each the next that nobody has begun. The pieces are
+// the same for any number of jobs, and so are the packets: the work is, too.
+struct SharedGrid {
+  static constexpr std::size_t kPiece = 1024;
+
+  const rays::WideBvh& bvh;
+  const RayGrid& grid;
+  std::span<WideStack> stacks;
+  RayHits& hits;
+  bool together;
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> met{0}, nodes{0}, boxes{0};
-  crew.run([&](unsigned worker) {
-    WideStack& stack = stacks[worker];
+
+  void cast_pieces(std::uint32_t job) {
+    WideStack& stack = stacks[job];
     grow(stack, bvh);
     RayStats stats;
+    const std::size_t count = grid.size();
     for (std::size_t at; (at = next.fetch_add(kPiece, std::memory_order_relaxed)) < count;) {
       HWY_DYNAMIC_DISPATCH(cast)
       (bvh.nodes().data(), grid.prepared.data(), grid.order.data() + at, std::min(kPiece, count - at),
        together, hits.object.data(), hits.distance.data(), &stack, &stats);
     }
     met += stats.hits, nodes += stats.nodes, boxes += stats.boxes;
-  });
-  hits.stats.hits = met, hits.stats.nodes = nodes, hits.stats.boxes = boxes;
+  }
+};
+
+}  // namespace
+
+void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, const JobSystem& jobs,
+               std::span<WideStack> stacks, RayHits& hits) {
+  hits.reset(grid.size());
+  if (bvh.nodes().empty()) return;
+  SharedGrid shared{bvh, grid, stacks, hits, go_together(bvh, grid.size())};
+  const auto run = [](void* data, std::uint32_t job) { static_cast<SharedGrid*>(data)->cast_pieces(job); };
+  const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(jobs.threads, stacks.size()));
+  if (jobs.run && count > 1) {
+    jobs.run(jobs.user, count, run, &shared);
+  } else {
+    run(&shared, 0);
+  }
+  hits.stats.hits = shared.met, hits.stats.nodes = shared.nodes, hits.stats.boxes = shared.boxes;
 }
 
 }  // namespace sightline::rays

@@ -3,9 +3,9 @@
 
 #include <span>
 
+#include <sightline/jobs.hpp>
 #include <sightline/ray.hpp>
 
-#include "library/rays/crew.hpp"
 #include "library/rays/ray_grid.hpp"
 #include "library/rays/ray_hits.hpp"
 #include "library/rays/wide_bvh.hpp"
@@ -29,9 +29,9 @@ void cast_wide(const rays::WideBvh& bvh, std::span<const PreparedRay> rays,
 /// A whole grid, tile by tile, into a result that is reset first.
 void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits);
 
-/// The same shared out over a crew, a stack for each of its threads: the same result, statistics included,
-/// for any number of them.
-void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, Crew& crew, std::span<WideStack> stacks,
-               RayHits& hits);
+/// The same shared out over at most jobs.threads jobs, one for each of `stacks` (at least one): the same
+/// result, statistics included, for any number of them.
+void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, const JobSystem& jobs,
+               std::span<WideStack> stacks, RayHits& hits);
 
 }  // namespace sightline::rays

@@ -1,27 +1,27 @@
 // One ray down a wide tree, for every SIMD width. Included by files that foreach_target compiles again and
 // again.
-#if defined(SIGHTLINE_PVS_WIDE_WALK_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIGHTLINE_PVS_WIDE_WALK_INL
-#undef SIGHTLINE_PVS_WIDE_WALK_INL
+#if defined(SIGHTLINE_RAYS_WIDE_WALK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_RAYS_WIDE_WALK_INL
+#undef SIGHTLINE_RAYS_WIDE_WALK_INL
 #else
-#define SIGHTLINE_PVS_WIDE_WALK_INL
+#define SIGHTLINE_RAYS_WIDE_WALK_INL
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <bit>
 
 #include <sightline/ray.hpp>
 
+#include "library/geometry/simd-inl.hpp"
 #include "library/rays/wide_bvh.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::rays::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using rays::kWide;
-using rays::WideNode;
+using geometry::HWY_NAMESPACE::bits_of;
+using geometry::HWY_NAMESPACE::prefetch_lines;
 using F = hn::CappedTag<float, kWide>;
 using VF = hn::Vec<F>;
 
@@ -62,9 +62,7 @@ HWY_INLINE std::uint32_t test(const WideSlab (&slabs)[3], const WideNode& node, 
     auto hit = hn::Le(entry, exit);
     if (kParallel) hit = hn::And(hit, inside);
     hn::Store(entry, f, t + part);
-    std::uint8_t some[8] = {};
-    hn::StoreMaskBits(f, hit, some);
-    bits |= std::uint32_t{some[0]} << part;
+    bits |= bits_of(f, hit) << part;
   }
   return bits;
 }
@@ -72,12 +70,6 @@ HWY_INLINE std::uint32_t test(const WideSlab (&slabs)[3], const WideNode& node, 
 // What waits: the distance's bits above, so that entries sort by it, and the child below.
 HWY_INLINE std::uint64_t waiting(float distance, std::uint32_t child) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | child;
-}
-
-// Large trees live in memory: a node is on its way while others are looked at.
-HWY_INLINE void prefetch(const WideNode& node) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&node);
-  for (std::size_t line = 0; line < sizeof(WideNode); line += 64) hwy::Prefetch(bytes + line);
 }
 
 struct Work {

@@ -1,26 +1,17 @@
-// Bounds above the chunks: blocks and the quadtree's nodes, and what others read of a chunk.
+// Bounds above the chunks: groups and the quadtree's nodes, and what others read of a chunk.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "library/geometry/box_math.hpp"
 #include "library/world/chunk_map.hpp"
+#include "library/world/free_list.hpp"
 
 namespace sightline::world {
 
+using namespace geometry;
+
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Box kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-
-Box united(const Box& a, const Box& b) {
-  return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
-          {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
-}
-
-bool holds(const Box& outer, const Box& inner) {
-  return outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
-         outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z;
-}
 
 // Whether taking `inner` away can make `outer` smaller.
 bool touches(const Box& outer, const Box& inner) {
@@ -65,21 +56,21 @@ Box ChunkMap::tight(const Chunk& c) const noexcept {
   return world::bounds_of([&](std::uint32_t side) { return lanes(c, side); }, c.count);
 }
 
-Box ChunkMap::tight(const Block& block) const noexcept {
-  return world::bounds_of([&](std::uint32_t side) { return block.bounds[side].data(); }, block.count);
+Box ChunkMap::tight(const Group& group) const noexcept {
+  return world::bounds_of([&](std::uint32_t side) { return group.bounds[side].data(); }, group.count);
 }
 
 Box ChunkMap::chunk_bounds(std::uint32_t chunk) const noexcept {
   const Chunk& c = chunks_[chunk];
-  const auto& b = blocks_[c.block].bounds;
-  const std::uint32_t i = c.index_in_block;
+  const auto& b = groups_[c.group].bounds;
+  const std::uint32_t i = c.index_in_group;
   return {{b[0][i], b[1][i], b[2][i]}, {b[3][i], b[4][i], b[5][i]}};
 }
 
 void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
   const Chunk& c = chunks_[chunk];
-  auto& b = blocks_[c.block].bounds;
-  const std::uint32_t i = c.index_in_block;
+  auto& b = groups_[c.group].bounds;
+  const std::uint32_t i = c.index_in_group;
   b[0][i] = box.min.x, b[1][i] = box.min.y, b[2][i] = box.min.z;
   b[3][i] = box.max.x, b[4][i] = box.max.y, b[5][i] = box.max.z;
 }
@@ -87,17 +78,17 @@ void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
 void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
   const Box bounds = chunk_bounds(chunk);
   if (holds(bounds, box)) return;
-  set_bounds(chunk, world::united(bounds, box));
-  extend_block(chunks_[chunk].block, box);
+  set_bounds(chunk, united(bounds, box));
+  extend_group(chunks_[chunk].group, box);
 }
 
-// Where the chunk's objects lie and how many they are, for those who read the block.
+// Where the chunk's objects lie and how many they are, for those who read the group.
 void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
   const Chunk& c = chunks_[chunk];
-  if (c.block == kNone) return;
-  Block& b = blocks_[c.block];
-  b.first_lane[c.index_in_block] = c.first_lane;
-  b.count_and_size[c.index_in_block] = c.count | (c.capacity == kSmallCapacity ? Block::kSmall : 0);
+  if (c.group == kNone) return;
+  Group& b = groups_[c.group];
+  b.first_lane[c.index_in_group] = c.first_lane;
+  b.count_and_size[c.index_in_group] = c.count | (c.capacity == kSmallCapacity ? Group::kSmall : 0);
 }
 
 void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {
@@ -109,18 +100,18 @@ void ChunkMap::BoxRows::resize(std::size_t count) {
   for (auto& side : sides) side.resize((count + 15) / 16 * 16);
 }
 
-void ChunkMap::set_box(std::uint32_t block, const Box& box) noexcept {
-  Block& b = blocks_[block];
+void ChunkMap::set_box(std::uint32_t group, const Box& box) noexcept {
+  Group& b = groups_[group];
   b.box = box;
-  nodes_[b.node].block_boxes.set(b.index_in_node, box);
+  nodes_[b.node].group_boxes.set(b.index_in_node, box);
 }
 
-void ChunkMap::extend_block(std::uint32_t block, const Box& box) noexcept {
-  Block& b = blocks_[block];
+void ChunkMap::extend_group(std::uint32_t group, const Box& box) noexcept {
+  Group& b = groups_[group];
   if (holds(b.box, box)) return;
-  set_box(block, world::united(b.box, box));
+  set_box(group, united(b.box, box));
   for (std::uint32_t n = b.node; n != kNone && !holds(nodes_[n].bounds, box); n = nodes_[n].parent) {
-    nodes_[n].bounds = world::united(nodes_[n].bounds, box);
+    nodes_[n].bounds = united(nodes_[n].bounds, box);
   }
 }
 
@@ -131,14 +122,14 @@ void ChunkMap::shrink(std::uint32_t chunk, const Box& gone) noexcept {
   const Box now = tight(chunks_[chunk]);
   if (now == before) return;
   set_bounds(chunk, now);
-  shrink_block(chunks_[chunk].block, before);
+  shrink_group(chunks_[chunk].group, before);
 }
 
-void ChunkMap::shrink_block(std::uint32_t block, const Box& gone) noexcept {
-  Block& b = blocks_[block];
+void ChunkMap::shrink_group(std::uint32_t group, const Box& gone) noexcept {
+  Group& b = groups_[group];
   if (!touches(b.box, gone)) return;
   const Box before = b.box;
-  set_box(block, tight(b));
+  set_box(group, tight(b));
   if (b.box != before) loosen(b.node, before);
 }
 
@@ -156,137 +147,126 @@ void ChunkMap::tighten() {
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents
     if (!loose_[n]) continue;
     loose_[n] = 0;
-    Box box = kNothing;
-    for (const std::uint32_t block : nodes_[n].blocks) box = world::united(box, blocks_[block].box);
+    Box box = kEmptyBox;
+    for (const std::uint32_t group : nodes_[n].groups) box = united(box, groups_[group].box);
     if (nodes_[n].first_child != kNone) {
-      for (int i = 0; i < 4; ++i) box = world::united(box, nodes_[nodes_[n].first_child + i].bounds);
+      for (int i = 0; i < 4; ++i) box = united(box, nodes_[nodes_[n].first_child + i].bounds);
     }
     nodes_[n].bounds = box;
   }
 }
 
-// --- blocks ---
+// --- groups ---
 
-void ChunkMap::add_objects(std::uint32_t block, std::int32_t change) noexcept {
-  if (block == kNone) return;
-  blocks_[block].objects += static_cast<std::uint32_t>(change);
-  for (std::uint32_t n = blocks_[block].node; n != kNone; n = nodes_[n].parent) {
+void ChunkMap::add_objects(std::uint32_t group, std::int32_t change) noexcept {
+  if (group == kNone) return;
+  groups_[group].objects += static_cast<std::uint32_t>(change);
+  for (std::uint32_t n = groups_[group].node; n != kNone; n = nodes_[n].parent) {
     nodes_[n].objects += static_cast<std::uint32_t>(change);
   }
 }
 
-std::uint32_t ChunkMap::add_block(std::uint32_t node) {
-  std::uint32_t block;
-  if (free_blocks_.empty()) {
-    block = static_cast<std::uint32_t>(blocks_.size());
-    blocks_.emplace_back();
-  } else {
-    block = free_blocks_.back();
-    free_blocks_.pop_back();
-    blocks_[block] = {};
-  }
-  blocks_[block].node = node;
-  blocks_[block].index_in_node = static_cast<std::uint32_t>(nodes_[node].blocks.size());
-  nodes_[node].blocks.push_back(block);
-  nodes_[node].block_boxes.resize(nodes_[node].blocks.size());
-  set_box(block, kNothing);
-  return block;
+std::uint32_t ChunkMap::add_group(std::uint32_t node) {
+  const std::uint32_t group = take_element(groups_, free_groups_);
+  groups_[group] = {};
+  groups_[group].node = node;
+  groups_[group].index_in_node = static_cast<std::uint32_t>(nodes_[node].groups.size());
+  nodes_[node].groups.push_back(group);
+  nodes_[node].group_boxes.resize(nodes_[node].groups.size());
+  set_box(group, kEmptyBox);
+  return group;
 }
 
-// Puts a chunk and its objects into `block`, or into any of its region where that is kNone.
-void ChunkMap::put_in_block(std::uint32_t chunk, std::uint32_t block, const Box& bounds) {
+// Puts a chunk and its objects into `group`, or into any of its region where that is kNone.
+void ChunkMap::put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds) {
   const std::uint32_t node = keys_[chunks_[chunk].key].node;
-  if (block == kNone) {
-    const auto& all = nodes_[node].blocks;
-    block = !all.empty() && blocks_[all.back()].count < kBlockCapacity ? all.back() : add_block(node);
-  } else if (blocks_[block].count == kBlockCapacity) {
-    split_block(block, bounds);
-    block = keep_in_;
+  if (group == kNone) {
+    const auto& all = nodes_[node].groups;
+    group = !all.empty() && groups_[all.back()].count < kGroupCapacity ? all.back() : add_group(node);
+  } else if (groups_[group].count == kGroupCapacity) {
+    group = split_group(group, bounds);
   }
   Chunk& c = chunks_[chunk];
-  Block& b = blocks_[block];
-  c.block = block;
-  c.index_in_block = b.count;
+  Group& b = groups_[group];
+  c.group = group;
+  c.index_in_group = b.count;
   b.chunks[b.count++] = chunk;
   set_bounds(chunk, bounds);
   note_shape(chunk);
-  add_objects(block, static_cast<std::int32_t>(c.count));
-  extend_block(block, bounds);
+  add_objects(group, static_cast<std::int32_t>(c.count));
+  extend_group(group, bounds);
 }
 
-void ChunkMap::take_from_block(std::uint32_t chunk) {
+void ChunkMap::take_from_group(std::uint32_t chunk) {
   Chunk& c = chunks_[chunk];
-  const std::uint32_t block = c.block;
-  Block& b = blocks_[block];
+  const std::uint32_t group = c.group;
+  Group& b = groups_[group];
   const Box before = chunk_bounds(chunk);
   const std::uint32_t last = --b.count;
-  if (c.index_in_block != last) {
-    for (auto& side : b.bounds) side[c.index_in_block] = side[last];
-    b.chunks[c.index_in_block] = b.chunks[last];
-    b.first_lane[c.index_in_block] = b.first_lane[last];
-    b.count_and_size[c.index_in_block] = b.count_and_size[last];
-    chunks_[b.chunks[last]].index_in_block = c.index_in_block;
+  if (c.index_in_group != last) {
+    for (auto& side : b.bounds) side[c.index_in_group] = side[last];
+    b.chunks[c.index_in_group] = b.chunks[last];
+    b.first_lane[c.index_in_group] = b.first_lane[last];
+    b.count_and_size[c.index_in_group] = b.count_and_size[last];
+    chunks_[b.chunks[last]].index_in_group = c.index_in_group;
   }
-  c.block = kNone;
-  if (b.count > 0) return shrink_block(block, before);
-  auto& all = nodes_[b.node].blocks;
+  c.group = kNone;
+  if (b.count > 0) return shrink_group(group, before);
+  auto& all = nodes_[b.node].groups;
   all[b.index_in_node] = all.back();
-  blocks_[all.back()].index_in_node = b.index_in_node;
-  if (all.back() != block) set_box(all.back(), blocks_[all.back()].box);
+  groups_[all.back()].index_in_node = b.index_in_node;
+  if (all.back() != group) set_box(all.back(), groups_[all.back()].box);
   all.pop_back();
-  nodes_[b.node].block_boxes.resize(all.size());
+  nodes_[b.node].group_boxes.resize(all.size());
   loosen(b.node, b.box);
-  free_blocks_.push_back(block);
+  free_groups_.push_back(group);
 }
 
-// Moves the upper half of a full block's chunks, along the longest axis of their centres, to a new block, and
-// leaves in keep_in_ the one nearer to `newcomer`.
-void ChunkMap::split_block(std::uint32_t block, const Box& newcomer) {
-  const std::uint32_t added = add_block(blocks_[block].node);
-  Block &low = blocks_[block], &high = blocks_[added];
+// Moves the upper half of a full group's chunks, along the longest axis of their centres, to a new group.
+// Returns the one nearer to `newcomer`.
+std::uint32_t ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
+  const std::uint32_t added = add_group(groups_[group].node);
+  Group &low = groups_[group], &high = groups_[added];
   std::uint32_t axis = 0;
   float longest = -1;
-  std::array<float, kBlockCapacity> centre{};
+  std::array<float, kGroupCapacity> centre{};
   const auto middle = [&](std::uint32_t a, std::uint32_t i) {
     return 0.5f * low.bounds[a][i] + 0.5f * low.bounds[a + 3][i];
   };
   for (std::uint32_t a = 0; a < 3; ++a) {
     float least = kInfinity, most = -kInfinity;
-    for (std::uint32_t i = 0; i < kBlockCapacity; ++i) {
+    for (std::uint32_t i = 0; i < kGroupCapacity; ++i) {
       least = std::min(least, middle(a, i)), most = std::max(most, middle(a, i));
     }
     if (most - least > longest) longest = most - least, axis = a;
   }
-  std::array<std::uint32_t, kBlockCapacity> order{};
-  for (std::uint32_t i = 0; i < kBlockCapacity; ++i) order[i] = i, centre[i] = middle(axis, i);
+  std::array<std::uint32_t, kGroupCapacity> order{};
+  for (std::uint32_t i = 0; i < kGroupCapacity; ++i) order[i] = i, centre[i] = middle(axis, i);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return centre[a] != centre[b] ? centre[a] < centre[b] : a < b;
   });
-  const Block old = low;
+  const Group old = low;
   low.count = high.count = 0;
   std::uint32_t moved_objects = 0;
-  for (std::uint32_t k = 0; k < kBlockCapacity; ++k) {
+  for (std::uint32_t k = 0; k < kGroupCapacity; ++k) {
     const std::uint32_t from = order[k], chunk = old.chunks[from];
-    const bool up = k >= kBlockCapacity / 2;
-    Block& to = up ? high : low;
+    const bool up = k >= kGroupCapacity / 2;
+    Group& to = up ? high : low;
     const std::uint32_t i = to.count++;
     for (std::uint32_t side = 0; side < 6; ++side) to.bounds[side][i] = old.bounds[side][from];
     to.chunks[i] = chunk;
     to.first_lane[i] = old.first_lane[from];
     to.count_and_size[i] = old.count_and_size[from];
-    chunks_[chunk].block = up ? added : block;
-    chunks_[chunk].index_in_block = i;
+    chunks_[chunk].group = up ? added : group;
+    chunks_[chunk].index_in_group = i;
     if (up) moved_objects += chunks_[chunk].count;
   }
-  set_box(block, tight(low));
+  set_box(group, tight(low));
   set_box(added, tight(high));
   low.objects -= moved_objects;
   high.objects += moved_objects;
-  const float at = centre[order[kBlockCapacity / 2]];
-  const float to = axis == 0   ? 0.5f * newcomer.min.x + 0.5f * newcomer.max.x
-                   : axis == 1 ? 0.5f * newcomer.min.y + 0.5f * newcomer.max.y
-                               : 0.5f * newcomer.min.z + 0.5f * newcomer.max.z;
-  keep_in_ = to >= at ? added : block;
+  const float at = centre[order[kGroupCapacity / 2]];
+  return coordinate(centre_of(newcomer), axis) >= at ? added : group;
 }
 
 // --- what others read ---

@@ -1,36 +1,23 @@
-// Keys, chunks and the k-d tree inside a key; blocks and bounds are in chunk_bounds.cpp.
+// Keys, chunks and objects; the k-d tree inside a key is in chunk_tree.cpp, groups and bounds in
+// chunk_bounds.cpp.
 #include "library/world/chunk_map.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "library/geometry/box_math.hpp"
+#include "library/world/free_list.hpp"
 
 namespace sightline::world {
 
+using namespace geometry;
+
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Box kEverywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
-
-// A k-d reference is a split, or a chunk with the highest bit set.
-constexpr std::uint32_t kChunkBit = 0x80000000u;
-constexpr bool is_chunk(std::uint32_t reference) {
-  return reference & kChunkBit;
-}
-
-Vec3 centre_of(const Box& b) {
-  return {0.5f * b.min.x + 0.5f * b.max.x, 0.5f * b.min.y + 0.5f * b.max.y, 0.5f * b.min.z + 0.5f * b.max.z};
-}
-
-float axis_of(const Vec3& v, std::uint32_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-float& axis_of(Vec3& v, std::uint32_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
+constexpr Box kEverywhere{kEmptyBox.max, kEmptyBox.min};
 
 // Half open, as the splits are.
-bool holds(const Box& cell, const Vec3& p) {
+bool holds_centre(const Box& cell, const Vec3& p) {
   return p.x >= cell.min.x && p.x < cell.max.x && p.y >= cell.min.y && p.y < cell.max.y &&
          p.z >= cell.min.z && p.z < cell.max.z;
 }
@@ -69,7 +56,7 @@ void ChunkMap::build_nodes() {
     }
     first = end;
   }
-  for (Node& node : nodes_) node.bounds = {kEverywhere.max, kEverywhere.min};
+  for (Node& node : nodes_) node.bounds = kEmptyBox;
   loose_.assign(nodes_.size(), 0);
 }
 
@@ -112,7 +99,7 @@ std::uint32_t ChunkMap::find_chunk(const Key& key, const Vec3& centre) const noe
   std::uint32_t at = key.root;
   while (!is_chunk(at)) {
     const Split& split = splits_[at];
-    at = split.child[axis_of(centre, split.axis) >= split.at];
+    at = split.child[coordinate(centre, split.axis) >= split.at];
   }
   return at & ~kChunkBit;
 }
@@ -154,26 +141,17 @@ void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, c
 }
 
 std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell) {
-  std::uint32_t chunk;
-  if (free_chunks_.empty()) {
-    chunk = static_cast<std::uint32_t>(chunks_.size());
-    chunks_.emplace_back();
-  } else {
-    chunk = free_chunks_.back();
-    free_chunks_.pop_back();
-    const bool changed = chunks_[chunk].changed;
-    chunks_[chunk] = {};
-    chunks_[chunk].changed = changed;
-  }
-  const std::uint32_t first = take_lanes(capacity);
-  Chunk& c = chunks_[chunk];
-  c.key = key, c.capacity = capacity, c.first_lane = first, c.cell = cell;
+  const std::uint32_t chunk = take_element(chunks_, free_chunks_);
+  Chunk added;
+  added.key = key, added.capacity = capacity, added.first_lane = take_lanes(capacity), added.cell = cell;
+  added.changed = chunks_[chunk].changed;  // its number may still stand among the changed
+  chunks_[chunk] = added;
   note_change(chunk);
   return chunk;
 }
 
 void ChunkMap::free_chunk(std::uint32_t chunk) {
-  take_from_block(chunk);
+  take_from_group(chunk);
   Chunk& c = chunks_[chunk];
   give_lanes(c.first_lane, c.capacity);
   c.count = 0;
@@ -205,163 +183,15 @@ void ChunkMap::acknowledge_changes() noexcept {
   changed_.clear();
 }
 
-// --- the k-d tree of a key ---
-
-void ChunkMap::replace_reference(std::uint32_t key, std::uint32_t parent, std::uint32_t from,
-                                 std::uint32_t to) noexcept {
-  if (parent == kNone) {
-    keys_[key].root = to;
-  } else {
-    auto& child = splits_[parent].child;
-    child[child[1] == from] = to;
-  }
-}
-
-// Halves a full chunk at the median of its centres along their longest axis. False where all are one point.
-bool ChunkMap::split(std::uint32_t chunk) {
-  const std::uint32_t count = chunks_[chunk].count;
-  std::array<Vec3, kCapacity> centres;
-  Box spread{kEverywhere.max, kEverywhere.min};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3 p = centres[i] = centre_of(box_at(chunks_[chunk], i));
-    spread.min = {std::min(spread.min.x, p.x), std::min(spread.min.y, p.y), std::min(spread.min.z, p.z)};
-    spread.max = {std::max(spread.max.x, p.x), std::max(spread.max.y, p.y), std::max(spread.max.z, p.z)};
-  }
-  std::uint32_t axis = 0;
-  float longest = 0;
-  for (std::uint32_t a = 0; a < 3; ++a) {
-    const float length = axis_of(spread.max, a) - axis_of(spread.min, a);
-    if (length > longest) longest = length, axis = a;
-  }
-  if (!(longest > 0)) return false;
-  std::array<float, kCapacity> values{};
-  for (std::uint32_t i = 0; i < count; ++i) values[i] = axis_of(centres[i], axis);
-  std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
-  float at = values[count / 2];
-  const float lowest = axis_of(spread.min, axis);
-  if (at == lowest) {  // nothing would be below: take the next value up
-    at = axis_of(spread.max, axis);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (values[i] > lowest) at = std::min(at, values[i]);
-    }
-  }
-
-  const std::uint32_t added = add_chunk(chunks_[chunk].key, kCapacity, chunks_[chunk].cell);
-  Chunk &low = chunks_[chunk], &high = chunks_[added];
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const ObjectId object = ids_[low.first_lane + i];
-    const Box box = box_at(low, i);
-    if (axis_of(centres[i], axis) >= at) {
-      write(added, high.count++, object, box);
-    } else {
-      if (kept != i) write(chunk, kept, object, box);
-      ++kept;
-    }
-  }
-  low.count = kept;
-  axis_of(low.cell.max, axis) = at;
-  axis_of(high.cell.min, axis) = at;
-
-  std::uint32_t node;
-  if (free_splits_.empty()) {
-    node = static_cast<std::uint32_t>(splits_.size());
-    splits_.emplace_back();
-  } else {
-    node = free_splits_.back();
-    free_splits_.pop_back();
-  }
-  splits_[node] = {at, axis, low.parent, {chunk | kChunkBit, added | kChunkBit}};
-  replace_reference(low.key, low.parent, chunk | kChunkBit, node);
-  low.parent = high.parent = node;
-
-  const std::uint32_t block = low.block;
-  add_objects(block, -static_cast<std::int32_t>(high.count));
-  set_bounds(chunk, tight(low));
-  note_change(chunk);
-  put_in_block(added, block, tight(high));
-  return true;
-}
-
-// Gives `target` a chunk with room for the centre: `chunk`, one of its halves, or a new head of its chain.
-void ChunkMap::make_room(std::uint32_t chunk, const Vec3& centre, std::uint32_t& target) {
-  target = chunk;
-  if (chunks_[chunk].count < chunks_[chunk].capacity) return;
-  if (chunks_[chunk].capacity < kCapacity) return grow(chunk);
-  if (chunks_[chunk].next == kNone && split(chunk)) {
-    const Split& s = splits_[chunks_[chunk].parent];
-    target = s.child[axis_of(centre, s.axis) >= s.at] & ~kChunkBit;
-    return;
-  }
-  // All centres in one point: no plane parts them.
-  target = add_chunk(chunks_[chunk].key, kCapacity, chunks_[chunk].cell);
-  Chunk &head = chunks_[target], &old = chunks_[chunk];
-  head.parent = old.parent;
-  head.next = chunk;
-  old.previous = target;
-  replace_reference(head.key, head.parent, chunk | kChunkBit, target | kChunkBit);
-}
-
-// Takes an empty chunk out of its chain or tree, and frees it.
-void ChunkMap::unlink(std::uint32_t chunk) {
-  const Chunk c = chunks_[chunk];
-  if (c.next != kNone) chunks_[c.next].previous = c.previous;
-  if (c.previous != kNone) {
-    chunks_[c.previous].next = c.next;
-  } else if (c.next != kNone) {
-    replace_reference(c.key, c.parent, chunk | kChunkBit, c.next | kChunkBit);
-    chunks_[c.next].parent = c.parent;
-  } else if (c.parent == kNone) {
-    keys_[c.key].root = kNone;
-  } else {
-    // The sibling takes the place of the split. Its chunks' cells stay as they are: too small is only slower.
-    const Split split = splits_[c.parent];
-    const std::uint32_t sibling = split.child[split.child[0] == (chunk | kChunkBit)];
-    replace_reference(c.key, split.parent, c.parent, sibling);
-    if (is_chunk(sibling)) {
-      chunks_[sibling & ~kChunkBit].parent = split.parent;
-    } else {
-      splits_[sibling].parent = split.parent;
-    }
-    free_splits_.push_back(c.parent);
-  }
-  free_chunk(chunk);
-}
-
-// Joins a chunk that has become small with its sibling, where both together stay half empty.
-void ChunkMap::try_merge(std::uint32_t chunk) {
-  const Chunk& c = chunks_[chunk];
-  if (c.parent == kNone || c.next != kNone || c.previous != kNone || c.count > kCapacity / 4) return;
-  const Split& split = splits_[c.parent];
-  const std::uint32_t side = split.child[0] == (chunk | kChunkBit);
-  if (!is_chunk(split.child[side])) return;
-  const std::uint32_t sibling = split.child[side] & ~kChunkBit;
-  Chunk& s = chunks_[sibling];
-  if (s.next != kNone || s.count + c.count > kCapacity / 2 || s.count + c.count > s.capacity) return;
-  const Box moved = chunk_bounds(chunk);
-  for (std::uint32_t i = 0; i < c.count; ++i) write(sibling, s.count++, ids_[c.first_lane + i], box_at(c, i));
-  const auto taken = static_cast<std::int32_t>(c.count);
-  add_objects(c.block, -taken);
-  add_objects(s.block, taken);
-  extend(sibling, moved);
-  axis_of(s.cell.min, split.axis) =
-      std::min(axis_of(s.cell.min, split.axis), axis_of(c.cell.min, split.axis));
-  axis_of(s.cell.max, split.axis) =
-      std::max(axis_of(s.cell.max, split.axis), axis_of(c.cell.max, split.axis));
-  note_change(sibling);
-  chunks_[chunk].count = 0;
-  unlink(chunk);
-}
-
 // --- objects ---
 
 void ChunkMap::append(std::uint32_t chunk, ObjectId object, const Box& box) {
   const std::uint32_t slot = chunks_[chunk].count++;
   write(chunk, slot, object, box);
-  if (chunks_[chunk].block == kNone) {
-    put_in_block(chunk, kNone, box);
+  if (chunks_[chunk].group == kNone) {
+    put_in_group(chunk, kNone, box);
   } else {
-    add_objects(chunks_[chunk].block, 1);
+    add_objects(chunks_[chunk].group, 1);
     extend(chunk, box);
   }
   note_change(chunk);
@@ -372,14 +202,13 @@ void ChunkMap::insert(ObjectId object, const Box& box) {
     own_locations_.resize(object + std::size_t{1});
   const std::uint32_t key = find_key(regions(box));
   const Vec3 centre = centre_of(box);
-  std::uint32_t target;
   if (keys_[key].root == kNone) {
-    target = add_chunk(key, kSmallCapacity, kEverywhere);
-    keys_[key].root = target | kChunkBit;
+    const std::uint32_t first = add_chunk(key, kSmallCapacity, kEverywhere);
+    keys_[key].root = first | kChunkBit;
+    append(first, object, box);
   } else {
-    make_room(find_chunk(keys_[key], centre), centre, target);
+    append(make_room(find_chunk(keys_[key], centre), centre), object, box);
   }
-  append(target, object, box);
   ++size_;
 }
 
@@ -403,7 +232,7 @@ void ChunkMap::remove(ObjectId object) {
   erase_slot(at.chunk, at.slot);
   (*locations_)[object] = {};
   --size_;
-  add_objects(chunks_[at.chunk].block, -1);
+  add_objects(chunks_[at.chunk].group, -1);
   note_change(at.chunk);
   if (chunks_[at.chunk].count == 0) return unlink(at.chunk);
   shrink(at.chunk, box);
@@ -413,7 +242,7 @@ void ChunkMap::remove(ObjectId object) {
 void ChunkMap::move(ObjectId object, const Box& box) {
   const Location at = (*locations_)[object];
   Chunk& c = chunks_[at.chunk];
-  if (keys_[c.key].regions == regions(box) && holds(c.cell, centre_of(box))) {
+  if (keys_[c.key].regions == regions(box) && holds_centre(c.cell, centre_of(box))) {
     const Box old = box_at(c, at.slot);
     write(at.chunk, at.slot, object, box);
     extend(at.chunk, box);

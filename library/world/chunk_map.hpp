@@ -5,8 +5,8 @@
 // regions its box touches: one region makes its chunk an own chunk, several make it a chunk shared by exactly
 // those. As boxes lie along the axes the set is always a rectangle of leaf regions, so four numbers are its
 // key. Within a key, chunks split by a k-d tree over the box centres when they are full. Above the chunks
-// stand blocks of up to 32 chunks, and above these the quadtree's nodes; bounds are tight unions at every
-// chunk and block, and never too small at a node.
+// stand groups of up to 32 chunks, and above these the quadtree's nodes; bounds are tight unions at every
+// chunk and group, and never too small at a node.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kCapacity = 96;       ///< objects a chunk; a multiple of every SIMD width
   static constexpr std::uint32_t kSmallCapacity = 16;  ///< of a chunk that has never held more
-  static constexpr std::uint32_t kBlockCapacity = 32;  ///< chunks a block
+  static constexpr std::uint32_t kGroupCapacity = 32;  ///< chunks a group
   static constexpr std::uint32_t kMaxDepth = 6;
 
   /// Where an object stands.
@@ -68,15 +68,15 @@ public:
   };
 
   /// Bounds of up to 32 chunks, one array a coordinate in the order of ChunkView.
-  struct alignas(64) Block {
-    std::array<std::array<float, kBlockCapacity>, 6> bounds{};
-    std::array<std::uint32_t, kBlockCapacity> chunks{};
+  struct alignas(64) Group {
+    std::array<std::array<float, kGroupCapacity>, 6> bounds{};
+    std::array<std::uint32_t, kGroupCapacity> chunks{};
     /// Of each chunk, what ChunkMap::chunk() would look up elsewhere: where its lanes begin, and how many
     /// objects it holds, with kSmall set where it has kSmallCapacity.
-    std::array<std::uint32_t, kBlockCapacity> first_lane{}, count_and_size{};
+    std::array<std::uint32_t, kGroupCapacity> first_lane{}, count_and_size{};
     static constexpr std::uint32_t kSmall = 0x80000000u;
     Box box;                  ///< of all of them
-    std::uint32_t count = 0;  ///< 0: the block is free
+    std::uint32_t count = 0;  ///< 0: the group is free
     std::uint32_t node = 0, index_in_node = 0;
     std::uint32_t objects = 0;
   };
@@ -93,9 +93,9 @@ public:
     Box bounds;  ///< holds all objects below; min > max where there are none
     std::uint32_t parent = kNone;
     std::uint32_t first_child = kNone;  ///< the four children lie at first_child … +3
-    std::uint32_t objects = 0;          ///< in all blocks here and below
-    std::vector<std::uint32_t> blocks;  ///< of the keys whose smallest common region this is
-    BoxRows block_boxes;                ///< of these
+    std::uint32_t objects = 0;          ///< in all groups here and below
+    std::vector<std::uint32_t> groups;  ///< of the keys whose smallest common region this is
+    BoxRows group_boxes;                ///< of these
   };
 
   /// The location table is the map's own unless the caller brings one, which must outlive the map and hold an
@@ -132,10 +132,10 @@ public:
             ids_.data() + c.first_lane,
             c.count};
   }
-  /// The chunk at place i of a block.
-  [[nodiscard]] ChunkView chunk(const Block& block, std::uint32_t i) const noexcept {
-    const std::uint32_t first = block.first_lane[i], size = block.count_and_size[i];
-    const std::size_t step = size & Block::kSmall ? kSmallCapacity : kCapacity;
+  /// The chunk at place i of a group.
+  [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
+    const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
+    const std::size_t step = size & Group::kSmall ? kSmallCapacity : kCapacity;
     const float* at = lanes_.data() + 6 * std::size_t{first};
     return {at,
             at + step,
@@ -144,7 +144,7 @@ public:
             at + 4 * step,
             at + 5 * step,
             ids_.data() + first,
-            size & ~Block::kSmall};
+            size & ~Group::kSmall};
   }
   /// Tight union of the chunk's boxes.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;
@@ -155,14 +155,14 @@ public:
   std::uint32_t write_vertices(std::uint32_t chunk, std::span<ChunkVertex> out) const noexcept;
 
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
-  [[nodiscard]] std::span<const Block> blocks() const noexcept { return blocks_; }
+  [[nodiscard]] std::span<const Group> groups() const noexcept { return groups_; }
 
   /// Chunks whose objects or boxes changed since the last acknowledge_changes(), freed ones included.
   [[nodiscard]] std::span<const std::uint32_t> changed_chunks() const noexcept { return changed_; }
   void acknowledge_changes() noexcept;
 
   /// Shrinks the bounds of quadtree nodes that moves and removals left too large; and once most chunks stand
-  /// where there happened to be room, puts neighbours' lanes side by side: who reads a block then reads few
+  /// where there happened to be room, puts neighbours' lanes side by side: who reads a group then reads few
   /// pages of memory, and looking a page up costs more than reading a line of it. Spread over the insertions
   /// between, that copies each object less than thrice. ChunkViews are void afterwards.
   void tighten();
@@ -176,7 +176,7 @@ private:
     std::uint32_t first_lane = 0, capacity = 0, count = 0;
     std::uint32_t key = kNone, parent = kNone;
     std::uint32_t next = kNone, previous = kNone;  // chunks that could not be split: all centres equal
-    std::uint32_t block = kNone, index_in_block = 0;
+    std::uint32_t group = kNone, index_in_group = 0;
     bool changed = false;
   };
   struct Key {
@@ -184,6 +184,10 @@ private:
     std::uint32_t node = 0;      // of the quadtree
     std::uint32_t root = kNone;  // k-d reference
   };
+  // A k-d reference is a split, or a chunk with the highest bit set.
+  static constexpr std::uint32_t kChunkBit = 0x80000000u;
+  static constexpr bool is_chunk(std::uint32_t reference) { return reference & kChunkBit; }
+
   struct Split {
     float at = 0;
     std::uint32_t axis = 0, parent = kNone;
@@ -204,7 +208,7 @@ private:
   std::uint32_t find_chunk(const Key& key, const Vec3& centre) const noexcept;
   std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell);
   void free_chunk(std::uint32_t chunk);
-  void make_room(std::uint32_t chunk, const Vec3& centre, std::uint32_t& target);
+  std::uint32_t make_room(std::uint32_t chunk, const Vec3& centre);
   bool split(std::uint32_t chunk);
   void grow(std::uint32_t chunk);
   void unlink(std::uint32_t chunk);
@@ -219,19 +223,22 @@ private:
   void note_shape(std::uint32_t chunk) noexcept;
   void arrange();
 
-  std::uint32_t add_block(std::uint32_t node);
-  void put_in_block(std::uint32_t chunk, std::uint32_t block, const Box& bounds);
-  void take_from_block(std::uint32_t chunk);
-  void split_block(std::uint32_t block, const Box& newcomer);
-  void add_objects(std::uint32_t block, std::int32_t change) noexcept;
+  std::uint32_t add_group(std::uint32_t node);
+  void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);
+  void take_from_group(std::uint32_t chunk);
+  std::uint32_t split_group(std::uint32_t group, const Box& newcomer);
+  void add_objects(std::uint32_t group, std::int32_t change) noexcept;
   void set_bounds(std::uint32_t chunk, const Box& box) noexcept;
   void extend(std::uint32_t chunk, const Box& box) noexcept;
-  void set_box(std::uint32_t block, const Box& box) noexcept;
-  void extend_block(std::uint32_t block, const Box& box) noexcept;
+  void set_box(std::uint32_t group, const Box& box) noexcept;
+  void extend_group(std::uint32_t group, const Box& box) noexcept;
   void shrink(std::uint32_t chunk, const Box& gone) noexcept;
-  void shrink_block(std::uint32_t block, const Box& gone) noexcept;
+  void shrink_group(std::uint32_t group, const Box& gone) noexcept;
+  Check check_chunk(std::uint32_t chunk) const;
+  Check check_group(std::uint32_t group) const;
+  Check check_node(std::uint32_t node) const;
   Box tight(const Chunk& chunk) const noexcept;
-  Box tight(const Block& block) const noexcept;
+  Box tight(const Group& group) const noexcept;
   void loosen(std::uint32_t node, const Box& gone) noexcept;
 
   ChunkMapOptions options_;
@@ -244,14 +251,13 @@ private:
   std::vector<Split> splits_;
   std::vector<Key> keys_;
   std::unordered_map<std::uint32_t, std::uint32_t> key_of_regions_;
-  geometry::LargeVector<Block> blocks_;
+  geometry::LargeVector<Group> groups_;
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;
-  std::size_t misplaced_ = 0;      // how many chunks took lanes anywhere since arrange()
-  std::uint32_t keep_in_ = kNone;  // split_block's answer
+  std::size_t misplaced_ = 0;  // how many chunks were given lanes anywhere since arrange()
 
-  std::vector<std::uint32_t> free_chunks_, free_splits_, free_blocks_, free_small_, free_large_;
+  std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_, free_small_, free_large_;
   std::vector<std::uint32_t> changed_;
   Locations own_locations_;
   Locations* locations_;
@@ -262,7 +268,7 @@ private:
 struct ChunkWalk {
   std::vector<std::uint32_t> inside;    ///< chunks wholly in the frustum
   std::vector<std::uint32_t> crossing;  ///< chunks whose bounds cross it
-  std::uint64_t nodes_visited = 0;      ///< regions, blocks and chunks looked at
+  std::uint64_t nodes_visited = 0;      ///< regions, groups and chunks looked at
 
   void clear() noexcept {
     inside.clear();

@@ -4,15 +4,15 @@
 namespace sightline::world {
 
 void ChunkMap::arrange() {
-  constexpr std::size_t kFew = 64;
-  if (misplaced_ < kFew || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
+  constexpr std::size_t kFewestWorthIt = 64;  // chunks: fewer lie in a few pages anyway
+  if (misplaced_ < kFewestWorthIt || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
   misplaced_ = 0;
   geometry::LargeVector<float> lanes;
   geometry::LargeVector<ObjectId> ids;
   lanes.reserve(lanes_.size()), ids.reserve(ids_.size());
   for (const Node& node : nodes_) {
-    for (const std::uint32_t block : node.blocks) {
-      Block& b = blocks_[block];
+    for (const std::uint32_t group : node.groups) {
+      Group& b = groups_[group];
       for (std::uint32_t i = 0; i < b.count; ++i) {
         Chunk& c = chunks_[b.chunks[i]];
         const std::ptrdiff_t from = c.first_lane, to = from + static_cast<std::ptrdiff_t>(c.capacity);

@@ -1,4 +1,4 @@
-// Culling a world: the regions and blocks are sorted here, one by one; what is left goes to the SIMD passes,
+// Culling a world: the regions and groups are sorted here, one by one; what is left goes to the SIMD passes,
 // in as many jobs as the caller has threads.
 #include <algorithm>
 #include <bit>
@@ -31,7 +31,7 @@ struct Job {
 struct CullerState {
   std::vector<const ChunkMap*> maps;  // of the sectors that some view may see
   std::vector<SectorView> views;      // of these
-  std::vector<BlockEntry> entries;
+  std::vector<GroupEntry> entries;
   std::array<Job, kMaxJobs> jobs;
   /// The plane that failed last, one a view and region: the next frame tries it first.
   std::vector<std::vector<std::uint8_t>> failed;  // by the world's sector
@@ -134,8 +134,8 @@ private:
     ++visited_;
     std::uint8_t* failed = failed_ + index * kMaxViews;
     if (node.objects == 0 || !narrow(node.bounds, planes, failed)) return;
-    visited_ += node.blocks.size();
-    find_blocks(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
+    visited_ += node.groups.size();
+    find_groups(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
                 state_.entries);
     if (node.first_child == ChunkMap::kNone) return;
     for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
@@ -153,17 +153,17 @@ void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
-  job.counts = cull_blocks(state.input, entries, state.out + job.first_output,
+  job.counts = cull_groups(state.input, entries, state.out + job.first_output,
                            state.masks ? state.masks + job.first_output : nullptr);
 }
 
 // Parts of about equally many objects; each writes to where it would stand if all were visible.
 std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
-  const auto objects_of = [&](const BlockEntry& e) {
-    return state.maps[e.sector]->blocks()[e.block].objects;
+  const auto objects_of = [&](const GroupEntry& e) {
+    return state.maps[e.sector]->groups()[e.group].objects;
   };
   std::size_t total = 0;
-  for (const BlockEntry& entry : state.entries) total += objects_of(entry);
+  for (const GroupEntry& entry : state.entries) total += objects_of(entry);
   std::uint32_t jobs = 0;
   std::size_t before = 0;
   for (std::size_t e = 0; e < state.entries.size(); ++e) {
@@ -197,6 +197,60 @@ DifferentViews different_views(std::span<const WorldView> views, const CullOptio
     out.bits[d] |= static_cast<std::uint8_t>(1u << v);
   }
   return out;
+}
+
+// Sorts the sectors: adds to the state those that some view may see, and their groups. Returns how many
+// regions and groups it looked at.
+std::uint64_t find_entries(CullerState& state, const World& world, std::span<const WorldView> views,
+                           const DifferentViews& different, const CullOptions& options) {
+  const auto& sectors = world.state().sectors;
+  const auto of_different = std::span(different.first).first(different.count);
+  state.maps.clear(), state.views.clear(), state.entries.clear();
+  for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]]);
+  // Room for all sectors, so that a camera that turns allocates nothing.
+  state.maps.reserve(sectors.size());
+  state.views.reserve(sectors.size() * different.count);
+  for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
+    state.failed.emplace_back();
+    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
+  }
+  std::uint64_t visited = 0;
+  for (std::size_t s = 0; s < sectors.size(); ++s) {
+    const Sector& sector = sectors[s];
+    if (!sector.map) continue;
+    bool missed = true;
+    for (std::size_t d = 0; d < different.count && missed; ++d)
+      missed = state.tests[d].misses(sector.origin, sector.bounds);
+    if (missed) {
+      ++visited;  // its root: that is what the walk would have looked at
+      continue;
+    }
+    const auto kept = static_cast<std::uint32_t>(state.maps.size());
+    state.maps.push_back(sector.map.get());
+    for (const std::uint8_t v : of_different) {
+      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
+      state.views.push_back(sector_view(views[v], sector, options, occlusion));
+    }
+    state.failed[s].resize(sector.map->nodes().size() * kMaxViews, 0);
+    visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
+  }
+  return visited;
+}
+
+// Moves what the jobs wrote together, and adds their counts to the result.
+void join_outputs(const CullerState& state, std::uint32_t jobs, CullResult& result) {
+  for (const Job& job : std::span(state.jobs).first(jobs)) {
+    if (job.first_output != result.count) {
+      std::memmove(state.out + result.count, state.out + job.first_output,
+                   job.counts.written * sizeof(ObjectId));
+      if (state.masks)
+        std::memmove(state.masks + result.count, state.masks + job.first_output, job.counts.written);
+    }
+    result.count += job.counts.written;
+    result.tested += job.counts.tested;
+    result.nodes_visited += job.counts.chunks;
+    result.culled_occlusion += job.counts.occluded;
+  }
 }
 
 CullError check_call(const World& world, std::span<const WorldView> views, const CullOptions& options,
@@ -238,39 +292,8 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   if (result.error != CullError::none) return result;
 
   world::CullerState& state = *state_;
-  const auto& sectors = world.state().sectors;
-  state.maps.clear(), state.views.clear(), state.entries.clear();
   const world::DifferentViews different = world::different_views(views, options);
-  const auto of_different = std::span(different.first).first(different.count);
-  for (std::size_t d = 0; d < different.count; ++d)
-    state.tests[d] = world::SectorTest(views[different.first[d]]);
-  // Room for all sectors, so that a camera that turns allocates nothing.
-  state.maps.reserve(sectors.size());
-  state.views.reserve(sectors.size() * different.count);
-  for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
-    state.failed.emplace_back();
-    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
-  }
-  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    if (!sectors[s].map) continue;
-    bool missed = true;
-    for (std::size_t d = 0; d < different.count && missed; ++d)
-      missed = state.tests[d].misses(sectors[s].origin, sectors[s].bounds);
-    if (missed) {
-      ++result.nodes_visited;  // its root: that is what the walk would have looked at
-      continue;
-    }
-    const auto kept = static_cast<std::uint32_t>(state.maps.size());
-    state.maps.push_back(sectors[s].map.get());
-    for (const std::uint8_t v : of_different) {
-      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
-      state.views.push_back(world::sector_view(views[v], sectors[s], options, occlusion));
-    }
-    std::vector<std::uint8_t>& failed = state.failed[s];
-    failed.resize(state.maps[kept]->nodes().size() * kMaxViews, 0);
-    result.nodes_visited += world::RegionWalk(state, kept, different.count, failed.data()).run();
-  }
-
+  result.nodes_visited = world::find_entries(state, world, views, different, options);
   state.input = {state.maps, state.views, different.count, different.bits};
   state.out = visible.data();
   state.masks = masks.empty() ? nullptr : masks.data();
@@ -281,19 +304,7 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
   } else if (jobs == 1) {
     world::run_job(&state, 0);
   }
-  for (std::uint32_t j = 0; j < jobs; ++j) {
-    const world::Job& job = state.jobs[j];
-    if (job.first_output != result.count) {
-      std::memmove(state.out + result.count, state.out + job.first_output,
-                   job.counts.written * sizeof(ObjectId));
-      if (state.masks)
-        std::memmove(state.masks + result.count, state.masks + job.first_output, job.counts.written);
-    }
-    result.count += job.counts.written;
-    result.tested += job.counts.tested;
-    result.nodes_visited += job.counts.chunks;
-    result.culled_occlusion += job.counts.occluded;
-  }
+  world::join_outputs(state, jobs, result);
   return result;
 }
 

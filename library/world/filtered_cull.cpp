@@ -2,7 +2,6 @@
 #include "library/world/world_cull.hpp"
 
 #include <bit>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "library/world/filtered_cull.cpp"
@@ -47,20 +46,20 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
 }
 
 // Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold.
-std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Block& block, const SectorView& view,
+std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& group, const SectorView& view,
                                  ChunkBits& bits) {
   std::uint64_t dropped = 0;
-  const auto& b = block.bounds;
-  std::array<std::uint8_t, kBlock> visible;
+  const auto& b = group.bounds;
+  std::array<std::uint8_t, kGroup> visible;
   occlusion::query_boxes(
       *view.occluders, view.projection,
-      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), block.count},
+      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
       visible.data());
   for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    dropped += map.chunk(block.chunks[i]).count;
+    dropped += map.chunk(group.chunks[i]).count;
   }
   return dropped;
 }
@@ -82,79 +81,75 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
   return dropped;
 }
 
+// The chunks of a group that a view may see.
+HWY_INLINE ChunkBits filter_chunks(const EntryGroup& at, const SectorView& view, PlaneSet planes,
+                                   std::uint64_t& dropped) {
+  if (planes == kOutside) return {};
+  ChunkBits bits = classify_chunks(at.group, view, planes);
+  if (view.occluders && bits.kept != 0) dropped += drop_hidden_chunks(at.map, at.group, view, bits);
+  return bits;
+}
+
+// Who sees a chunk, and how: bits of a mask where nothing is left to test, views where something is.
+struct ChunkViewers {
+  std::uint8_t whole = 0, part = 0;
+};
+
+HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
+                                   const std::array<ChunkBits, kMaxViews>& bits, std::uint32_t i) {
+  ChunkViewers out;
+  for (std::size_t v = 0; v < input.view_count; ++v) {
+    if ((bits[v].kept >> i & 1) == 0) continue;
+    const SectorView& view = at.views[v];
+    const bool all = (bits[v].crossing >> i & 1) == 0 && view.area_scale == 0 && !view.occluders;
+    if (all) out.whole |= input.bits[v];
+    if (!all) out.part |= static_cast<std::uint8_t>(1u << v);
+  }
+  return out;
+}
+
 // Any views, any tests.
-PassCounts filtered_views(const PassInput& input, std::span<const BlockEntry> entries,
-                          ObjectId* HWY_RESTRICT out, std::uint8_t* HWY_RESTRICT masks) {
-  const F f;
-  const U u;
-  const hn::Rebind<std::uint8_t, U> bytes;
-  const std::size_t lanes = hn::Lanes(f);
+PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> entries,
+                          ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
   PassCounts counts;
-  std::size_t kept = 0;
   std::array<ChunkBits, kMaxViews> bits;
-  std::array<ObjectBits, kMaxViews> seen;
-  std::array<std::uint64_t, kMaxViews> times;  // that the caller asks for the view
-  for (std::size_t v = 0; v < kMaxViews; ++v)
-    times[v] = static_cast<std::uint64_t>(std::popcount(input.bits[v]));
-  std::array<ChunkMap::ChunkView, kBlock> chunks;
-  for (const BlockEntry& entry : entries) {
-    const ChunkMap& map = *input.maps[entry.sector];
-    const ChunkMap::Block& block = map.blocks()[entry.block];
-    const SectorView* views = &input.views[entry.sector * input.view_count];
+  ChunkViews parts;
+  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  // What occlusion drops counts once for each of the caller's views that are the same.
+  const auto count_occluded = [&](std::size_t v, std::uint64_t objects) {
+    counts.occluded += static_cast<std::uint64_t>(std::popcount(input.bits[v])) * objects;
+  };
+  for (const GroupEntry& entry : entries) {
+    const EntryGroup at = group_of(input, entry);
     std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
-      bits[v] = {};
-      if (entry.planes[v] != kOutside) bits[v] = classify_chunks(block, views[v], entry.planes[v]);
-      if (views[v].occluders && bits[v].kept != 0)
-        counts.occluded += times[v] * drop_hidden_chunks(map, block, views[v], bits[v]);
+      std::uint64_t dropped = 0;
+      bits[v] = filter_chunks(at, at.views[v], entry.planes[v], dropped);
+      count_occluded(v, dropped);
       any |= bits[v].kept;
     }
-    counts.chunks += block.count;
-    for (std::uint32_t rest = any; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      chunks[i] = map.chunk(block, static_cast<std::uint32_t>(i));
-      prefetch_ids(chunks[i]);
-    }
+    counts.chunks += at.group.count;
+    find_chunks(at, any, chunks);
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
-      std::uint8_t whole = 0, part = 0;  // bits of the caller's views; views
-      for (std::size_t v = 0; v < input.view_count; ++v) {
-        if ((bits[v].kept >> i & 1) == 0) continue;
-        const bool all = (bits[v].crossing >> i & 1) == 0 && views[v].area_scale == 0 && !views[v].occluders;
-        if (all) whole |= input.bits[v];
-        if (!all) part |= static_cast<std::uint8_t>(1u << v);
-      }
-      if (part == 0 || (whole != 0 && masks == nullptr)) {
-        copy_ids(chunk.objects, chunk.count, out + kept);
-        if (masks) std::memset(masks + kept, whole, chunk.count);
-        kept += chunk.count;
+      const ChunkViewers viewers = viewers_of(input, at, bits, i);
+      if (viewers.part == 0 || (viewers.whole != 0 && masks == nullptr)) {
+        counts.written += write_whole(chunk, viewers.whole, counts.written, ids, masks);
         continue;
       }
-      for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
-        const int v = std::countr_zero(rest);
+      parts.count = 0;
+      for (std::uint32_t rest = viewers.part; rest != 0; rest &= rest - 1) {
+        const auto v = static_cast<std::size_t>(std::countr_zero(rest));
+        ObjectBits& seen = parts.seen[parts.count];
+        parts.bits[parts.count++] = input.bits[v];
         counts.tested += chunk.count;
-        view_objects(chunk, views[v], planes_of(bits[v], i), seen[v]);
-        if (views[v].occluders) counts.occluded += times[v] * drop_hidden_objects(chunk, views[v], seen[v]);
+        view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
+        if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
       }
-      for (std::size_t k = 0; k < chunk.count; k += lanes) {
-        auto mask = hn::Set(u, whole);
-        for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
-          const int v = std::countr_zero(rest);
-          const auto in_view = mask_at(u, seen[v], k);
-          mask = hn::Or(mask, hn::IfThenElseZero(in_view, hn::Set(u, input.bits[v])));
-        }
-        auto keep = hn::Ne(mask, hn::Zero(u));
-        if (k + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - k));
-        hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + k), keep), u, out + kept);
-        if (masks)
-          hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), hn::Compress(mask, keep))),
-                     bytes, masks + kept);
-        kept += hn::CountTrue(u, keep);
-      }
+      counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
     }
   }
-  counts.written = kept;
   return counts;
 }
 
@@ -165,7 +160,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::world {
 HWY_EXPORT(filtered_views);
 
-PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+PassCounts cull_filtered_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                                 std::uint8_t* masks) noexcept {
   return HWY_DYNAMIC_DISPATCH(filtered_views)(input, entries, out, masks);
 }

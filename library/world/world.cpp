@@ -5,18 +5,17 @@
 #include <limits>
 #include <string>
 
+#include "library/world/free_list.hpp"
 #include "library/world/world_state.hpp"
 
 namespace sightline {
 
 namespace world {
 
-using world::ChunkMapOptions;
-
 namespace {
 
 constexpr float kHalfSide = static_cast<float>(kSectorSide / 2);
-// One level would do for culling; with some, large objects stay out of the small ones' blocks.
+// One level would do for culling; with some, large objects stay out of the small ones' groups.
 constexpr ChunkMapOptions kSectorMap{
     {{-kHalfSide, -kHalfSide, -kHalfSide}, {kHalfSide, kHalfSide, kHalfSide}}, 0};
 
@@ -47,13 +46,7 @@ Box relative_box(const WorldBox& b, const WorldPoint& o) noexcept {
 std::uint32_t WorldState::sector_at(const SectorCell& cell) {
   const auto found = sector_of_cell.find(cell);
   if (found != sector_of_cell.end()) return found->second;
-  auto added = static_cast<std::uint32_t>(sectors.size());
-  if (free_sectors.empty()) {
-    sectors.emplace_back();
-  } else {
-    added = free_sectors.back();
-    free_sectors.pop_back();
-  }
+  const std::uint32_t added = take_element(sectors, free_sectors);
   sectors[added] = {{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
                      static_cast<double>(cell.z) * kSectorSide},
                     std::make_unique<ChunkMap>(kSectorMap, &locations),
@@ -145,15 +138,8 @@ Check World::insert(std::span<const WorldBox> boxes, std::span<Handle> handles) 
   world::SectorCell last_cell;
   std::uint32_t sector = ChunkMap::kNone;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    ObjectId id;
-    if (s.free_ids.empty()) {
-      id = static_cast<ObjectId>(s.objects.size());
-      s.objects.emplace_back();
-      s.locations.emplace_back();
-    } else {
-      id = s.free_ids.back();
-      s.free_ids.pop_back();
-    }
+    const ObjectId id = world::take_element(s.objects, s.free_ids);
+    if (s.locations.size() < s.objects.size()) s.locations.emplace_back();
     const world::SectorCell cell = world::sector_cell(boxes[i]);
     if (sector == ChunkMap::kNone || !(cell == last_cell)) {
       sector = s.sector_at(cell), last_cell = cell;

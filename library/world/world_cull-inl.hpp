@@ -1,4 +1,5 @@
-// What the passes over a world's blocks share, for every SIMD width: bounds and boxes against planes.
+// What the passes over a world's groups share, for every SIMD width: bounds and boxes against planes, and the
+// writing of ids and masks.
 // Included by files that foreach_target compiles again and again.
 #if defined(SIGHTLINE_CULLING_WORLD_CULL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_CULLING_WORLD_CULL_INL
@@ -7,14 +8,13 @@
 #define SIGHTLINE_CULLING_WORLD_CULL_INL
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <bit>
-#include <cstring>
 
 #include <sightline/culling.hpp>
 
+#include "library/geometry/simd-inl.hpp"
 #include "library/world/world_cull.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,38 +25,37 @@ using world::ChunkMap;
 using F = hn::CappedTag<float, 16>;
 using U = hn::RebindToUnsigned<F>;
 using VF = hn::Vec<F>;
+using geometry::HWY_NAMESPACE::bits_of;
+using geometry::HWY_NAMESPACE::distance;
+using geometry::HWY_NAMESPACE::mask_of;
+using geometry::HWY_NAMESPACE::prefetch_lines;
+using geometry::HWY_NAMESPACE::store_kept;
+using Points = geometry::HWY_NAMESPACE::Points<VF>;
 
-constexpr std::size_t kBlock = ChunkMap::kBlockCapacity;
+constexpr std::size_t kGroup = ChunkMap::kGroupCapacity;
 
-// signed_distance() of a vector of points: mul and add apart, in its order, so that it rounds alike.
-HWY_INLINE VF distance(const Plane& plane, VF x, VF y, VF z) {
-  const F f;
-  const VF xy = hn::Add(hn::Mul(hn::Set(f, plane.normal.x), x), hn::Mul(hn::Set(f, plane.normal.y), y));
-  return hn::Add(hn::Add(xy, hn::Mul(hn::Set(f, plane.normal.z), z)), hn::Set(f, plane.distance));
-}
-
-// A bit a lane, from the lowest.
-HWY_INLINE std::uint32_t bits_of(hn::Mask<F> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(F(), mask, bytes);
-  std::uint32_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((1u << hn::Lanes(F())) - 1);
-}
-
-// What one view sees of a block's chunks, a bit a chunk.
+// What one view sees of a group's chunks, a bit a chunk.
 struct ChunkBits {
   std::uint32_t kept = 0;                              // not outside
   std::uint32_t crossing = 0;                          // some plane
   std::array<std::uint32_t, Frustum::sides> planes{};  // crossing this one
 };
 
-// The bounds of a block's chunks or a node's blocks, from the lane at which a bit 0 stands.
+// The bounds of a group's chunks or a node's groups, from the lane at which a bit 0 stands.
 using Sides = std::array<const float*, 6>;
 
-HWY_INLINE Sides sides_of(const ChunkMap::Block& block) {
-  const auto& b = block.bounds;
+HWY_INLINE Sides sides_of(const ChunkMap::Group& group) {
+  const auto& b = group.bounds;
   return {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data()};
+}
+
+// Which boxes of the vector at lane i have the corner that three of their sides make behind the plane.
+HWY_INLINE hn::Mask<F> behind(const Plane& plane, const Sides& sides,
+                              const std::array<std::uint8_t, 3>& corner, std::size_t i) {
+  const F f;
+  const Points at{hn::Load(f, sides[corner[0]] + i), hn::Load(f, sides[corner[1]] + i),
+                  hn::Load(f, sides[corner[2]] + i)};
+  return hn::Lt(distance(plane, at), hn::Zero(f));
 }
 
 // At most 32 boxes, readable up to the next multiple of 16.
@@ -72,12 +71,8 @@ HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, con
     const Plane& plane = view.frustum.planes[p];
     const auto &near = view.near_side[p], &far = view.far_side[p];
     for (std::size_t i = 0; i < count; i += lanes) {
-      const VF high = distance(plane, hn::Load(f, sides[near[0]] + i), hn::Load(f, sides[near[1]] + i),
-                               hn::Load(f, sides[near[2]] + i));
-      const VF low = distance(plane, hn::Load(f, sides[far[0]] + i), hn::Load(f, sides[far[1]] + i),
-                              hn::Load(f, sides[far[2]] + i));
-      outside |= bits_of(hn::Lt(high, hn::Zero(f))) << i;
-      out.planes[p] |= bits_of(hn::Lt(low, hn::Zero(f))) << i;
+      outside |= bits_of(f, behind(plane, sides, near, i)) << i;
+      out.planes[p] |= bits_of(f, behind(plane, sides, far, i)) << i;
     }
     if ((all & ~outside) == 0) return {};
   }
@@ -86,8 +81,8 @@ HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, con
   return out;
 }
 
-HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Block& block, const SectorView& view, PlaneSet planes) {
-  return classify_boxes(sides_of(block), block.count, view, planes);
+HWY_INLINE ChunkBits classify_chunks(const ChunkMap::Group& group, const SectorView& view, PlaneSet planes) {
+  return classify_boxes(sides_of(group), group.count, view, planes);
 }
 
 // Those of the planes `among` that a chunk crosses.
@@ -132,30 +127,32 @@ HWY_INLINE std::size_t corners_of(const ChunkMap::ChunkView& chunk, const Sector
   return count;
 }
 
-// Calls use(first, mask) for each vector of `count` objects: which of them the planes leave. The planes are
+// Calls take(first, mask) for each vector of `count` objects: which of them the planes leave. The planes are
 // held in registers where they are few, as they nearly always are.
-template <std::size_t kPlanes, class Use>
-HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count, const Use& use) {
+template <std::size_t kPlanes, class TakeMask>
+HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count,
+                            const TakeMask& take) {
   const F f;
   std::array<Plane, kPlanes> plane;
   for (std::size_t c = 0; c < kPlanes; ++c) plane[c] = *corners[c].plane;
   for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
     const auto at = [&](std::size_t c, const Plane& p) HWY_ATTR {
-      return distance(p, hn::Load(f, corners[c].x + i), hn::Load(f, corners[c].y + i),
-                      hn::Load(f, corners[c].z + i));
+      return distance(p, Points{hn::Load(f, corners[c].x + i), hn::Load(f, corners[c].y + i),
+                                hn::Load(f, corners[c].z + i)});
     };
     VF worst = hn::Zero(f);
     for (std::size_t c = 0; c < kPlanes; ++c) worst = hn::Min(worst, at(c, plane[c]));
     for (std::size_t c = kPlanes; c < planes; ++c) worst = hn::Min(worst, at(c, *corners[c].plane));
-    use(i, hn::Ge(worst, hn::Zero(f)));
+    take(i, hn::Ge(worst, hn::Zero(f)));
   }
 }
 
-template <class Use>
-HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count, const Use& use) {
-  if (planes == 1) return test_planes<1>(corners, 1, count, use);
-  if (planes == 2) return test_planes<2>(corners, 2, count, use);
-  test_planes<0>(corners, planes, count, use);
+template <class TakeMask>
+HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count,
+                            const TakeMask& take) {
+  if (planes == 1) return test_planes<1>(corners, 1, count, take);
+  if (planes == 2) return test_planes<2>(corners, 2, count, take);
+  test_planes<0>(corners, planes, count, take);
 }
 
 // A bit an object of a chunk. Whole words are kept in registers and stored once: loads that gather what
@@ -171,13 +168,7 @@ static_assert(ChunkMap::kCapacity <= 128);
 // Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
-  std::uint8_t from[8];
-  if (hn::Lanes(d) < 8) {
-    from[0] = static_cast<std::uint8_t>(bits.words[i / 64] >> (i % 64) & ((1u << hn::Lanes(d)) - 1));
-  } else {
-    std::memcpy(from, reinterpret_cast<const std::uint8_t*>(&bits.words) + i / 8, hn::Lanes(d) / 8);
-  }
-  return hn::LoadMaskBits(d, from);
+  return mask_of(d, bits.words[i / 64] >> (i % 64));
 }
 
 HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
@@ -187,15 +178,14 @@ HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
   for (std::uint32_t i = 64; i < ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.objects + i);
 }
 
-// Which objects the planes leave, and `also(i, mask)` of each vector of them; bits from count on mean
-// nothing.
-template <class Also>
+// Which objects the planes and then `filter(i, mask)` leave; bits from count on mean nothing.
+template <class Filter>
 HWY_INLINE ObjectBits test_objects(const ChunkMap::ChunkView& chunk, const Corner* corners,
-                                   std::size_t planes, const Also& also) {
+                                   std::size_t planes, const Filter& filter) {
   ObjectBits out;
   std::uint64_t low = 0, high = 0;
   test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-    const std::uint64_t bits = bits_of(also(i, mask));
+    const std::uint64_t bits = bits_of(F(), filter(i, mask));
     if (i < 64) {
       low |= bits << i;
     } else {
@@ -214,11 +204,104 @@ HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const Corner
   test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
     auto keep = hn::RebindMask(u, mask);
     if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
-    // Packed in a register and stored whole: the packing store is microcoded on some processors.
-    hn::StoreU(hn::Compress(hn::Load(u, chunk.objects + i), keep), u, out + kept);
-    kept += hn::CountTrue(u, keep);
+    kept += store_kept(u, hn::Load(u, chunk.objects + i), keep, out + kept);
   });
   return kept;
+}
+
+// --- what several views see of a chunk ---
+
+// Views that may see a part of a chunk, and which of its objects they do see.
+struct ChunkViews {
+  std::size_t count = 0;
+  std::array<std::uint8_t, kMaxViews> bits{};  // of a mask
+  std::array<ObjectBits, kMaxViews> seen;
+};
+
+// One value for all of a chunk's objects. Writes up to 63 more than count.
+HWY_INLINE void fill_masks(std::uint8_t mask, std::size_t count, std::uint8_t* HWY_RESTRICT to) {
+  const hn::ScalableTag<std::uint8_t> u8;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(u8)) hn::StoreU(hn::Set(u8, mask), u8, to + i);
+}
+
+HWY_INLINE void store_masks(hn::Vec<U> masks, std::uint8_t* HWY_RESTRICT to) {
+  const hn::Rebind<std::uint8_t, U> bytes;
+  hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<U>(), masks)), bytes, to);
+}
+
+// All objects of a chunk, with one mask. This and what follows writes ids, and masks where they are wanted
+// (not null), behind the first `kept` of a pass, and returns how many.
+HWY_INLINE std::size_t write_whole(const ChunkMap::ChunkView& chunk, std::uint8_t mask, std::size_t kept,
+                                   ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
+  copy_ids(chunk.objects, chunk.count, ids + kept);
+  if (masks) fill_masks(mask, chunk.count, masks + kept);
+  return chunk.count;
+}
+
+// The objects of a chunk that views see.
+HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, const ChunkViews& views, std::size_t kept,
+                                  ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
+  const U u;
+  const std::size_t lanes = hn::Lanes(u), before = kept;
+  for (std::size_t i = 0; i < chunk.count; i += lanes) {
+    auto mask = hn::Zero(u);
+    for (std::size_t k = 0; k < views.count; ++k)
+      mask = hn::Or(mask, hn::IfThenElseZero(mask_at(u, views.seen[k], i), hn::Set(u, views.bits[k])));
+    auto keep = hn::Ne(mask, hn::Zero(u));
+    if (i + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    if (masks) store_masks(hn::Compress(mask, keep), masks + kept);
+    kept += store_kept(u, hn::Load(u, chunk.objects + i), keep, ids + kept);
+  }
+  return kept - before;
+}
+
+// The masks of a chunk that the views of `whole` see all of: nothing to leave out. Writes up to 63 more.
+HWY_INLINE void write_masks(const ChunkMap::ChunkView& chunk, std::uint8_t whole, const ChunkViews& views,
+                            std::uint8_t* HWY_RESTRICT masks) {
+  const hn::CappedTag<std::uint8_t, 64> bytes;
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(bytes)) {
+    auto mask = hn::Set(bytes, whole);
+    for (std::size_t k = 0; k < views.count; ++k) {
+      const auto seen = mask_at(bytes, views.seen[k], i);
+      mask = hn::Or(mask, hn::IfThenElseZero(seen, hn::Set(bytes, views.bits[k])));
+    }
+    hn::StoreU(mask, bytes, masks + i);
+  }
+}
+
+// A chunk that the views of `whole` see all of, others some of. Masks are wanted where `whole` is not 0.
+HWY_INLINE std::size_t write_parts(const ChunkMap::ChunkView& chunk, std::uint8_t whole,
+                                   const ChunkViews& views, std::size_t kept, ObjectId* HWY_RESTRICT ids,
+                                   std::uint8_t* HWY_RESTRICT masks) {
+  if (whole == 0) return write_seen(chunk, views, kept, ids, masks);
+  copy_ids(chunk.objects, chunk.count, ids + kept);
+  write_masks(chunk, whole, views, masks + kept);
+  return chunk.count;
+}
+
+// --- groups ---
+
+// What a pass reads of an entry.
+struct EntryGroup {
+  const ChunkMap& map;
+  const ChunkMap::Group& group;
+  const SectorView* views;  // the sector's
+};
+
+HWY_INLINE EntryGroup group_of(const PassInput& input, const GroupEntry& entry) {
+  const ChunkMap& map = *input.maps[entry.sector];
+  return {map, map.groups()[entry.group], &input.views[entry.sector * input.view_count]};
+}
+
+// Finds the chunks of a group whose bits are set. Memory is what a pass waits for: all of a group's is asked
+// for before any of it is used.
+HWY_INLINE void find_chunks(const EntryGroup& at, std::uint32_t bits,
+                            std::array<ChunkMap::ChunkView, kGroup>& chunks) {
+  for (; bits != 0; bits &= bits - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+    chunks[i] = at.map.chunk(at.group, i);
+    prefetch_ids(chunks[i]);
+  }
 }
 
 }  // namespace sightline::world::HWY_NAMESPACE

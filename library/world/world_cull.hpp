@@ -1,4 +1,4 @@
-// The inner passes of culling a world: blocks -> chunks -> objects, in SIMD.
+// The inner passes of culling a world: groups -> chunks -> objects, in SIMD.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ inline constexpr PlaneSet kOutside = 0x80;
 /// One view as a sector sees it: relative to the sector's origin.
 struct SectorView {
   Frustum frustum;
-  /// For each plane the sides of a box (as ChunkMap::Block orders them) farthest along its normal, and their
+  /// For each plane the sides of a box (as ChunkMap::Group orders them) farthest along its normal, and their
   /// opposites.
   std::array<std::array<std::uint8_t, 3>, Frustum::sides> near_side{}, far_side{};
   Vec3 eye;
@@ -31,9 +31,9 @@ struct SectorView {
   occlusion::EyeProjection projection;               ///< of the occluders' view, about the sector's origin
 };
 
-/// A block that some view may see.
-struct BlockEntry {
-  std::uint32_t sector = 0, block = 0;  ///< the sector as PassInput counts them
+/// A group that some view may see.
+struct GroupEntry {
+  std::uint32_t sector = 0, group = 0;  ///< the sector as PassInput counts them
   std::array<PlaneSet, kMaxViews> planes{};
 };
 
@@ -44,25 +44,25 @@ struct PassCounts {
 
 /// The maps and the views of a cull, of the sectors that some view may see; views lie sector by sector.
 struct PassInput {
-  std::span<const world::ChunkMap* const> maps;  ///< one a sector
-  std::span<const SectorView> views;             ///< sectors × view_count
+  std::span<const ChunkMap* const> maps;  ///< one a sector
+  std::span<const SectorView> views;      ///< sectors × view_count
   std::size_t view_count = 1;
   /// Of each view, the bits of a mask: several where the caller's views are the same.
   std::array<std::uint8_t, kMaxViews> bits{};
 };
 
-/// Sorts the blocks of a node: adds those that some view may see to `entries`. `views` are the sector's,
+/// Sorts the groups of a node: adds those that some view may see to `entries`. `views` are the sector's,
 /// `planes` what each has still to be tested against.
-void find_blocks(const world::ChunkMap::Node& node, std::span<const SectorView> views,
+void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
                  std::span<const PlaneSet, kMaxViews> planes, std::uint32_t sector,
-                 std::vector<BlockEntry>& entries) noexcept;
+                 std::vector<GroupEntry>& entries) noexcept;
 
 /// Writes the visible objects of the entries; `out` and, where masks are wanted, `masks` have room for all
-/// objects of the entries' blocks and kCullPadding more.
-PassCounts cull_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+/// objects of the entries' groups and kCullPadding more.
+PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept;
-/// The same with all tests; cull_blocks() calls it where some view has more than a frustum.
-PassCounts cull_filtered_blocks(const PassInput& input, std::span<const BlockEntry> entries, ObjectId* out,
+/// The same with all tests; cull_groups() calls it where some view has more than a frustum.
+PassCounts cull_filtered_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                                 std::uint8_t* masks) noexcept;
 
 }  // namespace sightline::world

@@ -16,8 +16,6 @@ namespace sightline::world {
 /// decimal distances from there on, so that a world shifted by one keeps its bits.
 inline constexpr double kSectorSide = 3200;
 
-using world::ChunkMap;
-
 struct SectorCell {
   std::int64_t x = 0, y = 0, z = 0;
   bool operator==(const SectorCell&) const = default;

@@ -12,6 +12,7 @@
 #include "library/rays/ray_grid.hpp"
 #include "library/rays/wide_rays.hpp"
 #include "support/nasty_boxes.hpp"
+#include "support/run_threads.hpp"
 
 namespace sightline::methods {
 namespace {
@@ -146,12 +147,11 @@ TEST(NearestBox, OfAGridIsTheSameForAnyNumberOfThreads) {
     grid.make(view, side, side);
     rays::RayHits expected, first, found;
     cast_at_all_boxes(scene.bounds, grid.prepared, expected);
-    for (const unsigned threads : {1u, 2u, 5u}) {
-      rays::Crew crew(threads);
-      ASSERT_EQ(crew.size(), threads);
-      std::vector<rays::WideStack> stacks(crew.size());
+    for (const std::uint32_t threads : {1u, 2u, 5u}) {
+      const JobSystem jobs{test::run_threads, nullptr, threads};
+      std::vector<rays::WideStack> stacks(threads);
       for (int again = 0; again < 20; ++again) {
-        rays::cast_wide(trees.wide, grid, crew, stacks, found);
+        rays::cast_wide(trees.wide, grid, jobs, stacks, found);
         expect_equal(found, expected, "wide-rays", std::to_string(threads) + " threads");
         if (threads == 1) first = found;
         EXPECT_EQ(found.stats.nodes, first.stats.nodes);
@@ -159,10 +159,10 @@ TEST(NearestBox, OfAGridIsTheSameForAnyNumberOfThreads) {
       }
     }
   }
-  rays::Crew crew(2);
+  const JobSystem jobs{test::run_threads, nullptr, 2};
   std::vector<rays::WideStack> stacks(2);
   rays::RayHits nothing;
-  rays::cast_wide(Trees(Boxes{}).wide, grid, crew, stacks, nothing);
+  rays::cast_wide(Trees(Boxes{}).wide, grid, jobs, stacks, nothing);
   EXPECT_EQ(nothing.object, std::vector<ObjectId>(grid.size(), kNoObject));
 }
 

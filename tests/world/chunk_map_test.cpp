@@ -138,7 +138,7 @@ TEST(ChunkMap, HoldsManyObjectsInOnePoint) {
 }
 
 TEST(ChunkMap, MovesTouchTheSameMemoryHoweverManyThereAre) {
-  // A shuttle of moves leaves neither chunks nor blocks behind.
+  // A shuttle of moves leaves neither chunks nor groups behind.
   ChunkMap map({kGround, 3});
   Random random(5);
   std::vector<Box> boxes;
@@ -149,15 +149,15 @@ TEST(ChunkMap, MovesTouchTheSameMemoryHoweverManyThereAre) {
   }
   EXPECT_EQ(failure(map), "");
   EXPECT_LT(map.chunk_limit(), 600u);
-  EXPECT_LT(map.blocks().size(), 600u);
+  EXPECT_LT(map.groups().size(), 600u);
 }
 
-// How many chunks do not begin where the one before them in their block ends.
+// How many chunks do not begin where the one before them in their group ends.
 std::size_t strays(const ChunkMap& map) {
   std::size_t count = 0;
-  for (const ChunkMap::Block& block : map.blocks()) {
-    for (std::uint32_t i = 1; i < block.count; ++i) {
-      const auto before = map.chunk(block, i - 1), here = map.chunk(block, i);
+  for (const ChunkMap::Group& group : map.groups()) {
+    for (std::uint32_t i = 1; i < group.count; ++i) {
+      const auto before = map.chunk(group, i - 1), here = map.chunk(group, i);
       count += here.objects != before.objects + (before.min_y - before.min_x);
     }
   }

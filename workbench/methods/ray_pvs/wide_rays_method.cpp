@@ -1,4 +1,6 @@
 // The same rays and the same answer by our own tree: eight boxes at once, packets of rays, nearest first.
+#include <sightline/tbb.hpp>
+
 #include "library/rays/wide_rays.hpp"
 #include "workbench/methods/ray_pvs/ray_method.hpp"
 
@@ -12,18 +14,20 @@ constexpr std::array kParameters{kRaysParameter, kThreads};
 class WideRays final : public RayMethod {
 public:
   WideRays(const Scene& scene, const Parameters& parameters)
-      : RayMethod(scene, parameters), crew_(parameters.count(kThreads.name)), stacks_(crew_.size()) {
+      : RayMethod(scene, parameters),
+        jobs_(tbb_jobs(static_cast<std::uint32_t>(parameters.count(kThreads.name)))),
+        stacks_(jobs_.threads) {
     bvh_.build(scene.bounds);
   }
   void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
-    rays::cast_wide(bvh_, grid, crew_, stacks_, hits);
+    rays::cast_wide(bvh_, grid, jobs_, stacks_, hits);
   }
 
   rays::WideBvh bvh_;
-  rays::Crew crew_;
+  JobSystem jobs_;
   std::vector<rays::WideStack> stacks_;
 };
 
