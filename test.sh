@@ -1,15 +1,25 @@
 #!/usr/bin/env bash
-# The second command: installs what is missing, builds with every warning an error, and passes every test: the suite in
-# a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what uses threads under
-# ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and clang-tidy's findings, and
-# the installed package as its users see it.
+# The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
+# test: the suite in a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what
+# uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
+# clang-tidy's findings, the installed packages as their users see them, and what the library answers on ARM and
+# WebAssembly. --full adds what takes longer: its tests there, and its build on a bare Debian; and writes
+# build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
 start=$(date +%s)
 
+full=${1:-}
+case $full in
+  "") ;;
+  --full) ;;
+  *) echo "usage: test.sh [--full]" >&2; exit 2 ;;
+esac
+
 ensure_packages $test_packages
 command -v npm >/dev/null || ensure_packages npm
+[ -z "$full" ] || ensure_packages $full_packages
 
 echo "== structure, layout and clones (jscpd)"
 scripts/check-structure.sh
@@ -30,8 +40,9 @@ echo "== command line"
 scripts/check-command-line.sh build/release/sightline
 build/release/sightline methods --json build/methods.json >/dev/null
 scripts/check-method-pages.py build/methods.json
+tests/structure/add_a_method.sh build/release
 
-echo "== installed package"
+echo "== installed packages"
 scripts/check-package.sh build/release
 
 echo "== sanitizers"
@@ -47,5 +58,12 @@ build/tsan/tests/world_tests --gtest_brief=1
 
 echo "== fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan
+
+echo "== ports"
+if [ -z "$full" ]; then
+  scripts/check-ports.sh
+else
+  scripts/run-full.sh "$start"
+fi
 
 echo "All tests passed in $(elapsed "$start")."

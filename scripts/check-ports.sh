@@ -40,8 +40,10 @@ for platform in aarch64 wasm32; do
   fi
   if [ "$full" = --full ]; then
     quietly cmake --build build/$platform
-    quietly ctest --preset $platform -j"$(nproc)"
+    fails=$(sed -n "s/^$platform test:/^/p" $known | sed 's/[.]/[.]/g; s/$/$/' | paste -sd'|')
+    quietly ctest --preset $platform -j"$(nproc)" ${fails:+-E "$fails"}
     grep -E 'tests passed' $log/log
+    [ -z "$fails" ] || echo "  but for $(grep -c "^$platform test:" $known) that are known to fail"
   fi
 done
 exit $failed

@@ -5,7 +5,13 @@ libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libroaring-dev libzstd-dev li
 openarena-081-maps"
 
 test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev \
-python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14"
+python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14 git patch g++-aarch64-linux-gnu qemu-user-static lld-19 libc++-19-dev-wasm32 \
+libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc"
+# Node is often there from elsewhere, whose package stands in the way of Debian's.
+command -v node >/dev/null || test_packages+=" nodejs"
+
+# What `test.sh --full` needs besides.
+full_packages="mmdebstrap"
 
 # ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
 ensure_packages() {

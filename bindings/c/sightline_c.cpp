@@ -40,7 +40,11 @@ static_assert(sizeof(sightline_view) == sizeof(WorldView) &&
               offsetof(sightline_view, width) == offsetof(View, width));
 static_assert(sizeof(ObjectId) == sizeof(std::uint32_t));
 
+#ifdef __wasm__
+std::string last_error;  // WebAssembly has one thread
+#else
 thread_local std::string last_error;
+#endif
 
 sightline_status fail(sightline_status status, std::string reason) {
   last_error = std::move(reason);

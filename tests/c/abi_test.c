@@ -12,7 +12,9 @@ _Static_assert(sizeof(sightline_box) == 48, "box");
 _Static_assert(sizeof(sightline_handle) == 8, "handle");
 _Static_assert(sizeof(sightline_view) == 160, "view");
 _Static_assert(offsetof(sightline_view, origin) == 136, "view origin");
+#if UINTPTR_MAX > 0xffffffffu
 _Static_assert(sizeof(sightline_cull_options) == 32, "options");
+#endif
 _Static_assert(sizeof(sightline_cull_result) == 32, "result");
 
 #define EXPECT(condition)                                                                          \

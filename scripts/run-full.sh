@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# run-full.sh START: what `test.sh --full` runs beyond the gate, which began at START (seconds since 1970) and passed. Runs
+# every line, whether one before failed or not, and writes build/full/RESULTS.csv.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
+[ -z "$(git status --porcelain 2>/dev/null)" ] || commit+=-dirty
+results=build/full/RESULTS.csv
+failed=0
+mkdir -p build/full
+
+echo "commit,line,seconds,result" >$results
+echo "$commit,gate,$(($(date +%s) - $1)),passed" >>$results
+
+# line NAME COMMAND…
+line() {
+  local name=$1 start result=passed
+  shift
+  start=$(date +%s)
+  echo "== $name"
+  "$@" || { result=failed; failed=1; }
+  echo "$commit,$name,$(($(date +%s) - start)),$result" >>$results
+}
+
+line ports scripts/check-ports.sh --full
+line bare scripts/check-bare.sh
+
+cat $results
+exit $failed
