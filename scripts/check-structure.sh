@@ -38,7 +38,7 @@ examples: face bindings/c workbench/methods
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
 owners="
-library/geometry: version.hpp types.hpp result.hpp boxes.hpp view.hpp frustum.hpp projection.hpp ray.hpp
+library/geometry: jobs.hpp version.hpp types.hpp result.hpp boxes.hpp view.hpp frustum.hpp projection.hpp ray.hpp
 library/frustum: culling.hpp
 library/occlusion: occlusion.hpp
 library/world: world.hpp tbb.hpp

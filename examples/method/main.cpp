@@ -16,7 +16,7 @@ int main() {
   if (!view) return std::fprintf(stderr, "%s\n", view.failure().message.c_str()), 2;
 
   sightline::Frame frame;  // keep it: it is reused without allocating
-  (*method)->cull(*view, frame);
+  sightline::cull(**method, *view, frame);
   std::printf("draw %zu of %zu trees in %zu calls; %llu were tested one by one\n", frame.visible.size(),
               forest->size(), frame.draws.size(), static_cast<unsigned long long>(frame.stats.tested));
 }

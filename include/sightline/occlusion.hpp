@@ -89,9 +89,9 @@ public:
   /// are skipped. Front to back is fastest; the result does not depend on the order.
   void draw_boxes(std::span<const Box> boxes) noexcept;
   void draw_boxes(std::span<const WorldBox> boxes) noexcept;
-  /// Draws solid spheres, relative to the view's origin; every point inside a sphere must be solid. Cheaper than
-  /// anything else that fills as much of the image. Spheres that reach behind the near plane are left out;
-  /// leave out yourself those of things that do, for there the inside is seen.
+  /// Draws solid spheres, relative to the view's origin; every point inside a sphere must be solid. Cheaper
+  /// than anything else that fills as much of the image. Spheres that reach behind the near plane are left
+  /// out; leave out yourself those of things that do, for there the inside is seen.
   void draw_spheres(std::span<const Sphere> spheres) noexcept;
   /// Draws the mesh moved by `transform`, relative to the view's origin. Allocates until it has seen its
   /// largest mesh.

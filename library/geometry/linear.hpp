@@ -28,8 +28,8 @@ inline Vec3 to_vec3(const glm::vec3& v) noexcept {
   return {v.x, v.y, v.z};
 }
 
-/// `rest` is what `rounded` lacks. Through a volatile: where g++ 12 vectorises the three subtractions, it takes
-/// rounding to single precision and back for nothing done, and the rest for 0.
+/// `rest` is what `rounded` lacks. Through a volatile: where g++ 12 vectorises the three subtractions, it
+/// takes rounding to single precision and back for nothing done, and the rest for 0.
 struct Split {
   Vec3 rounded, rest;
 };

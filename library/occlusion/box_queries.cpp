@@ -87,19 +87,12 @@ HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box) {
   return {grown(on_image, slack), nearest, before};
 }
 
-// Boxes a vector at a time.
 void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxSpan& boxes,
                      std::uint8_t* visible) {
-  const F f;
-  const std::size_t lanes = hn::Lanes(f);
-  for (std::size_t first = 0; first < boxes.count; first += lanes) {
-    const std::size_t count = std::min(lanes, boxes.count - first);
-    std::array<const float*, 6> from{boxes.min_x + first, boxes.min_y + first, boxes.min_z + first,
-                                     boxes.max_x + first, boxes.max_y + first, boxes.max_z + first};
-    alignas(64) std::array<std::array<float, 16>, 6> room;
-    repeat_last(f, count, from, room);
-    answer(tiles, question_of(e, corners_of(e, from)), count, visible + first);
-  }
+  const std::array<const float*, 6> arrays{boxes.min_x, boxes.min_y, boxes.min_z,
+                                           boxes.max_x, boxes.max_y, boxes.max_z};
+  answer_all(tiles, arrays, boxes.count, visible,
+             [&](const auto& from) HWY_ATTR { return question_of(e, corners_of(e, from)); });
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

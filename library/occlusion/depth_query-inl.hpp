@@ -136,6 +136,23 @@ HWY_INLINE void answer(const DepthTiles& tiles, const Question& q, std::size_t c
   for (std::size_t i = 0; i < count; ++i) visible[i] = seen >> i & 1;
 }
 
+// The same for `count` things, a vector at a time: question(from) asks for those that `from` points at, an
+// array a coordinate.
+template <std::size_t N, class Ask>
+HWY_INLINE void answer_all(const DepthTiles& tiles, const std::array<const float*, N>& arrays,
+                           std::size_t count, std::uint8_t* visible, const Ask& question) {
+  const F f;
+  const std::size_t lanes = hn::Lanes(f);
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t some = std::min(lanes, count - first);
+    std::array<const float*, N> from = arrays;
+    for (const float*& array : from) array += first;
+    alignas(64) std::array<std::array<float, 16>, N> room;
+    repeat_last(f, some, from, room);
+    answer(tiles, question(from), some, visible + first);
+  }
+}
+
 }  // namespace sightline::occlusion::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

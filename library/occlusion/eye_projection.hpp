@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 #include <sightline/types.hpp>
-#include <sightline/world.hpp>
+#include <sightline/view.hpp>
 
 namespace sightline::occlusion {
 

@@ -88,16 +88,9 @@ HWY_INLINE Question question_of(const EyeProjection& e, const WideSpheres& s) {
 
 void query_all_spheres(const DepthTiles& tiles, const EyeProjection& e, const SphereSpan& spheres,
                        std::uint8_t* visible) {
-  const F f;
-  const std::size_t lanes = hn::Lanes(f);
-  for (std::size_t first = 0; first < spheres.count; first += lanes) {
-    const std::size_t count = std::min(lanes, spheres.count - first);
-    std::array<const float*, 4> from{spheres.x + first, spheres.y + first, spheres.z + first,
-                                     spheres.radius + first};
-    alignas(64) std::array<std::array<float, 16>, 4> room;
-    repeat_last(f, count, from, room);
-    answer(tiles, question_of(e, spheres_of(e, from)), count, visible + first);
-  }
+  const std::array<const float*, 4> arrays{spheres.x, spheres.y, spheres.z, spheres.radius};
+  answer_all(tiles, arrays, spheres.count, visible,
+             [&](const auto& from) HWY_ATTR { return question_of(e, spheres_of(e, from)); });
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -5,7 +5,6 @@
 
 #include <sightline/projection.hpp>
 
-
 namespace sightline {
 namespace {
 

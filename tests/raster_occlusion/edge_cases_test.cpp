@@ -22,9 +22,9 @@ std::uint32_t add_cube(Scene& scene) {
   return scene.add_mesh(corners, normals, indices);
 }
 
-std::uint32_t add_ball(Scene& scene) {
-  const scene::Shape ball = scene::sphere(2);
-  return scene.add_mesh(ball.positions, ball.normals, ball.indices);
+std::uint32_t add_sphere(Scene& scene) {
+  const scene::Shape shape = scene::sphere(2);
+  return scene.add_mesh(shape.positions, shape.normals, shape.indices);
 }
 
 Affine at(float x, float y, float z, float sx = 1, float sy = 1, float sz = 1) {
@@ -59,12 +59,12 @@ TEST_F(EdgeCases, BoxesAtTheNearPlaneOfAWideWorld) {
   for (const float reach : {1e3f, 1e4f, 1e5f, 1e6f, 1e7f}) {
     for (const float behind : {0.6f * 4.8e-7f * reach, 0.101f}) {  // the plane; the second holds the eye
       Scene scene;
-      const std::uint32_t cube = add_cube(scene), ball = add_ball(scene);
+      const std::uint32_t cube = add_cube(scene), sphere = add_sphere(scene);
       scene.add_object(cube, at(0, 0, -1.1f + behind));
       scene.add_object(cube, at(0, -50, 0, reach, 0.01f, reach));
       scene.add_object(cube, at(0, 0, -30));
-      scene.add_object(ball, at(0, 0, -1.1f + behind));
-      scene.add_object(cube, at(0.01f, 0, -1.1f + behind, 0.05f, 0.05f, 0.05f));  // within the ball
+      scene.add_object(sphere, at(0, 0, -1.1f + behind));
+      scene.add_object(cube, at(0.01f, 0, -1.1f + behind, 0.05f, 0.05f, 0.05f));  // within the sphere
       std::vector<std::string> methods = kOcclusionMethods;
       methods.emplace_back("masked");
       Examination examination(device(), scene, methods);

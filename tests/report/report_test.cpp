@@ -107,20 +107,20 @@ TEST(Report, FullDiskOrAFileInTheWayIsAnError) {
   EXPECT_THROW(write_report(folder / "file/below", m.comparison, m.scene, m.snapshot), Error);
 }
 
-TEST(Snapshot, FatesAddUpAndAgreeWithTheTruth) {
+TEST(Snapshot, OutcomesAddUpAndAgreeWithTheTruth) {
   const Material m;
   for (const Snapshot::Method& method : m.snapshot.methods) {
-    ASSERT_EQ(method.fates.size(), m.scene.size());
-    std::array<std::size_t, kFates> counts{};
+    ASSERT_EQ(method.outcomes.size(), m.scene.size());
+    std::array<std::size_t, kOutcomes> counts{};
     for (ObjectId object = 0; object < m.scene.size(); ++object) {
-      const Fate fate = method.fates[object];
-      ++counts[static_cast<std::size_t>(fate)];
-      EXPECT_EQ(m.snapshot.truth.sees(object), fate == Fate::visible || fate == Fate::lost);
+      const Outcome outcome = method.outcomes[object];
+      ++counts[static_cast<std::size_t>(outcome)];
+      EXPECT_EQ(m.snapshot.truth.sees(object), outcome == Outcome::visible || outcome == Outcome::lost);
     }
     EXPECT_EQ(counts, method.counts);
-    EXPECT_EQ(counts[static_cast<std::size_t>(Fate::lost)], 0u);
+    EXPECT_EQ(counts[static_cast<std::size_t>(Outcome::lost)], 0u);
   }
-  EXPECT_EQ(m.snapshot.methods[0].counts[static_cast<std::size_t>(Fate::culled)], 0u);
+  EXPECT_EQ(m.snapshot.methods[0].counts[static_cast<std::size_t>(Outcome::culled)], 0u);
 }
 
 TEST(PictureView, ShowsTheLossWhereThereIsOne) {
@@ -160,11 +160,11 @@ TEST(Pictures, TopViewShowsALostObjectInItsColour) {
   Snapshot snapshot;
   snapshot.camera.eye = {0, 1, 30};
   snapshot.view = or_throw(make_view(snapshot.camera, 64, 36));
-  Snapshot::Method method{"m", std::vector<Fate>(9, Fate::culled), {}};
+  Snapshot::Method method{"m", std::vector<Outcome>(9, Outcome::culled), {}};
   const auto drawn = [&] { return report::draw_top_view(scene, snapshot, method, 300); };
   const std::string lost = "fill=\"#de265c\"";
   EXPECT_THAT(drawn(), Not(HasSubstr(lost)));
-  method.fates[0] = Fate::lost;
+  method.outcomes[0] = Outcome::lost;
   EXPECT_THAT(drawn(), HasSubstr(lost));
   EXPECT_THAT(drawn(), testing::MatchesRegex("<svg .* width=\"[0-9]+\" .*</svg>\n"));
 }
@@ -180,7 +180,8 @@ TEST(Pictures, TopViewOfManyObjectsStaysSmall) {
   Snapshot snapshot;
   snapshot.view = or_throw(make_view({}, 64, 36));
   Snapshot::Method method{"m", {}, {}};
-  for (std::size_t i = 0; i < scene.bounds.size(); ++i) method.fates.push_back(static_cast<Fate>(i % 2 * 2));
+  for (std::size_t i = 0; i < scene.bounds.size(); ++i)
+    method.outcomes.push_back(static_cast<Outcome>(i % 2 * 2));
   const std::string svg = report::draw_top_view(scene, snapshot, method, 900);
   EXPECT_LT(svg.size(), 2'000'000u);
   EXPECT_GT(svg.size(), 100'000u);

@@ -52,12 +52,12 @@ public:
     return orthographic_ ? -at : 1 / at;
   }
 
-  /// The nearest point where the pixel's ray meets a ball that lies in front of the near plane.
-  [[nodiscard]] double hit(double x, double y, const Sphere& ball) const {
+  /// The nearest point where the pixel's ray meets a sphere that lies in front of the near plane.
+  [[nodiscard]] double hit(double x, double y, const Sphere& sphere) const {
     const auto [origin, direction] = ray(x, y);
-    const glm::dvec3 to = glm::dvec3(ball.centre.x, ball.centre.y, ball.centre.z) - origin;
+    const glm::dvec3 to = glm::dvec3(sphere.centre.x, sphere.centre.y, sphere.centre.z) - origin;
     const double a = glm::dot(direction, direction), b = glm::dot(direction, to),
-                 r = static_cast<double>(ball.radius), under = b * b - a * (glm::dot(to, to) - r * r);
+                 r = static_cast<double>(sphere.radius), under = b * b - a * (glm::dot(to, to) - r * r);
     const double at = (b - std::sqrt(std::max(under, 0.0))) / a;
     if (under < 0 || (!orthographic_ && at <= 0)) return kMiss;
     return orthographic_ ? -at : 1 / at;

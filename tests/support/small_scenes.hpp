@@ -1,5 +1,5 @@
-// Views of few pixels into a room, and boxes and balls in it: small enough to hold every pixel against exact
-// rays.
+// Views of few pixels into a room, and boxes and spheres in it: small enough to hold every pixel against
+// exact rays.
 #pragma once
 
 #include <sightline/workbench/scene.hpp>

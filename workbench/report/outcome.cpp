@@ -14,11 +14,11 @@ Snapshot take_snapshot(measure::Bench& bench, const Camera& camera, std::size_t 
   for (measure::Subject& subject : bench.subjects()) {
     bench.run(subject, snapshot.view);
     const oracle::Judgement judged = bench.judge(subject, snapshot.view);
-    Snapshot::Method method{subject.name, std::vector<Fate>(bench.scene().size(), Fate::culled), {}};
-    for (const ObjectId object : subject.frame.visible) method.fates[object] = Fate::visible;
-    for (const ObjectId object : judged.loss.excess) method.fates[object] = Fate::excess;
-    for (const ObjectId object : judged.loss.lost) method.fates[object] = Fate::lost;
-    for (const Fate fate : method.fates) ++method.counts[static_cast<std::size_t>(fate)];
+    Snapshot::Method method{subject.name, std::vector<Outcome>(bench.scene().size(), Outcome::culled), {}};
+    for (const ObjectId object : subject.frame.visible) method.outcomes[object] = Outcome::visible;
+    for (const ObjectId object : judged.loss.excess) method.outcomes[object] = Outcome::excess;
+    for (const ObjectId object : judged.loss.lost) method.outcomes[object] = Outcome::lost;
+    for (const Outcome outcome : method.outcomes) ++method.counts[static_cast<std::size_t>(outcome)];
     snapshot.methods.push_back(std::move(method));
   }
   return snapshot;

@@ -13,20 +13,20 @@
 
 namespace sightline::report {
 
-enum class Fate : std::uint8_t {
+enum class Outcome : std::uint8_t {
   culled,   ///< dropped, and no pixel shows it
   excess,   ///< kept, though no pixel shows it
   visible,  ///< kept, and seen
   lost,     ///< dropped, though seen
 };
-inline constexpr std::size_t kFates = 4;
+inline constexpr std::size_t kOutcomes = 4;
 
-/// One view in full: the truth, and every object's fate under every method.
+/// One view in full: the truth, and every object's outcome under every method.
 struct Snapshot {
   struct Method {
     std::string name;
-    std::vector<Fate> fates;  ///< one an object
-    std::array<std::size_t, kFates> counts{};
+    std::vector<Outcome> outcomes;  ///< one an object
+    std::array<std::size_t, kOutcomes> counts{};
   };
   std::size_t index = 0;  ///< of the camera on its path
   Camera camera;

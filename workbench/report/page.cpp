@@ -18,17 +18,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<Fate, kFates> kLegendOrder{Fate::visible, Fate::excess, Fate::culled, Fate::lost};
+constexpr std::array<Outcome, kOutcomes> kLegendOrder{Outcome::visible, Outcome::excess, Outcome::culled,
+                                                      Outcome::lost};
 
-const char* fate_words(Fate fate) {
-  switch (fate) {
-    case Fate::visible:
+const char* outcome_words(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::visible:
       return "kept, visible";
-    case Fate::excess:
+    case Outcome::excess:
       return "kept in vain";
-    case Fate::culled:
+    case Outcome::culled:
       return "culled rightly";
-    case Fate::lost:
+    case Outcome::lost:
       return "lost";
   }
   return "";
@@ -136,18 +137,18 @@ std::string where_html(const Snapshot& snapshot) {
       snapshot.index, eye.x, eye.y, eye.z, forward.x, forward.y, forward.z);
 }
 
-std::string fate_html(const Snapshot::Method& method, const std::string& picture) {
+std::string outcome_html(const Snapshot::Method& method, const std::string& picture) {
   std::string out = fmt::format("<figure><h3>{}</h3><ul class=\"legend\">", escape(method.name));
-  for (const Fate fate : kLegendOrder) {
-    const Colour c = fate_colour(fate);
+  for (const Outcome outcome : kLegendOrder) {
+    const Colour c = outcome_colour(outcome);
     out += fmt::format("<li><i style=\"background:rgb({},{},{})\"></i>{} <b>{}</b></li>", c.r, c.g, c.b,
-                       fate_words(fate),
-                       format_count(static_cast<double>(method.counts[static_cast<std::size_t>(fate)])));
+                       outcome_words(outcome),
+                       format_count(static_cast<double>(method.counts[static_cast<std::size_t>(outcome)])));
   }
-  return out +
-         fmt::format(
-             "</ul><img src=\"{}\" alt=\"Top view of the scene: objects by their fate under {}\"></figure>\n",
-             escape(picture), escape(method.name));
+  return out + fmt::format(
+                   "</ul><img src=\"{}\" alt=\"Top view of the scene: objects by their outcome under "
+                   "{}\"></figure>\n",
+                   escape(picture), escape(method.name));
 }
 
 std::string machine_html(const measure::Machine& m) {
@@ -209,11 +210,12 @@ std::string make_page(const PageContent& content) {
           " visible objects in a colour of its own. " + where_html(content.snapshot) +
           "</figcaption></figure>\n";
   page +=
-      "<h2>From above</h2>\n<p>The same view, each object coloured by its fate under each method; x runs to "
+      "<h2>From above</h2>\n<p>The same view, each object coloured by its outcome under each method; x runs "
+      "to "
       "the "
-      "right, z down. The grey outline is the view frustum.</p>\n<div class=\"fates\">\n";
+      "right, z down. The grey outline is the view frustum.</p>\n<div class=\"outcomes\">\n";
   for (std::size_t m = 0; m < content.snapshot.methods.size(); ++m) {
-    page += fate_html(content.snapshot.methods[m], content.top_views[m]);
+    page += outcome_html(content.snapshot.methods[m], content.top_views[m]);
   }
   page +=
       "</div>\n<footer><p>Lost: visible in the item buffer, which rays through pixel centres or, where "

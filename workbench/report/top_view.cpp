@@ -103,11 +103,12 @@ std::string eye_svg(const Map& map, const View& view) {
                            at.x, at.y, 8 * kUnits, 2.5 * kUnits);
 }
 
-std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<Fate>& fates, Fate fate) {
+std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<Outcome>& outcomes,
+                        Outcome outcome) {
   std::vector<FlatBox> boxes, wide;
   const double whole = static_cast<double>(map.width()) * map.height();
   for (ObjectId object = 0; object < bounds.size(); ++object) {
-    if (fates[object] != fate) continue;
+    if (outcomes[object] != outcome) continue;
     const Point low = map(bounds[object].min.x, bounds[object].min.z),
                 high = map(bounds[object].max.x, bounds[object].max.z);
     const FlatBox box{
@@ -117,15 +118,15 @@ std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<F
     const bool covers = (double{high.x} - low.x) * (double{high.y} - low.y) > 0.1 * whole;
     (covers ? wide : boxes).push_back(box);
   }
-  const Colour c = fate_colour(fate);
-  const double fill = fate == Fate::culled ? 0.1 : fate == Fate::excess ? 0.28 : 0.47;
-  const double edge = fate == Fate::culled ? 0.35 : fate == Fate::excess ? 0.67 : 1;
+  const Colour c = outcome_colour(outcome);
+  const double fill = outcome == Outcome::culled ? 0.1 : outcome == Outcome::excess ? 0.28 : 0.47;
+  const double edge = outcome == Outcome::culled ? 0.35 : outcome == Outcome::excess ? 0.67 : 1;
   const auto path = [&](std::vector<FlatBox> some, double opacity) {
     if (some.empty()) return std::string();
     return fmt::format(
         R"(<path fill="#{0:02x}{1:02x}{2:02x}" stroke="#{0:02x}{1:02x}{2:02x}" fill-opacity="{3}" )"
         R"(stroke-opacity="{4}" stroke-width="{5}" d="{6}"/>)",
-        c.r, c.g, c.b, opacity, edge, kUnits * (fate == Fate::lost ? 2 : 1),
+        c.r, c.g, c.b, opacity, edge, kUnits * (outcome == Outcome::lost ? 2 : 1),
         path_of(std::move(some), kMostBoxes));
   };
   return path(std::move(boxes), fill) + path(std::move(wide), 0);
@@ -133,15 +134,15 @@ std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<F
 
 }  // namespace
 
-Colour fate_colour(Fate fate) noexcept {
-  switch (fate) {
-    case Fate::culled:
+Colour outcome_colour(Outcome outcome) noexcept {
+  switch (outcome) {
+    case Outcome::culled:
       return {148, 156, 168, 255};
-    case Fate::excess:
+    case Outcome::excess:
       return {226, 158, 38, 255};
-    case Fate::visible:
+    case Outcome::visible:
       return {32, 132, 208, 255};
-    case Fate::lost:
+    case Outcome::lost:
       return {222, 38, 92, 255};
   }
   return {};
@@ -177,9 +178,9 @@ std::string draw_top_view(const Scene& scene, const Snapshot& snapshot, const Sn
   std::string svg =
       fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="{}" viewBox="0 0 {} {}">)",
                   map.width() / kUnits, map.height() / kUnits, map.width(), map.height());
-  // The rarer and graver the fate, the later it is drawn, and so on top.
-  for (const Fate fate : {Fate::culled, Fate::excess, Fate::visible, Fate::lost})
-    svg += outcome_svg(map, scene.bounds, method.fates, fate);
+  // The rarer and graver the outcome, the later it is drawn, and so on top.
+  for (const Outcome outcome : {Outcome::culled, Outcome::excess, Outcome::visible, Outcome::lost})
+    svg += outcome_svg(map, scene.bounds, method.outcomes, outcome);
   return svg + frustum_svg(map, snapshot.view) + eye_svg(map, snapshot.view) + "</svg>\n";
 }
 

@@ -144,7 +144,7 @@ void write_draw_call_report(const std::filesystem::path& folder, const std::stri
             "<h3>simple against drawcall-wise</h3>\n" + report::html(calls_table(walk)) +
             "<h3>Methods, each at its best height</h3>\n" + report::html(methods_table(walk)) +
             "<h3>Three ways of submission</h3>\n" + report::html(submission_table(walk));
-    page += "<h3>From above, with the cells at height 4</h3>\n<div class=\"fates\">\n";
+    page += "<h3>From above, with the cells at height 4</h3>\n<div class=\"outcomes\">\n";
     const Scene scene = load_scene(walk.level);
     for (std::size_t s = 0; s < kNames.size(); ++s) {
       const std::string file = id + "-" + kNames[s] + ".png";

@@ -4,7 +4,7 @@
 const uint kInView = 1;      // passed the frustum and contribution tests
 const uint kDrawnEarly = 2;  // was seen last frame: drawn before the occlusion test, unless transparent
 const uint kSeen = 4;        // passed the occlusion test
-const uint kEqualDepth = 8;        // shares a tile with an object that was drawn late
+const uint kEqualDepth = 8;  // shares a tile with an object that was drawn late
 
 uint state_word(uint frame, uint bits) {
   return frame << 4 | bits;

@@ -13,7 +13,7 @@ layout(triangle_strip, max_vertices = 12) out;
 layout(location = 0) in vec3 box_centre[];
 layout(location = 1) in vec3 box_half_extent[];
 layout(location = 2) in flat uint box_object[];
-layout(location = 3) in flat uint fate[];
+layout(location = 3) in flat uint outcome[];
 layout(location = 0) out flat uint id;
 
 void emit(vec4 position) {
@@ -31,8 +31,8 @@ void emit_face(vec4 middle, vec4 a, vec4 b, float slack) {
 }
 
 void main() {
-  if (fate[0] == 0) return;
-  if (fate[0] == 2) {
+  if (outcome[0] == 0) return;
+  if (outcome[0] == 2) {
     for (uint i = 0; i < 4; ++i) emit(certain_mark(i));
     EndPrimitive();
     return;

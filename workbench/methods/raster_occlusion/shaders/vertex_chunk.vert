@@ -17,18 +17,18 @@ layout(location = 2) in uint object;
 layout(location = 0) out vec3 box_centre;
 layout(location = 1) out vec3 box_half_extent;
 layout(location = 2) out flat uint box_object;
-layout(location = 3) out flat uint fate;  // 0 dropped, 1 tested, 2 marked untested
+layout(location = 3) out flat uint outcome;  // 0 dropped, 1 tested, 2 marked untested
 
 void main() {
   box_centre = centre;
   box_half_extent = widened(centre, half_extent);
   box_object = object;
-  fate = 1;
+  outcome = 1;
   if (outside(centre, box_half_extent)) {
-    fate = 0;
+    outcome = 0;
   } else if (!contributes(vec4(centre, boxes.at[object].centre_radius.w), box_half_extent)) {
-    fate = 0;
+    outcome = 0;
   } else if (reaches_near_plane(centre, box_half_extent)) {
-    fate = 2;
+    outcome = 2;
   }
 }
