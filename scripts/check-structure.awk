@@ -24,6 +24,7 @@ function reaches(folder, on,    seen) {
 # The folder that a path in the tree, or a target of an include, belongs to; "" for others' headers.
 function folder_of(path,    part, header) {
   split(path, part, "/")
+  if (path ~ /^examples\/method\//) return "examples/method"
   if (path ~ /^examples\//) return "examples"
   if (path ~ /^(library|workbench|apps|bindings)\//) return part[1] "/" part[2]
   header = path

@@ -33,7 +33,8 @@ workbench/bake: workbench/scene workbench/io workbench/oracle workbench/partitio
 apps/sightline: workbench/reproduce workbench/bake
 bindings/c: face
 bindings/python: face
-examples: face bindings/c workbench/methods
+examples: face bindings/c
+examples/method: face workbench/methods
 "
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
