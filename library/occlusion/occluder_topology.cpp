@@ -85,6 +85,7 @@ void sort_along_curve(OccluderTopology& mesh) {
     return out;
   };
   std::vector<std::pair<std::uint32_t, std::array<std::uint32_t, 3>>> keyed;
+  keyed.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) keyed.emplace_back(key(t), t);
   std::stable_sort(keyed.begin(), keyed.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

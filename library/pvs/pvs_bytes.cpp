@@ -59,7 +59,9 @@ Result<std::vector<std::byte>> compress(Bytes bytes) {
 bool sound(const CellPvs& cells) {
   std::uint64_t count = 1;
   for (const std::uint32_t along : cells.counts) {
-    if (along == 0 || along > kMostCells || (count *= along) > kMostCells) return false;
+    if (along == 0 || along > kMostCells) return false;
+    count *= along;
+    if (count > kMostCells) return false;
   }
   if (cells.objects == 0 || cells.objects > kMostObjects) return false;
   if (cells.size() != count || cells.first.size() != count + 1 || cells.first[0] != 0) return false;
