@@ -1,7 +1,5 @@
 // Clusters of triangles that lie together and face alike: meshoptimizer's meshlets, under a tree of bounds.
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include <meshoptimizer.h>
 
@@ -12,112 +10,20 @@ namespace sightline::partition {
 
 namespace {
 
-// Blocks of at most so many triangles are divided by facing; larger ones in space, where the frustum cuts.
-constexpr std::size_t kBlockSize = 1024;
-// How much facing counts beside nearness while a meshlet grows.
-constexpr float kConeWeight = 0.5f;
+// Six coordinates a triangle: the centre in metres, and the unit normal.
+constexpr std::size_t kDimensions = 6;
+// Nodes of at most so many triangles are divided by facing where normals differ by more than so much along an
+// axis; larger ones always in space, where the frustum cuts.
+constexpr std::size_t kFacingSize = 1024;
+constexpr float kFacingSpread = 0.5f;
+// Places alike in facing become meshlets where they fill at most so many; all hang from one node.
+constexpr std::size_t kClustersOfNode = 16;
+// A meshlet of triangles that share no corner holds so many at most.
+constexpr std::size_t kMeshletSize = 255 / 3;
 
 struct Place {
-  Vec3 centre;
-  std::uint32_t triangle, facing;
-};
-
-// In how many steps a side of the cube that normals point through is divided: as finely as a block's
-// triangles fill such clusters. None: clusters so large gain nothing by facing.
-std::uint32_t steps_for(std::uint32_t size) noexcept {
-  return size <= 32 ? 3 : size <= 128 ? 2 : size <= 512 ? 1 : 0;
-}
-
-/// Where the normal leaves a cube: walls, floors and ceilings in the middle of its sides.
-std::uint32_t facing_of(const std::array<Vec3, 3>& corners, std::uint32_t steps) noexcept {
-  const glm::dvec3 a = geometry::to_double(corners[0]);
-  const glm::dvec3 normal =
-      glm::cross(geometry::to_double(corners[1]) - a, geometry::to_double(corners[2]) - a);
-  const glm::dvec3 reach = glm::abs(normal);
-  const int axis = reach.x >= reach.y && reach.x >= reach.z ? 0 : reach.y >= reach.z ? 1 : 2;
-  if (steps == 0 || !(reach[axis] > 0)) return 0;
-  const auto step = [&](double along) {
-    const double share = 0.5 * along / reach[axis] + 0.5;
-    return std::min(steps - 1, static_cast<std::uint32_t>(share * steps));
-  };
-  const std::uint32_t side = 2 * static_cast<std::uint32_t>(axis) + (normal[axis] > 0 ? 0 : 1);
-  return (side * steps + step(normal[(axis + 1) % 3])) * steps + step(normal[(axis + 2) % 3]);
-}
-
-using Corners = std::array<std::uint32_t, 3>;
-
-/// The same whichever corner comes first.
-Corners turned(std::uint32_t a, std::uint32_t b, std::uint32_t c) noexcept {
-  return std::min({Corners{a, b, c}, Corners{b, c, a}, Corners{c, a, b}});
-}
-
-/// Orders triangles meshlet by meshlet; the lengths of the meshlets.
-class MeshletMaker {
-public:
-  MeshletMaker(const TriangleSpan& all, std::uint32_t size)
-      : all_(all), size_(size / 4 * 4), vertices_(std::min<std::size_t>(3 * size_, 255)) {}  // its limits
-
-  std::span<const std::uint32_t> make(std::span<Place> places) {
-    gather(places);
-    const std::size_t most = meshopt_buildMeshletsBound(corners_.size(), vertices_, size_);
-    meshlets_.resize(most), meshlet_vertices_.resize(most * vertices_),
-        meshlet_corners_.resize(most * size_ * 3);
-    meshlets_.resize(meshopt_buildMeshlets(
-        meshlets_.data(), meshlet_vertices_.data(), meshlet_corners_.data(), indices_.data(), indices_.size(),
-        &corners_[0].x, corners_.size(), sizeof(Vec3), vertices_, size_, kConeWeight));
-    // meshoptimizer tells corners, not triangles: find them again, each of several alike once.
-    taken_.assign(places.size(), false);
-    counts_.clear(), ordered_.clear();
-    for (const meshopt_Meshlet& meshlet : meshlets_) {
-      const unsigned int* vertex = &meshlet_vertices_[meshlet.vertex_offset];
-      for (std::size_t t = 0; t < meshlet.triangle_count; ++t) {
-        const unsigned char* corner = &meshlet_corners_[meshlet.triangle_offset + 3 * t];
-        ordered_.push_back(places[take(turned(vertex[corner[0]], vertex[corner[1]], vertex[corner[2]]))]);
-      }
-      counts_.push_back(meshlet.triangle_count);
-    }
-    std::ranges::copy(ordered_, places.begin());
-    return counts_;
-  }
-
-private:
-  // Corners at the same place are one.
-  void gather(std::span<const Place> places) {
-    corners_.clear();
-    for (const Place& place : places) {
-      const auto triangle = all_[place.triangle];
-      corners_.insert(corners_.end(), triangle.begin(), triangle.end());
-    }
-    indices_.resize(corners_.size());
-    meshopt_generateVertexRemap(indices_.data(), nullptr, corners_.size(), corners_.data(), corners_.size(),
-                                sizeof(Vec3));
-    meshopt_remapVertexBuffer(corners_.data(), corners_.data(), corners_.size(), sizeof(Vec3),
-                              indices_.data());
-    known_.clear();
-    for (std::uint32_t i = 0; i < places.size(); ++i)
-      known_.push_back({turned(indices_[3 * i], indices_[3 * i + 1], indices_[3 * i + 2]), i});
-    std::ranges::sort(known_);
-  }
-
-  std::uint32_t take(const Corners& corners) {
-    auto found = std::ranges::lower_bound(known_, corners, {}, &Known::first);
-    while (taken_[found->second]) ++found;
-    taken_[found->second] = true;
-    return found->second;
-  }
-
-  using Known = std::pair<Corners, std::uint32_t>;
-
-  const TriangleSpan& all_;
-  std::size_t size_, vertices_;
-  std::vector<Vec3> corners_;
-  std::vector<std::uint32_t> indices_, counts_;
-  std::vector<Known> known_;
-  std::vector<bool> taken_;
-  std::vector<Place> ordered_;
-  std::vector<meshopt_Meshlet> meshlets_;
-  std::vector<unsigned int> meshlet_vertices_;
-  std::vector<unsigned char> meshlet_corners_;
+  std::array<float, kDimensions> at;
+  std::uint32_t triangle;
 };
 
 }  // namespace
@@ -125,72 +31,92 @@ private:
 struct TrianglePartition::ClusterBuilder {
   TrianglePartition& out;
   const TriangleSpan& all;
-  std::uint32_t size, steps;
-  MeshletMaker meshlets{all, size};
+  std::uint32_t size;
 
   Box node(std::span<Place> places) {
-    const std::size_t block = steps == 0 ? size : std::max<std::size_t>(size, kBlockSize);
-    if (places.size() <= block) return divide(places);
-    return parent([&] {
-      const std::size_t middle = halve(places);
-      const Box low = node(places.first(middle)), high = node(places.subspan(middle));
-      return united(low, high);
-    });
-  }
-
-  // A block: clusters of one facing stand side by side, so that their draws merge.
-  Box divide(std::span<Place> places) {
-    std::ranges::sort(places, {}, [](const Place& place) { return std::pair(place.facing, place.triangle); });
-    std::vector<std::uint32_t> counts;
-    for (std::size_t at = 0; at < places.size();) {
-      const auto end = std::ranges::upper_bound(places.subspan(at), places[at].facing, {}, &Place::facing);
-      const auto alike = places.subspan(at, static_cast<std::size_t>(end - places.begin()) - at);
-      if (alike.size() <= size) {
-        counts.push_back(static_cast<std::uint32_t>(alike.size()));
-      } else {
-        const auto made = meshlets.make(alike);
-        counts.insert(counts.end(), made.begin(), made.end());
-      }
-      at += alike.size();
-    }
-    return clusters(places, counts);
-  }
-
-  Box clusters(std::span<Place> places, std::span<const std::uint32_t> counts) {
-    return parent([&] {
-      if (counts.size() == 1) return cluster(places);
-      const std::size_t half = counts.size() / 2;
-      const std::size_t middle = std::accumulate(counts.begin(), counts.begin() + half, std::size_t{0});
-      const Box low = clusters(places.first(middle), counts.first(half));
-      const Box high = clusters(places.subspan(middle), counts.subspan(half));
-      return united(low, high);
-    });
-  }
-
-  template <class Children>
-  Box parent(const Children& children) {
     const std::size_t self = out.nodes_.size();
     out.nodes_.push_back({{}, 0, out.cells(), 0});
-    const Box bounds = children();
+    const Box bounds = places.size() <= size ? cluster(places) : divide(places);
     out.nodes_[self] = {bounds, static_cast<std::uint32_t>(out.nodes_.size()), out.nodes_[self].first_cell,
                         out.cells()};
     return bounds;
   }
 
-  // At the median along the axis on which they are spread widest.
-  static std::size_t halve(std::span<Place> places) {
-    float Vec3::*widest = &Vec3::x;
-    float most = -1;
-    for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-      const auto at = [axis](const Place& place) { return place.centre.*axis; };
-      const auto [low, high] = std::ranges::minmax(places, {}, at);
-      if (const float spread = at(high) - at(low); spread > most) most = spread, widest = axis;
+  Box divide(std::span<Place> places) {
+    const std::size_t axis = widest(places);
+    if (axis < 3 && places.size() <= kClustersOfNode * size && size <= kMeshletSize) return meshlets(places);
+    const auto middle = axis < 3 ? halve(places, axis) : part_by_facing(places, axis);
+    const Box low = node({places.begin(), middle});
+    const Box high = node({middle, places.end()});
+    return united(low, high);
+  }
+
+  // Meshlets grow by the nearest triangle. Each corner is given once for each triangle, so that its number
+  // tells the triangle. Filled to three quarters, as halves of halves are on average: full ones keep more.
+  Box meshlets(std::span<Place> places) {
+    std::ranges::sort(places, {}, &Place::triangle);  // the same whatever the library's algorithm
+    const std::vector<Place> given(places.begin(), places.end());
+    std::vector<Vec3> corners;
+    std::vector<unsigned int> indices;
+    for (const Place& place : given) {
+      for (const Vec3& corner : all[place.triangle]) {
+        indices.push_back(static_cast<unsigned int>(corners.size()));
+        corners.push_back(corner);
+      }
     }
-    // Numbers decide between equals: the same clusters whatever the standard library's algorithm.
-    const std::size_t middle = places.size() / 2;
-    std::ranges::nth_element(places, places.begin() + static_cast<std::ptrdiff_t>(middle), {},
-                             [widest](const Place& p) { return std::pair(p.centre.*widest, p.triangle); });
+    const std::size_t most = (3 * size / 4 + 2) / 4 * 4;  // the nearest multiple of four
+    std::vector<meshopt_Meshlet> made(meshopt_buildMeshletsBound(indices.size(), 3 * most, most));
+    std::vector<unsigned int> vertices(made.size() * 3 * most);
+    std::vector<unsigned char> triangles(made.size() * 3 * most);
+    made.resize(meshopt_buildMeshlets(made.data(), vertices.data(), triangles.data(), indices.data(),
+                                      indices.size(), &corners[0].x, corners.size(), sizeof(Vec3), 3 * most,
+                                      most, 0));
+    Box bounds = bounds_of(all[given.front().triangle]);
+    for (const meshopt_Meshlet& meshlet : made) {
+      const auto taken = places.first(meshlet.triangle_count);
+      for (std::size_t t = 0; t < taken.size(); ++t) {
+        const unsigned char corner = triangles[meshlet.triangle_offset + 3 * t];
+        taken[t] = given[vertices[meshlet.vertex_offset + corner] / 3];
+      }
+      bounds = united(bounds, node(taken));
+      places = places.subspan(taken.size());
+    }
+    return bounds;
+  }
+
+  static std::span<Place>::iterator halve(std::span<Place> places, std::size_t axis) {
+    const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+    // Ids decide between equals: the same clusters whatever the library's algorithm.
+    std::ranges::nth_element(
+        places, middle, {}, [axis](const Place& place) { return std::pair(place.at[axis], place.triangle); });
     return middle;
+  }
+
+  // At the middle of the normals' range, not at their median: walls, floors and ceilings come apart whole.
+  static std::span<Place>::iterator part_by_facing(std::span<Place> places, std::size_t axis) {
+    const auto [low, high] = std::ranges::minmax(places, {}, [axis](const Place& p) { return p.at[axis]; });
+    const float cut = 0.5f * (low.at[axis] + high.at[axis]);
+    const auto rest = std::ranges::partition(places, [&](const Place& p) { return p.at[axis] <= cut; });
+    return rest.begin() == places.end() || rest.begin() == places.begin() ? halve(places, axis)
+                                                                          : rest.begin();
+  }
+
+  static std::size_t widest(std::span<const Place> places) {
+    std::array<float, kDimensions> low = places.front().at, high = low;
+    for (const Place& place : places) {
+      for (std::size_t d = 0; d < kDimensions; ++d) {
+        low[d] = std::min(low[d], place.at[d]), high[d] = std::max(high[d], place.at[d]);
+      }
+    }
+    const auto widest_of = [&](std::size_t first) {
+      std::size_t best = first;
+      for (std::size_t d = first + 1; d < first + 3; ++d)
+        best = high[d] - low[d] > high[best] - low[best] ? d : best;
+      return best;
+    };
+    const std::size_t facing = widest_of(3);
+    const bool by_facing = places.size() <= kFacingSize && high[facing] - low[facing] > kFacingSpread;
+    return by_facing ? facing : widest_of(0);
   }
 
   Box cluster(std::span<Place> places) {
@@ -211,17 +137,20 @@ void TrianglePartition::build_clusters(const TriangleSpan& all, std::span<const 
                                        std::uint32_t size) {
   *this = {};
   if (triangles.empty()) return;
-  const std::uint32_t steps = steps_for(size);
   std::vector<Place> places;
   places.reserve(triangles.size());
   for (const std::uint32_t triangle : triangles) {
     const auto corners = all[triangle];
-    const glm::dvec3 sum =
-        geometry::to_double(corners[0]) + geometry::to_double(corners[1]) + geometry::to_double(corners[2]);
-    places.push_back({geometry::to_vec3(sum / 3.0), triangle, facing_of(corners, steps)});
+    const glm::dvec3 a = geometry::to_double(corners[0]), b = geometry::to_double(corners[1]),
+                     c = geometry::to_double(corners[2]);
+    const glm::dvec3 across = glm::cross(b - a, c - a);
+    const double length = glm::length(across);
+    const Vec3 centre = geometry::to_vec3((a + b + c) / 3.0);
+    const Vec3 normal = geometry::to_vec3(length > 0 ? across / length : glm::dvec3(0));
+    places.push_back({{centre.x, centre.y, centre.z, normal.x, normal.y, normal.z}, triangle});
   }
   triangles_.reserve(triangles.size());
-  ClusterBuilder{*this, all, size, steps}.node(places);
+  ClusterBuilder{*this, all, size}.node(places);
 }
 
 }  // namespace sightline::partition

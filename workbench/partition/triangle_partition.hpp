@@ -31,7 +31,7 @@ public:
              std::uint32_t height);
 
   /// Clusters: at most `size` triangles each (4 or more), alike in place and facing, each triangle in exactly
-  /// one: meshoptimizer's meshlets, several together where `size` is large.
+  /// one. meshoptimizer's meshlets; where `size` is more than they hold (85), halves of halves.
   void build_clusters(const TriangleSpan& all, std::span<const std::uint32_t> triangles, std::uint32_t size);
 
   [[nodiscard]] std::uint32_t cells() const noexcept {

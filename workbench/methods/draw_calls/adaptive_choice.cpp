@@ -60,7 +60,7 @@ std::vector<DrawCallPlan> candidates(bool many) {
   }
   // Finer ones gain a few per cent at most while the caches are theirs, and lose ten where others use them
   // too.
-  for (std::uint32_t size = many ? 128 : 16; size <= 1024; size *= 4) {
+  for (std::uint32_t size = many ? 128 : 16; size <= 1024; size *= 2) {
     DrawCallPlan plan;
     plan.clusters = true, plan.cluster_size = size, plan.facing = FacingRule::cone;
     plans.push_back(plan);
