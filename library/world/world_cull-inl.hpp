@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cstring>
 
 #include <sightline/culling.hpp>
 
@@ -168,7 +169,10 @@ static_assert(ChunkMap::kCapacity <= 128);
 // Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
-  return mask_of(d, bits.words[i / 64] >> (i % 64));
+  if (hn::Lanes(d) < 8) return mask_of(d, bits.words[i / 64] >> (i % 64));
+  std::uint8_t bytes[8];  // whole ones need no shift
+  std::memcpy(bytes, reinterpret_cast<const std::uint8_t*>(&bits.words) + i / 8, hn::Lanes(d) / 8);
+  return hn::LoadMaskBits(d, bytes);
 }
 
 HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
