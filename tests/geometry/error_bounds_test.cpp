@@ -204,7 +204,7 @@ TEST(ErrorBounds, Insets) {
     if (!(x >= 0 && x <= 8192 && (y - a.y) * (y - b.y) < 0)) return 0.0;
     return std::fabs(edge.at + edge.slope * y - x) / (1 + std::fabs(edge.slope)) / edge.inset();
   };
-  expect_share(worst(14, across), 0.08);
+  expect_share(worst(14, across), 0.07);
 }
 
 }  // namespace

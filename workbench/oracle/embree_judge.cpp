@@ -129,8 +129,7 @@ EmbreeJudge::~EmbreeJudge() = default;
 void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std::uint32_t y, ItemBuffer& out,
                                     std::vector<std::uint32_t>& transparent_pixels,
                                     std::vector<ObjectId>& passed) const {
-  Packet packet;
-  packet.valid.fill(0);
+  Packet packet{};  // Embree looks at lanes without a ray, too
   for (unsigned i = 0; i < kPacket; ++i) {
     const std::uint32_t px = x + i % kTile, py = y + i / kTile;
     if (px < out.width && py < out.height) set_ray(packet, i, rays.through(px, py));
