@@ -24,6 +24,8 @@ command -v npm >/dev/null || ensure_packages npm
 echo "== structure, layout and clones (jscpd)"
 scripts/check-structure.sh
 tests/structure/planted_includes.sh
+scripts/check-face.py
+tests/structure/planted_face.sh
 scripts/check-format.sh
 scripts/check-clones.sh
 tests/structure/planted_clones.sh
@@ -61,7 +63,7 @@ fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan
 
 echo "== ports"
 if [ -z "$full" ]; then
-  scripts/check-ports.sh
+  scripts/check-ports.sh build/release
 else
   scripts/run-full.sh "$start"
 fi

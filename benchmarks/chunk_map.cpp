@@ -1,6 +1,8 @@
 // What keeping the chunk map right costs beside building it anew.
 #include <benchmark/benchmark.h>
 
+#include <sightline/boxes.hpp>
+
 #include "library/world/chunk_map.hpp"
 #include "workbench/scene/random.hpp"
 

@@ -17,7 +17,7 @@ namespace sightline {
 namespace {
 
 Scene& twenty_million() {
-  static Scene scene = *generate_world("soup?triangles=20000000&per-object=1000&size=2000&edge=1.5");
+  static Scene scene = generate_world("soup?triangles=20000000&per-object=1000&size=2000&edge=1.5");
   return scene;
 }
 
@@ -27,7 +27,7 @@ std::string held_name;
 Method& method_named(const std::string& name) {
   if (held_name != name) {
     held.reset();
-    held = *create_method(name, twenty_million());
+    held = create_method(name, twenty_million());
     held_name = name;
   }
   return *held;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include <sightline/boxes.hpp>
+#include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/workbench/error.hpp>
 
 #include "support/exact_rays.hpp"
 #include "workbench/scene/random.hpp"
@@ -52,11 +55,11 @@ void draw(benchmark::State& state, bool from_above, bool sorted) {
   const std::vector<Box> boxes = in_order(houses(4000, 300), view, sorted);
   OcclusionBuffer buffer;
   for (auto _ : state) {
-    if (buffer.begin({view, {}})) std::abort();
-    buffer.draw_boxes(boxes);
+    or_throw(buffer.begin({view, {}}));
+    or_throw(buffer.draw_boxes(std::span<const Box>(boxes)));
   }
   std::vector<float> pixels(std::size_t{view.width} * view.height);
-  buffer.read_nearness(pixels);
+  or_throw(buffer.read_nearness(pixels));
   state.counters["covered"] =
       static_cast<double>(std::count_if(pixels.begin(), pixels.end(), [](float n) { return n > 0; })) /
       static_cast<double>(pixels.size());
@@ -119,9 +122,9 @@ std::size_t reference(const View& view, std::span<const Box> occluders, const Bo
 void query(benchmark::State& state, bool from_above) {
   const View view = looking(from_above);
   OcclusionBuffer buffer;
-  if (buffer.begin({view, {}})) std::abort();
+  or_throw(buffer.begin({view, {}}));
   const std::vector<Box> occluders = in_order(houses(4000, 300), view, true);
-  buffer.draw_boxes(occluders);
+  or_throw(buffer.draw_boxes(std::span<const Box>(occluders)));
   scene::Random random(2);
   Boxes boxes;
   const Frustum frustum = make_frustum(view, {{-700, -700, -700}, {700, 700, 700}});
@@ -134,7 +137,7 @@ void query(benchmark::State& state, bool from_above) {
   }
   std::vector<std::uint8_t> visible(boxes.size());
   for (auto _ : state) {
-    buffer.may_see(span_of(boxes), visible);
+    or_throw(buffer.may_see(boxes.view(), visible));
     benchmark::ClobberMemory();
   }
   const double kept = std::accumulate(visible.begin(), visible.end(), 0.0);

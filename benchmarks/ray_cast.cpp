@@ -42,7 +42,7 @@ const Setting& setting_of(std::int64_t count) {
   if (s.grid.size() != 0) return s;
   if (count < 1'000'000) {
     const Scene scene =
-        *generate_world(count == 1371 ? "strata?triangles=20000&model=1" : "strata?triangles=200000&model=5");
+        generate_world(count == 1371 ? "strata?triangles=20000&model=1" : "strata?triangles=200000&model=5");
     s.boxes = scene.bounds;
     look_from(s, scene.viewpoints[1].eye, 2000);
   } else {

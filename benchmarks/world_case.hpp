@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
+#include <sightline/frustum.hpp>
+#include <sightline/workbench/error.hpp>
 #include <sightline/world.hpp>
 
 #include "workbench/scene/random.hpp"
@@ -23,29 +24,23 @@ struct Case {
   std::vector<Handle> handles;
 };
 
-inline WorldBox wide(const Box& b) {
-  return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
-}
-
 inline Case& case_of(std::size_t count) {
   static std::map<std::size_t, std::unique_ptr<Case>> made;
   std::unique_ptr<Case>& slot = made[count];
   if (slot) return *slot;
   slot = std::make_unique<Case>();
   scene::Random random(1);
-  std::vector<WorldBox> boxes;
-  while (boxes.size() < count) {
+  while (slot->flat.size() < count) {
     Vec3 at = random.inside({{-kReach, -50, -kReach}, {kReach, 50, kReach}});
     // Behind the eye.
-    if (boxes.size() >= 1'000'000) at.z = kReach + 8 * random.between(0, kReach);
+    if (slot->flat.size() >= 1'000'000) at.z = kReach + 8 * random.between(0, kReach);
     const Vec3 half{random.between(0.1f, 3), random.between(0.1f, 3), random.between(0.1f, 3)};
     const Box box{{at.x - half.x, at.y - half.y, at.z - half.z},
                   {at.x + half.x, at.y + half.y, at.z + half.z}};
     slot->flat.push_back(box);
-    boxes.push_back(wide(box));
   }
   slot->handles.resize(count);
-  if (slot->world.insert(boxes, slot->handles)) std::abort();
+  or_throw(slot->world.insert(slot->flat.view(), slot->handles));
   return *slot;
 }
 
@@ -67,7 +62,7 @@ inline float tenth_of_view() {
     for (int i = 0; i < 30; ++i) {
       const float middle = 0.5f * (low + high);
       const Frustum frustum = make_frustum(looking(0.3f, middle), {{-2000, -60, -2000}, {2000, 60, 2000}});
-      (cull_boxes(frustum, span_of(c.flat), visible) < c.flat.size() / 10 ? low : high) = middle;
+      (*cull_boxes(frustum, c.flat.view(), visible) < c.flat.size() / 10 ? low : high) = middle;
     }
     return high;
   }();

@@ -22,6 +22,4 @@ function(sightline_shaders target)
   endforeach()
   target_sources(${target} PRIVATE ${embedded})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/embedded)
-  # A source's constants are named after its shaders, which others have under the same name.
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
 endfunction()

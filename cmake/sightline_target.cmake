@@ -43,15 +43,10 @@ function(sightline_module folder)
   sightline_part(${folder} ${files})
 endfunction()
 
-# sightline_workbench_module(FOLDER [UNITY] FILES...): one folder of the workbench, a static library of the folder's name.
-# UNITY: its sources may be compiled together.
+# sightline_workbench_module(FOLDER FILES...): one folder of the workbench, a static library of the folder's name.
 function(sightline_workbench_module folder)
-  cmake_parse_arguments(module "UNITY" "" "" ${ARGN})
-  add_library(sightline_${folder} STATIC ${module_UNPARSED_ARGUMENTS})
+  add_library(sightline_${folder} STATIC ${ARGN})
   sightline_target(sightline_${folder})
-  if(NOT module_UNITY)
-    set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD OFF)
-  endif()
   target_link_libraries(sightline_${folder} PUBLIC sightline fmt::fmt PRIVATE sightline_dependencies)
   set_property(GLOBAL APPEND PROPERTY sightline_workbench_modules sightline_${folder})
 endfunction()

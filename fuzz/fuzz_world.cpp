@@ -1,15 +1,30 @@
-// Random operations with random values on everything public of the world and of occlusion, through the C API
-// and so through the C++ beneath it. Besides the sanitizers, the program checks what it can know.
+// Random operations with random values on worlds, occlusion and rays, through the C API and so through the
+// C++ beneath it; right calls, and calls with null pointers, strides and counts that are none, structs of
+// other versions, and buffers of other views. Besides the sanitizers, the program checks what it can know.
 #include <sightline/sightline.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bytes.hpp"
 
 namespace {
+
+void require(bool holds) {
+  if (!holds) __builtin_trap();
+}
+
+// One of them: a status that means something, and an index that is one.
+bool done(sightline_status status) {
+  require(status >= SIGHTLINE_OK && status <= SIGHTLINE_BAD_FILE);
+  return status == SIGHTLINE_OK;
+}
+
+constexpr std::size_t kMost = 40, kTooMuch = static_cast<std::size_t>(-1);
 
 struct Bytes : sightline::fuzz::Bytes {
   using sightline::fuzz::Bytes::Bytes;
@@ -20,34 +35,91 @@ struct Bytes : sightline::fuzz::Bytes {
     if (kind < 40) return scale * 1e6 * take<std::int8_t>();
     return scale * take<std::int16_t>() / 256.0;
   }
+  float single(double scale) { return static_cast<float>(number(scale)); }
+  bool rarely() { return byte() == 0; }
 };
 
-void require(bool holds) {
-  if (!holds) __builtin_trap();
+// Objects as a caller has them, laid out so that nothing is aligned to more than it must.
+struct Thing {
+  std::uint8_t tag;
+  sightline_box box;
+  float centre[3], half[3];
+  sightline_handle handle;
+  std::uint32_t layer, value;
+};
+using Things = std::array<Thing, kMost>;
+
+void fill(Bytes& in, Things& things, std::size_t count) {
+  for (Thing& t : std::span(things).first(count)) {
+    const bool any = in.byte() < 16;
+    for (int a = 0; a < 3; ++a) {
+      t.box.min[a] = in.number(1);
+      t.box.max[a] = any ? in.number(1) : t.box.min[a] + in.byte() / 8.0;
+      t.half[a] = static_cast<float>(0.5 * (t.box.max[a] - t.box.min[a]));
+      t.centre[a] = static_cast<float>(t.box.min[a]) + t.half[a];
+    }
+    t.layer = in.byte(), t.value = in.byte();
+  }
 }
 
-sightline_box box_of(Bytes& in) {
-  sightline_box box;
-  const bool any = in.byte() < 16;
-  for (int a = 0; a < 3; ++a) {
-    box.min[a] = in.number(1);
-    box.max[a] = any ? in.number(1) : box.min[a] + in.byte() / 8.0;
+// What a pointer, a stride and a count can be made of that is refused.
+template <class Pointer>
+void harm(Bytes& in, Pointer& first, std::size_t& stride, std::size_t& count) {
+  switch (in.byte() % 5) {
+    case 0:
+      first = nullptr;
+      break;
+    case 1:
+      stride = in.byte() % 4;
+      break;
+    case 2:
+      stride = kTooMuch;
+      break;
+    case 3:
+      count = kTooMuch - in.byte();
+      break;
+    default:
+      break;
   }
-  return box;
+}
+
+sightline_box_view boxes_of(Bytes& in, Things& things, std::size_t count) {
+  Thing* t = things.data();
+  sightline_box_view view = in.byte() & 1
+                                ? sightline_boxes_centre_half_float(t->centre, t->half, sizeof *t, count)
+                                : sightline_boxes_min_max_double(t->box.min, t->box.max, sizeof *t, count);
+  if (in.byte() < 16) view.origin[in.byte() % 3] = in.number(1);
+  if (!in.rarely()) return view;
+  harm(in, view.data[in.byte() % 2], view.stride, view.count);
+  if (in.rarely()) view.form = in.byte();
+  if (in.rarely()) view.struct_size = in.take<std::uint32_t>();
+  return view;
+}
+
+sightline_handles handles_of(Bytes& in, Things& things, std::size_t count) {
+  sightline_handles handles = sightline_handles_of(&things[0].handle, sizeof(Thing), count);
+  if (in.rarely()) harm(in, handles.first, handles.stride, handles.count);
+  return handles;
+}
+
+sightline_column column_of(Bytes& in, const std::uint32_t* first, std::size_t count) {
+  sightline_column column = sightline_column_of(first, sizeof(Thing), count);
+  if (in.rarely()) harm(in, column.first, column.stride, column.count);
+  return column;
 }
 
 sightline_view view_of(Bytes& in) {
+  sightline_camera camera = sightline_camera_default();
   sightline_view view;
-  const double eye[3] = {in.number(1), in.number(1), in.number(1)};
-  const float forward[3] = {static_cast<float>(in.number(1)), static_cast<float>(in.number(1)),
-                            static_cast<float>(in.number(1))};
-  const float up[3] = {0, 1, 0};
-  const auto fov = static_cast<float>(in.byte()) / 80, near = static_cast<float>(in.byte()) / 64;
-  const std::uint32_t width = in.byte(), height = in.byte();
-  if (sightline_view_perspective(eye, forward, up, fov, near, width, height, &view) != SIGHTLINE_OK) {
-    const float ahead[3] = {0, 0, -1};
-    const double origin[3] = {0, 0, 0};
-    require(sightline_view_perspective(origin, ahead, up, 1, 0.1f, 64, 48, &view) == SIGHTLINE_OK);
+  for (int a = 0; a < 3; ++a) camera.eye[a] = in.number(1), camera.forward[a] = in.single(1);
+  if (in.byte() & 1) std::copy_n(camera.eye, 3, camera.origin);
+  camera.vertical_fov = static_cast<float>(in.byte()) / 80;
+  camera.near_plane = static_cast<float>(in.byte()) / 64;
+  camera.reversed_depth = in.byte() % 2;
+  if (in.rarely()) camera.struct_size = in.take<std::uint32_t>();
+  if (!done(sightline_camera_view(&camera, in.byte(), in.byte(), &view))) {
+    camera = sightline_camera_default();
+    require(sightline_camera_view(&camera, 64, 48, &view) == SIGHTLINE_OK);
   }
   const std::uint8_t harm = in.byte();
   if (harm < 12) view.eye_to_clip[harm] = in.take<float>();
@@ -61,82 +133,210 @@ void run_here(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), voi
   for (std::uint32_t i = count; i-- > 0;) job(data, i);
 }
 
+template <class T, void (*destroy)(T*)>
+struct Destroy {
+  void operator()(T* object) const { destroy(object); }
+};
+template <class T, void (*destroy)(T*)>
+using Owned = std::unique_ptr<T, Destroy<T, destroy>>;
+
+class Play {
+public:
+  explicit Play(Bytes& in) : in_(in) {}
+
+  void step() {
+    const std::uint8_t operation = in_.byte() % 12;
+    count_ = in_.byte() % (kMost + 1);
+    for (Thing& t : things_) {
+      t.handle = {};
+      if (!handles_.empty()) t.handle = handles_[in_.take<std::uint16_t>() % handles_.size()];
+      if (in_.rarely()) t.handle = in_.take<sightline_handle>();
+    }
+    if (operation < 7) fill(in_, things_, count_);
+    constexpr void (Play::*operations[])() = {
+        &Play::insert,  &Play::insert, &Play::move,  &Play::draw_boxes, &Play::ask,          &Play::rays,
+        &Play::columns, &Play::remove, &Play::begin, &Play::draw_mesh,  &Play::draw_spheres, &Play::cull};
+    (this->*operations[operation])();
+    require(sightline_world_size(world_.get()) == standing_);
+  }
+
+private:
+  void insert() {
+    const sightline_box_view boxes = boxes_of(in_, things_, count_);
+    const sightline_handles handles = handles_of(in_, things_, count_);
+    sightline_object_columns columns = sightline_object_columns_default();
+    if (in_.byte() & 1) columns.layers = column_of(in_, &things_[0].layer, count_);
+    if (in_.byte() & 1) columns.values = column_of(in_, &things_[0].value, count_);
+    if (in_.rarely()) columns.struct_size = in_.byte();
+    const auto* given = in_.byte() & 1 ? &columns : nullptr;
+    if (!done(sightline_world_insert(world_.get(), in_.rarely() ? nullptr : &boxes, &handles, given))) return;
+    for (std::size_t i = 0; i < handles.count; ++i) handles_.push_back(things_[i].handle);
+    standing_ += handles.count;
+  }
+
+  void move() {
+    const sightline_box_view boxes = boxes_of(in_, things_, count_);
+    const sightline_handles handles = handles_of(in_, things_, count_);
+    if (!done(sightline_world_move(world_.get(), &handles, &boxes))) return;
+    for (std::size_t i = 0; i < handles.count; ++i) {
+      sightline_box box;
+      require(sightline_world_box(world_.get(), things_[i].handle, &box) == SIGHTLINE_OK);
+      for (int a = 0; a < 3; ++a) require(box.min[a] <= box.max[a]);
+    }
+  }
+
+  void remove() {
+    const sightline_handles handles = handles_of(in_, things_, count_);
+    if (!done(sightline_world_remove(world_.get(), in_.rarely() ? nullptr : &handles))) return;
+    for (std::size_t i = 0; i < handles.count; ++i)
+      require(!sightline_world_contains(world_.get(), things_[i].handle));
+    standing_ -= handles.count;
+  }
+
+  void columns() {
+    const sightline_handles handles = handles_of(in_, things_, count_);
+    const sightline_column layers = column_of(in_, &things_[0].layer, count_),
+                           values = column_of(in_, &things_[0].value, count_);
+    (void)done(sightline_world_set_layers(world_.get(), &handles, &layers));
+    if (!done(sightline_world_set_values(world_.get(), &handles, &values)) || handles.count == 0) return;
+    std::uint32_t value = 0;
+    const Thing& last = things_[handles.count - 1];
+    require(sightline_world_value(world_.get(), last.handle, &value) == SIGHTLINE_OK && value == last.value);
+  }
+
+  void begin() {
+    const sightline_view view = view_of(in_);
+    if (done(sightline_occlusion_begin(occlusion_.get(), &view))) last_view_ = view;
+  }
+
+  void draw_boxes() {
+    const sightline_box_view boxes = boxes_of(in_, things_, count_);
+    (void)done(sightline_occlusion_draw_boxes(occlusion_.get(), &boxes));
+  }
+
+  sightline_sphere_view spheres() {
+    Thing* t = things_.data();
+    sightline_sphere_view view = sightline_spheres_of(t->centre, t->half, sizeof *t, count_);
+    if (in_.rarely()) harm(in_, view.data[in_.byte() % 4], view.stride, view.count);
+    if (in_.rarely()) view.struct_size = in_.byte();
+    return view;
+  }
+
+  void draw_spheres() {
+    const sightline_sphere_view given = spheres();
+    (void)done(sightline_occlusion_draw_spheres(occlusion_.get(), &given));
+  }
+
+  void draw_mesh() {
+    std::vector<float> positions(3 * count_);
+    std::vector<std::uint32_t> indices(3 * (in_.byte() % 30) + (in_.rarely() ? 1 : 0));
+    for (float& f : positions) f = in_.single(1);
+    const std::uint32_t range =
+        in_.rarely() ? 44 : static_cast<std::uint32_t>(std::max<std::size_t>(count_, 1));
+    for (std::uint32_t& i : indices) i = in_.byte() % range;
+    float transform[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    for (int i = 0; i < 16; ++i) {
+      if (i % 4 != 3 || in_.rarely()) transform[i] = in_.single(0.01);
+    }
+    sightline_occluder_mesh* made = nullptr;
+    (void)done(sightline_occluder_mesh_create(positions.data(), in_.rarely() ? kTooMuch : count_,
+                                              indices.data(), indices.size(), &made));
+    const Owned<sightline_occluder_mesh, sightline_occluder_mesh_destroy> mesh(made);
+    require(sightline_occluder_mesh_triangles(made) <= indices.size() / 3);
+    (void)done(sightline_occlusion_draw_mesh(occlusion_.get(), made, in_.byte() & 1 ? transform : nullptr));
+  }
+
+  void ask() {
+    std::array<std::uint8_t, kMost> seen;
+    seen.fill(9);
+    const std::size_t room = in_.rarely() ? count_ / 2 : kMost;
+    const sightline_box_view boxes = boxes_of(in_, things_, count_);
+    if (done(sightline_occlusion_may_see_boxes(occlusion_.get(), &boxes, seen.data(), room)))
+      require(std::all_of(seen.begin(), seen.begin() + boxes.count, [](std::uint8_t s) { return s <= 1; }));
+    const sightline_sphere_view given = spheres();
+    (void)done(sightline_occlusion_may_see_spheres(occlusion_.get(), &given, seen.data(), room));
+    int visible = 0;
+    std::vector<float> corners(9 * (in_.byte() % 20));
+    for (float& f : corners) f = in_.single(1);
+    (void)done(sightline_occlusion_may_see_triangles(occlusion_.get(), corners.data(),
+                                                     in_.rarely() ? kTooMuch : corners.size() / 3, &visible));
+    std::vector<float> pixels(in_.byte() & 1 ? 256 * 256 : in_.byte());
+    (void)done(sightline_occlusion_read_nearness(occlusion_.get(), pixels.data(), pixels.size()));
+  }
+
+  void rays() {
+    const sightline_box_view boxes = boxes_of(in_, things_, count_);
+    const double origin[3] = {in_.number(1), in_.number(1), in_.number(1)};
+    (void)done(sightline_bvh_build(bvh_.get(), &boxes, in_.byte() & 1 ? origin : nullptr));
+    fill(in_, things_, count_);
+    (void)done(sightline_bvh_refit(bvh_.get(), &boxes));
+    const std::size_t size = sightline_bvh_size(bvh_.get());
+    std::array<sightline_ray, 8> rays;
+    std::array<std::uint32_t, 8> met;
+    std::array<float, 8> distances;
+    for (sightline_ray& ray : rays) {
+      for (int a = 0; a < 3; ++a) ray.origin[a] = in_.single(1), ray.direction[a] = in_.single(1);
+      ray.max_distance = in_.byte() & 1 ? 1e6f : in_.single(10);
+    }
+    sightline_jobs jobs{run_here, nullptr, in_.byte() % 70u, in_.rarely() ? 1u : 0u};
+    if (done(sightline_bvh_cast(bvh_.get(), rays.data(), in_.rarely() ? kTooMuch : rays.size(), met.data(),
+                                in_.byte() & 1 ? distances.data() : nullptr, &jobs)))
+      require(
+          std::ranges::all_of(met, [&](std::uint32_t m) { return m < size || m == SIGHTLINE_NO_OBJECT; }));
+    const sightline_view view = view_of(in_);
+    std::array<std::uint32_t, kMost> visible;
+    std::size_t count = 0;
+    if (done(sightline_bvh_visible_set(bvh_.get(), &view, in_.byte() % 20, in_.byte() % 20, visible.data(),
+                                       in_.rarely() ? 1 : kMost, nullptr, &count)))
+      require(count <= size && (count == 0 || visible[count - 1] < size));
+  }
+
+  void cull() {
+    std::vector<sightline_cull_view> views(in_.byte() % 10);
+    for (sightline_cull_view& view : views) {
+      const sightline_view camera = in_.byte() & 1 ? last_view_ : view_of(in_);
+      view = sightline_cull_view_of(&camera);
+      if (in_.byte() & 1) view.occlusion = occlusion_.get();
+      if (in_.byte() & 1) view.layers = in_.byte();
+      if (in_.byte() & 1) view.min_area = in_.single(1);
+      if (in_.rarely()) view.struct_size = in_.byte();
+    }
+    sightline_cull_options options = sightline_cull_options_default();
+    options.jobs = {run_here, nullptr, in_.byte() % 70u, 0};
+    options.values_for_ids = in_.rarely() ? 1 : 0;
+    if (in_.rarely()) options.struct_size = in_.byte();
+    const std::size_t needed = sightline_cull_capacity(world_.get(), &options);
+    const std::size_t room = needed > 0 && in_.rarely() ? needed - 1 : needed;
+    std::vector<std::uint32_t> ids(room);
+    std::vector<std::uint8_t> masks(room);
+    sightline_cull_output output =
+        sightline_cull_output_of(ids.data(), in_.byte() & 1 ? masks.data() : nullptr, room);
+    if (in_.rarely()) output.capacity = kTooMuch;
+    sightline_cull_result result;
+    if (!done(sightline_cull(culler_.get(), world_.get(), views.data(), views.size(), &options, &output,
+                             &result)))
+      return;
+    require(result.count <= standing_);
+    for (std::size_t i = 0; i < result.count && options.values_for_ids == 0; ++i)
+      require(ids[i] < sightline_world_id_limit(world_.get()) && (!output.masks || masks[i] != 0));
+  }
+
+  Bytes& in_;
+  Owned<sightline_world, sightline_world_destroy> world_{sightline_world_create()};
+  Owned<sightline_culler, sightline_culler_destroy> culler_{sightline_culler_create()};
+  Owned<sightline_occlusion, sightline_occlusion_destroy> occlusion_{sightline_occlusion_create()};
+  Owned<sightline_bvh, sightline_bvh_destroy> bvh_{sightline_bvh_create()};
+  sightline_view last_view_{};
+  std::vector<sightline_handle> handles_;
+  std::size_t standing_ = 0, count_ = 0;
+  Things things_{};
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes in(data, size);
-  const std::unique_ptr<sightline_world, void (*)(sightline_world*)> world(sightline_world_create(),
-                                                                           sightline_world_destroy);
-  const std::unique_ptr<sightline_culler, void (*)(sightline_culler*)> culler(sightline_culler_create(),
-                                                                              sightline_culler_destroy);
-  const std::unique_ptr<sightline_occlusion, void (*)(sightline_occlusion*)> occlusion(
-      sightline_occlusion_create(), sightline_occlusion_destroy);
-  std::vector<sightline_handle> handles;
-  std::size_t standing = 0;
-  for (int step = 0; step < 200 && !in.empty(); ++step) {
-    const std::uint8_t operation = in.byte() % 8;
-    const std::size_t count = in.byte() % 40;
-    std::vector<sightline_box> boxes(count);
-    std::vector<sightline_handle> chosen(count);
-    for (sightline_handle& h : chosen) {
-      if (!handles.empty()) h = handles[in.take<std::uint16_t>() % handles.size()];
-      if (in.byte() == 0) h = in.take<sightline_handle>();
-    }
-    if (operation < 3 || operation == 5) {
-      for (sightline_box& box : boxes) box = box_of(in);
-    }
-    if (operation < 2) {
-      std::vector<sightline_handle> added(count);
-      if (sightline_world_insert(world.get(), boxes.data(), count, added.data()) == SIGHTLINE_OK) {
-        handles.insert(handles.end(), added.begin(), added.end());
-        standing += count;
-      }
-    } else if (operation == 2) {
-      if (sightline_world_move(world.get(), chosen.data(), boxes.data(), count) == SIGHTLINE_OK) {
-        for (std::size_t i = 0; i < count; ++i) require(sightline_world_contains(world.get(), chosen[i]));
-      }
-    } else if (operation == 3) {
-      if (sightline_world_remove(world.get(), chosen.data(), count) == SIGHTLINE_OK) {
-        for (const sightline_handle& h : chosen) require(!sightline_world_contains(world.get(), h));
-        standing -= count;
-      }
-    } else if (operation == 4) {
-      const sightline_view view = view_of(in);
-      (void)sightline_occlusion_begin(occlusion.get(), &view);
-    } else if (operation == 5) {
-      (void)sightline_occlusion_draw_boxes(occlusion.get(), boxes.data(), count);
-    } else if (operation == 6) {
-      std::vector<float> positions(3 * count);
-      std::vector<std::uint32_t> indices(3 * (in.byte() % 30));
-      for (float& f : positions) f = static_cast<float>(in.number(1));
-      for (std::uint32_t& i : indices) i = in.byte() % 44;
-      float transform[12];
-      for (float& f : transform) f = static_cast<float>(in.number(0.01));
-      const std::unique_ptr<sightline_occluder_mesh, void (*)(sightline_occluder_mesh*)> mesh(
-          sightline_occluder_mesh_create(positions.data(), count, indices.data(), indices.size()),
-          sightline_occluder_mesh_destroy);
-      if (mesh) (void)sightline_occlusion_draw_mesh(occlusion.get(), mesh.get(), transform);
-    } else {
-      std::vector<sightline_view> views(in.byte() % 10);
-      for (sightline_view& view : views) view = view_of(in);
-      std::vector<const sightline_occlusion*> buffers(views.size());
-      for (auto& buffer : buffers) buffer = in.byte() & 1 ? occlusion.get() : nullptr;
-      sightline_cull_options options{};
-      options.threads = in.byte() % 70, options.run_jobs = run_here;
-      options.min_area = static_cast<float>(in.number(1));
-      options.occlusion = in.byte() & 1 ? buffers.data() : nullptr;
-      const std::size_t room = sightline_cull_capacity(world.get(), &options) - (in.byte() == 0 ? 1 : 0);
-      std::vector<std::uint32_t> ids(room);
-      std::vector<std::uint8_t> masks(room);
-      sightline_cull_result result;
-      if (sightline_cull(culler.get(), world.get(), views.data(), views.size(), &options, ids.data(),
-                         in.byte() & 1 ? masks.data() : nullptr, room, &result) == SIGHTLINE_OK) {
-        require(result.count <= standing);
-        for (std::size_t i = 0; i < result.count; ++i)
-          require(ids[i] < sightline_world_id_limit(world.get()));
-      }
-    }
-    require(sightline_world_size(world.get()) == standing);
-  }
+  Play play(in);
+  for (int step = 0; step < 200 && !in.empty(); ++step) play.step();
   return 0;
 }

@@ -19,29 +19,33 @@ says() {
 consume() {
   local root=$1 python=$2 example pc
   rm -rf "$scratch/build"
-  for example in frustum world c method; do
+  for example in frustum world my_structs shadows_and_stereo own_jobs c method; do
     { cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_PREFIX_PATH="$root" && cmake --build "$scratch/build/$example"; } >"$scratch/log" 2>&1 ||
       { cat "$scratch/log"; echo "examples/$example does not build by find_package"; exit 1; }
   done
   says "of 30000 trees" "$scratch/build/frustum/frustum"
   says "frame 2: draw [0-9]* of 100000 boxes" "$scratch/build/world/world"
-  says "of 1000 boxes" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c/culled"
+  says "frame 2: draw [0-9]* of 100000 things" "$scratch/build/my_structs/my_structs"
+  says "for the eyes" "$scratch/build/shadows_and_stereo/shadows_and_stereo"
+  says "3 jobs: draw [0-9]* of 100000 boxes" "$scratch/build/own_jobs/own_jobs"
+  says "of 100000 things" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c/my_structs"
   says "of 30000 trees in [0-9]* calls" "$scratch/build/method/method"
 
   pc=$(dirname "$(find "$root" -name sightline.pc)")
   local flags
   flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs sightline)
   # shellcheck disable=SC2086
-  cc -std=c11 -Wall -Wextra -Werror examples/c/main.c $flags -o "$scratch/culled"
+  cc -std=c99 -Wall -Wextra -Werror examples/c/main.c $flags -o "$scratch/my_structs"
   # shellcheck disable=SC2086
   for example in frustum world; do
     g++ -std=c++20 -Wall -Wextra -Werror examples/$example/main.cpp $flags -o "$scratch/$example"
   done
-  says "of 1000 boxes" env LD_LIBRARY_PATH="$pc/.." "$scratch/culled"
+  says "of 100000 things" env LD_LIBRARY_PATH="$pc/.." "$scratch/my_structs"
   says "of 30000 trees" env LD_LIBRARY_PATH="$pc/.." "$scratch/frustum"
   says "frame 2: draw [0-9]* of 100000 boxes" env LD_LIBRARY_PATH="$pc/.." "$scratch/world"
 
+  says "frame 2: draw [0-9]* of 100000 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/my_structs.py
   says "500 m" env PYTHONPATH="$python" /usr/bin/python3 examples/python/flight.py
   says "object-frustum" "$root/bin/sightline" methods
 }
@@ -67,8 +71,8 @@ echo "installed tree: the examples build by find_package and by pkg-config and r
 
 (cd "$1" && cpack -G DEB -B "$scratch/deb") >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 holds libsightline0 'lib/libsightline\.so\.' 'lib/libsightline\.so\.0'
-holds libsightline-dev 'include/sightline/[a-z_]+\.(hpp|h)$|lib/(libsightline\.(a|so)|cmake/sightline/sightline-|cmake/sightline/sightline_targets|pkgconfig/)' \
-  'include/sightline/world\.hpp' 'lib/libsightline\.a' 'lib/libsightline\.so' 'lib/pkgconfig/sightline\.pc' \
+holds libsightline-dev 'include/sightline/(c/)?[a-z_]+\.(hpp|h)$|lib/(libsightline\.(a|so)|cmake/sightline/sightline-|cmake/sightline/sightline_targets|pkgconfig/)' \
+  'include/sightline/world\.hpp' 'include/sightline/c/world\.h' 'lib/libsightline\.a' 'lib/libsightline\.so' 'lib/pkgconfig/sightline\.pc' \
   'lib/cmake/sightline/sightline-config\.cmake'
 holds python3-sightline 'lib/python3/dist-packages/sightline\.' 'lib/python3/dist-packages/sightline\..*\.so'
 holds sightline 'bin/sightline$|include/sightline/workbench/|lib/(libsightline_workbench\.a$|cmake/sightline/sightline_workbench_targets)' \

@@ -39,15 +39,15 @@ examples/method: face workbench/methods
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
 owners="
-library/geometry: jobs.hpp version.hpp types.hpp result.hpp boxes.hpp view.hpp frustum.hpp projection.hpp ray.hpp
-library/frustum: culling.hpp
-library/occlusion: occlusion.hpp
+library/geometry: jobs.hpp version.hpp types.hpp status.hpp box_view.hpp boxes.hpp view.hpp frustum.hpp projection.hpp
+library/geometry: rays.hpp
+library/occlusion: occlusion.hpp occluder.hpp
 library/world: world.hpp tbb.hpp
 library/pvs: pvs.hpp
 face: sightline.hpp
-bindings/c: sightline.h
+bindings/c: sightline.h c/status.h c/view.h c/world.h c/occlusion.h c/frustum.h c/rays.h c/pvs.h
 workbench/scene: workbench/error.hpp workbench/progress.hpp workbench/parameters.hpp workbench/level_pvs.hpp
-workbench/scene: workbench/scene.hpp workbench/worlds.hpp
+workbench/scene: workbench/scene.hpp workbench/worlds.hpp workbench/affine.hpp workbench/held_scene.hpp
 workbench/io: workbench/io.hpp
 workbench/submission: workbench/frame.hpp workbench/triangle_draws.hpp
 workbench/methods: workbench/method.hpp

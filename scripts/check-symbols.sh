@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # check-symbols.sh SHARED STATIC: the library as the linker sees it. The shared library gives away exactly the functions
-# of <sightline/sightline.h>, and of C++ only what public headers declare in namespace sightline; neither library has a
+# that <sightline/sightline.h> declares as SIGHTLINE_API, and of C++ only what public headers declare in namespace sightline; neither library has a
 # symbol of the workbench.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declared=$(grep -oE '\bsightline_[a-z_]+\(' include/sightline/sightline.h | tr -d '(' | sort -u)
+declared=$(cat include/sightline/sightline.h include/sightline/c/*.h | tr '\n' ' ' |
+             grep -oP '\bSIGHTLINE_API [^;(]*\K\bsightline_\w+(?=\()' | sort -u)
 symbols=$(nm -D --defined-only "$1" | awk '{print $NF}' | sort -u)
 given=$(grep -v '^_Z' <<<"$symbols")
 diff <(echo "$declared") <(echo "$given") || { echo "$1 does not export the C functions that the header declares"; exit 1; }

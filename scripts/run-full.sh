@@ -12,18 +12,21 @@ mkdir -p build/full
 echo "commit,line,seconds,result" >$results
 echo "$commit,gate,$(($(date +%s) - $1)),passed" >>$results
 
-# line NAME COMMAND…
+# line NAME COMMAND…: its seconds are those that the command measured, where it leaves them in $MEASURED.
+export MEASURED=$PWD/build/full/measured
 line() {
   local name=$1 start result=passed
   shift
   start=$(date +%s)
+  rm -f "$MEASURED"
   echo "== $name"
   "$@" || { result=failed; failed=1; }
-  echo "$commit,$name,$(($(date +%s) - start)),$result" >>$results
+  echo "$commit,$name,$(cat "$MEASURED" 2>/dev/null || echo $(($(date +%s) - start))),$result" >>$results
 }
 
-line ports scripts/check-ports.sh --full
+line ports scripts/check-ports.sh build/release --full
 line bare scripts/check-bare.sh
+line demo scripts/check-demo.sh
 
 cat $results
 exit $failed

@@ -38,7 +38,7 @@ void add_generate(CLI::App& app, int& exit) {
       ->type_name("FILE.glb");
   on_run(command, exit, [world, file] {
     const std::string name = world->starts_with("world:") ? world->substr(6) : *world;
-    const Scene scene = or_throw(generate_world(name));
+    const Scene scene = generate_world(name);
     write_glb(scene, *file);
     fmt::print("{}: {} objects, {} triangles\n", *file, scene.size(), triangle_count(scene));
     return Exit::done;

@@ -1,12 +1,12 @@
-// Flat culling: many boxes in the caller's own arrays against one camera, in one call.
+// Flat culling: many boxes in your own arrays against one camera, in one call.
 #include <cstdio>
 #include <vector>
 
-#include <sightline/culling.hpp>
-#include <sightline/view.hpp>
+#include <sightline/boxes.hpp>
+#include <sightline/frustum.hpp>
 
 int main() {
-  sightline::Boxes trees;  // one array a coordinate; your own arrays do as well, by a BoxSpan
+  sightline::Boxes trees;  // one array a coordinate, which is fastest; any BoxView over your own does as well
   for (int z = 0; z < 150; ++z) {
     for (int x = 0; x < 200; ++x) {
       const float at_x = 5.0f * static_cast<float>(x - 100), at_z = 6.0f * static_cast<float>(z - 75);
@@ -14,12 +14,13 @@ int main() {
     }
   }
   const auto view = sightline::make_view({.eye = {0, 8.9f, 0}, .forward = {0, 0, -1}}, 1280, 720);
-  if (!view) return std::fprintf(stderr, "%s\n", view.failure().message.c_str()), 2;
+  if (!view) return std::fprintf(stderr, "%s\n", view.error().message()), 2;
 
-  // The planes allow for the rounding of every coordinate within these bounds.
+  // The planes allow for the rounding of every coordinate within these bounds; what reaches beyond is kept.
   const sightline::Box extent{{-502, 0, -452}, {502, 8, 452}};
   const sightline::Frustum frustum = sightline::make_frustum(*view, extent);
   std::vector<sightline::ObjectId> visible(trees.size() + sightline::kCullPadding);
-  const std::size_t count = sightline::cull_boxes(frustum, sightline::span_of(trees), visible);
-  std::printf("draw %zu of %zu trees\n", count, trees.size());
+  const auto count = sightline::cull_boxes(frustum, trees.view(), visible);
+  if (!count) return std::fprintf(stderr, "%s\n", count.error().message()), 2;
+  std::printf("draw %zu of %zu trees\n", *count, trees.size());
 }

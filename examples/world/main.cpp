@@ -1,12 +1,16 @@
-// A moving world, a camera, and what to draw, every frame: the library's main use.
-#include <cmath>
+// A moving world, a camera, what hides what, and what to draw, every frame: the library's main use.
 #include <cstdio>
+#include <span>
 #include <vector>
 
 #include <sightline/sightline.hpp>
 #ifdef WITH_TBB
 #include <sightline/tbb.hpp>
 #endif
+
+int fail(const sightline::Status& status) {
+  return std::fprintf(stderr, "%s\n", status.message()), 2;
+}
 
 int main() {
   // Your objects' boxes. A handle names each for as long as it stands; its index is the id that cull()
@@ -18,35 +22,35 @@ int main() {
   }
   std::vector<sightline::Handle> handles(boxes.size());
   sightline::World world;
-  if (const auto bad = world.insert(boxes, handles))
-    return std::fprintf(stderr, "%s\n", bad->message.c_str()), 2;
+  if (const auto done = world.insert(boxes, handles); !done) return fail(done);
 
   // Kept from frame to frame, so that nothing is allocated in them.
+  sightline::Culler culler;
   sightline::OcclusionBuffer occlusion;
   sightline::CullOptions options;
 #ifdef WITH_TBB
   options.jobs = sightline::tbb_jobs();
 #endif
-  std::vector<sightline::ObjectId> visible(sightline::cull_capacity(world, options));
+  std::vector<std::uint32_t> ids(sightline::cull_capacity(world, options));
 
+  const auto moved = std::span(boxes).first(boxes.size() / 10);
   for (int frame = 0; frame < 3; ++frame) {
-    // A tenth of the boxes moves.
-    for (std::size_t i = 0; i < boxes.size() / 10; ++i) boxes[i].min.y += 0.1, boxes[i].max.y += 0.1;
-    const auto moved = boxes.size() / 10;
-    if (world.move(std::span(handles).first(moved), std::span(boxes).first(moved))) return 2;
+    for (sightline::WorldBox& box : moved) box.min.y += 0.1, box.max.y += 0.1;
+    const auto which = std::span(handles).first(moved.size());
+    if (const auto done = world.move(which, moved); !done) return fail(done);
 
     const auto view = sightline::make_view({.eye = {0, 1.7f, 10}}, 1280, 720);
-    if (!view) return 2;
+    if (!view) return fail(view.error());
     const sightline::WorldView camera{*view, {}};
 
     // Near, solid things hide what is behind them. Here the front row is solid.
-    if (occlusion.begin(camera)) return 2;
-    occlusion.draw_boxes(std::span<const sightline::WorldBox>(boxes).first(2000));
-    const sightline::OcclusionBuffer* occluders = &occlusion;
+    if (const auto done = occlusion.begin(camera); !done) return fail(done);
+    if (const auto done = occlusion.draw_boxes(moved.first(2000)); !done) return fail(done);
 
-    options.occlusion = {&occluders, 1};
-    const auto drawn = sightline::cull(world, {&camera, 1}, options, visible);
-    std::printf("frame %d: draw %zu of %zu boxes; occlusion alone dropped %llu\n", frame, drawn.count,
-                world.size(), static_cast<unsigned long long>(drawn.culled_occlusion));
+    const sightline::CullView seen{.view = camera, .occlusion = &occlusion};
+    const auto drawn = culler.cull(world, {&seen, 1}, options, {ids, {}});
+    if (!drawn) return fail(drawn.error());
+    std::printf("frame %d: draw %zu of %zu boxes; occlusion alone dropped %llu\n", frame, drawn->count,
+                world.size(), static_cast<unsigned long long>(drawn->culled_occlusion));
   }
 }

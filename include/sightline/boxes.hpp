@@ -1,40 +1,41 @@
-// Many boxes or spheres in structure of arrays, as the tests of whole batches want them.
+// Boxes of one's own in structure of arrays, for who has no arrays yet.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include <sightline/box_view.hpp>
 #include <sightline/types.hpp>
 
 namespace sightline {
 
-/// Many boxes, one array a coordinate, all of one length.
+/// Many boxes in metres, one array a coordinate, all of one length: the layout that flat culling reads
+/// fastest.
+///
+/// Unless a function of it says otherwise: Errors: none. Cost: constant. Threads: many may read at once, or
+/// one write. Allocates: nothing.
 struct Boxes {
-  std::vector<float> min_x, min_y, min_z, max_x, max_y, max_z;
+  std::vector<float> min_x, min_y, min_z, max_x, max_y, max_z;  ///< metres
 
+  /// How many boxes there are.
   [[nodiscard]] std::size_t size() const noexcept { return min_x.size(); }
+  /// Box i < size().
   [[nodiscard]] Box operator[](std::size_t i) const noexcept {
     return {{min_x[i], min_y[i], min_z[i]}, {max_x[i], max_y[i], max_z[i]}};
   }
+  /// All of them, as long as they stand where they are.
+  [[nodiscard]] BoxView view() const noexcept {
+    return BoxView::arrays(min_x.data(), min_y.data(), min_z.data(), max_x.data(), max_y.data(), max_z.data(),
+                           size());
+  }
+  /// Replaces box i < size().
   void set(std::size_t i, const Box& box) noexcept;
+  /// Cost: constant, amortised. Allocates: as std::vector does.
   void push_back(const Box& box);
+  /// Cost: linear. Allocates: as std::vector does.
   void resize(std::size_t count);
+  /// Cost: linear. Allocates: as std::vector does.
   void reserve(std::size_t count);
 };
-
-/// Views on `count` boxes, one array a coordinate.
-struct BoxSpan {
-  const float *min_x = nullptr, *min_y = nullptr, *min_z = nullptr;
-  const float *max_x = nullptr, *max_y = nullptr, *max_z = nullptr;
-  std::size_t count = 0;
-};
-
-/// Views on `count` spheres, one array a coordinate.
-struct SphereSpan {
-  const float *x = nullptr, *y = nullptr, *z = nullptr, *radius = nullptr;
-  std::size_t count = 0;
-};
-
-BoxSpan span_of(const Boxes& boxes) noexcept;
 
 }  // namespace sightline

@@ -2,15 +2,16 @@
 // <sightline/workbench/…>.
 #pragma once
 
+#include <sightline/box_view.hpp>
 #include <sightline/boxes.hpp>
-#include <sightline/culling.hpp>
 #include <sightline/frustum.hpp>
 #include <sightline/jobs.hpp>
+#include <sightline/occluder.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/pvs.hpp>
-#include <sightline/ray.hpp>
-#include <sightline/result.hpp>
+#include <sightline/rays.hpp>
+#include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/version.hpp>
 #include <sightline/view.hpp>

@@ -14,6 +14,7 @@ namespace sightline {
 
 /// Jobs that run in the calling thread's task arena. `threads` is how many jobs a call is split into, 1 …
 /// kMaxJobs; 0: as many as oneTBB has threads. The answer is the same for every number.
+/// Errors: none. Cost: constant. Threads: any. Allocates: nothing of ours.
 inline JobSystem tbb_jobs(std::uint32_t threads = 0) {
   if (threads == 0) threads = static_cast<std::uint32_t>(std::max(tbb::info::default_concurrency(), 1));
   const auto run = [](void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {

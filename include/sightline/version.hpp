@@ -5,6 +5,7 @@
 
 namespace sightline {
 
+/// Major, minor and patch.
 inline constexpr std::string_view kVersion = "0.1.0";
 
 }  // namespace sightline

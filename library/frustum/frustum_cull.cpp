@@ -1,4 +1,4 @@
-#include <sightline/culling.hpp>
+#include <sightline/frustum.hpp>
 
 #include <algorithm>
 
@@ -8,6 +8,7 @@
 
 #include <hwy/highway.h>
 
+#include "library/geometry/box_reader.hpp"
 #include "library/geometry/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,6 +19,8 @@ using F = hn::ScalableTag<float>;
 using U = hn::RebindToUnsigned<F>;
 using VF = hn::Vec<F>;
 
+using geometry::BoxSpan;
+using geometry::SphereSpan;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
 
 // A plane spread over the lanes, held in registers through a loop.
@@ -76,6 +79,23 @@ struct Nearest {
         z(plane.normal.z >= 0 ? b.max_z : b.min_z) {}
 };
 
+// What a frustum's planes are rounded for, spread over the lanes.
+struct Extent {
+  Points min, max;
+
+  explicit Extent(const Box& box)
+      : min{hn::Set(F(), box.min.x), hn::Set(F(), box.min.y), hn::Set(F(), box.min.z)},
+        max{hn::Set(F(), box.max.x), hn::Set(F(), box.max.y), hn::Set(F(), box.max.z)} {}
+
+  // How far a box reaches beyond it, along whichever axis it does so most: positive where it does.
+  HWY_INLINE VF beyond(const Points& low, const Points& high) const {
+    const VF x = hn::Max(hn::Sub(min.x, low.x), hn::Sub(high.x, max.x)),
+             y = hn::Max(hn::Sub(min.y, low.y), hn::Sub(high.y, max.y)),
+             z = hn::Max(hn::Sub(min.z, low.z), hn::Sub(high.z, max.z));
+    return hn::Max(hn::Max(x, y), z);
+  }
+};
+
 std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
   const F f;
   const auto& p = frustum.planes;
@@ -83,6 +103,7 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
                   p4 = spread(p[4]), p5 = spread(p[5]);
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
+  const Extent extent(frustum.extent);
   const auto at = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
     return distance(plane, {hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)});
   };
@@ -92,7 +113,12 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
         // The smallest distance of all planes decides: one comparison instead of six.
         const VF a = hn::Min(at(p0, n0, i), at(p1, n1, i)), b = hn::Min(at(p2, n2, i), at(p3, n3, i)),
                  c = hn::Min(at(p4, n4, i), at(p5, n5, i));
-        return hn::Ge(hn::Min(hn::Min(a, b), c), hn::Zero(f));
+        const Points low{hn::LoadU(f, boxes.min_x + i), hn::LoadU(f, boxes.min_y + i),
+                         hn::LoadU(f, boxes.min_z + i)};
+        const Points high{hn::LoadU(f, boxes.max_x + i), hn::LoadU(f, boxes.max_y + i),
+                          hn::LoadU(f, boxes.max_z + i)};
+        const VF zero = hn::Zero(f);
+        return hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Gt(extent.beyond(low, high), zero));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Box{{boxes.min_x[i], boxes.min_y[i], boxes.min_z[i]},
@@ -105,14 +131,17 @@ std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* 
   const auto& p = frustum.planes;
   const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
                   p4 = spread(p[4]), p5 = spread(p[5]);
+  const Extent extent(frustum.extent);
   return pack(
       s.count, s.x, out,
       [&](std::size_t i) HWY_ATTR {
         const Points at{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
+        const VF radius = hn::LoadU(f, s.radius + i);
         const VF a = hn::Min(distance(p0, at), distance(p1, at)),
                  b = hn::Min(distance(p2, at), distance(p3, at)),
                  c = hn::Min(distance(p4, at), distance(p5, at));
-        return hn::Ge(hn::Min(hn::Min(a, b), c), hn::Neg(hn::LoadU(f, s.radius + i)));
+        const auto inside = hn::Ge(hn::Min(hn::Min(a, b), c), hn::Neg(radius));
+        return hn::Or(inside, hn::Gt(extent.beyond(at, at), hn::Zero(f)));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Sphere{{s.x[i], s.y[i], s.z[i]}, s.radius[i]});
@@ -128,27 +157,62 @@ namespace frustum {
 HWY_EXPORT(cull_boxes);
 HWY_EXPORT(cull_spheres);
 
-static std::size_t flat_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
+namespace {
+
+std::size_t cull(const Frustum& frustum, const geometry::BoxSpan& boxes, ObjectId* out) {
   return HWY_DYNAMIC_DISPATCH(cull_boxes)(frustum, boxes, out);
 }
-
-static std::size_t flat_spheres(const Frustum& frustum, const SphereSpan& spheres, ObjectId* out) {
+std::size_t cull(const Frustum& frustum, const geometry::SphereSpan& spheres, ObjectId* out) {
   return HWY_DYNAMIC_DISPATCH(cull_spheres)(frustum, spheres, out);
 }
+
+Status check(std::size_t count, bool sound, std::span<ObjectId> visible) {
+  if (!sound) return {StatusCode::bad_argument, "cull: a pointer is null or a stride too short"};
+  if (count >= kNoObject) return {StatusCode::bad_argument, "cull: expected fewer than 2^32 - 1 elements"};
+  if (visible.size() < count + kCullPadding)
+    return {StatusCode::buffer_too_small, "cull: expected room for the count and kCullPadding indices"};
+  return {};
+}
+
+// Lays out a block at a time, and counts its indices on from where it begins.
+template <class Block, class LayOut>
+std::size_t cull_blocks(const Frustum& frustum, std::size_t count, ObjectId* out, const LayOut& lay_out) {
+  Block block;
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < count; first += geometry::kBlock) {
+    const std::size_t size = std::min(geometry::kBlock, count - first);
+    const std::size_t more = cull(frustum, lay_out(first, size, block), out + kept);
+    for (std::size_t i = kept; i < kept + more; ++i) out[i] += static_cast<ObjectId>(first);
+    kept += more;
+  }
+  return kept;
+}
+
+}  // namespace
 }  // namespace frustum
 
-BoxSpan span_of(const Boxes& b) noexcept {
-  return {b.min_x.data(), b.min_y.data(), b.min_z.data(), b.max_x.data(),
-          b.max_y.data(), b.max_z.data(), b.size()};
+using namespace geometry;
+
+Result<std::size_t> cull_boxes(const Frustum& frustum, const BoxView& boxes,
+                               std::span<ObjectId> visible) noexcept {
+  if (const Status sound = frustum::check(boxes.size(), boxes.sound(), visible); !sound) return sound;
+  if (BoxSpan arrays; BoxReader::lies_in_arrays(boxes, frustum.origin, arrays))
+    return frustum::cull(frustum, arrays, visible.data());
+  return frustum::cull_blocks<BoxBlock>(
+      frustum, boxes.size(), visible.data(), [&](std::size_t first, std::size_t count, BoxBlock& block) {
+        return BoxReader::lay_out(boxes, first, count, frustum.origin, block);
+      });
 }
 
-std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, std::span<ObjectId> visible) noexcept {
-  return frustum::flat_boxes(frustum, boxes, visible.data());
-}
-
-std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& spheres,
-                         std::span<ObjectId> visible) noexcept {
-  return frustum::flat_spheres(frustum, spheres, visible.data());
+Result<std::size_t> cull_spheres(const Frustum& frustum, const SphereView& spheres,
+                                 std::span<ObjectId> visible) noexcept {
+  if (const Status sound = frustum::check(spheres.size(), spheres.sound(), visible); !sound) return sound;
+  if (SphereSpan arrays; BoxReader::lies_in_arrays(spheres, arrays))
+    return frustum::cull(frustum, arrays, visible.data());
+  return frustum::cull_blocks<SphereBlock>(frustum, spheres.size(), visible.data(),
+                                           [&](std::size_t first, std::size_t count, SphereBlock& block) {
+                                             return BoxReader::lay_out(spheres, first, count, block);
+                                           });
 }
 
 }  // namespace sightline

@@ -20,9 +20,4 @@ void Boxes::reserve(std::size_t count) {
   for (auto* array : {&min_x, &min_y, &min_z, &max_x, &max_y, &max_z}) array->reserve(count);
 }
 
-Vec3 transform_point(const Affine& affine, const Vec3& p) noexcept {
-  const auto row = [&](const Vec4& r) { return r.x * p.x + r.y * p.y + r.z * p.z + r.w; };
-  return {row(affine.rows[0]), row(affine.rows[1]), row(affine.rows[2])};
-}
-
 }  // namespace sightline

@@ -24,12 +24,18 @@ Plane round_outwards(const glm::dvec4& plane, const Vec3& largest) {
   return {to_vec3(glm::dvec3(unit)), static_cast<float>(unit.w + kPlaneRounding * magnitude)};
 }
 
+bool reaches_beyond(const Box& extent, const Box& box) {
+  return box.min.x < extent.min.x || box.min.y < extent.min.y || box.min.z < extent.min.z ||
+         box.max.x > extent.max.x || box.max.y > extent.max.y || box.max.z > extent.max.z;
+}
+
 }  // namespace
 
 Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept {
   const glm::dmat4 rows = glm::transpose(clip);
   const Vec3 reach = largest(extent);
   Frustum frustum;
+  frustum.extent = extent;
   frustum.planes[Frustum::left] = round_outwards(rows[3] + rows[0], reach);
   frustum.planes[Frustum::right] = round_outwards(rows[3] - rows[0], reach);
   frustum.planes[Frustum::bottom] = round_outwards(rows[3] + rows[1], reach);
@@ -49,7 +55,14 @@ Frustum make_frustum(const View& view, const Box& extent) noexcept {
   return frustum_of(to_double(view.eye_to_clip) * to_double(view.world_to_eye), view_direction(view), extent);
 }
 
+Frustum make_frustum(const WorldView& view, const Box& extent) noexcept {
+  Frustum frustum = make_frustum(view.view, extent);
+  frustum.origin = view.origin;
+  return frustum;
+}
+
 Overlap classify(const Frustum& frustum, const Box& box) noexcept {
+  if (reaches_beyond(frustum.extent, box)) return Overlap::crossing;
   bool inside = true;
   for (const Plane& plane : frustum.planes) {
     const bool x = plane.normal.x >= 0, y = plane.normal.y >= 0, z = plane.normal.z >= 0;
@@ -68,9 +81,10 @@ bool overlaps(const Frustum& frustum, const Box& box) noexcept {
 }
 
 bool overlaps(const Frustum& frustum, const Sphere& sphere) noexcept {
+  const Vec3& c = sphere.centre;
+  if (reaches_beyond(frustum.extent, {c, c})) return true;
   for (const Plane& plane : frustum.planes) {
-    if (signed_distance(plane, sphere.centre.x, sphere.centre.y, sphere.centre.z) < -sphere.radius)
-      return false;
+    if (signed_distance(plane, c.x, c.y, c.z) < -sphere.radius) return false;
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <array>
 #include <cmath>
 
 #include <sightline/frustum.hpp>
@@ -48,6 +49,23 @@ inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
     for (int r = 0; r < 4; ++r) out.m[4 * c + r] = static_cast<float>(m[c][r]);
   }
   return out;
+}
+
+/// An affine transform as SIMD kernels read it: three rows of (linear part | translation).
+struct RowTransform {
+  std::array<Vec4, 3> rows;
+};
+
+inline RowTransform row_transform(const Mat4& matrix) noexcept {
+  RowTransform out;
+  for (std::size_t r = 0; r < 3; ++r)
+    out.rows[r] = {matrix.m[r], matrix.m[4 + r], matrix.m[8 + r], matrix.m[12 + r]};
+  return out;
+}
+
+inline Vec3 transform_point(const RowTransform& transform, const Vec3& p) noexcept {
+  const auto row = [&](const Vec4& r) { return r.x * p.x + r.y * p.y + r.z * p.z + r.w; };
+  return {row(transform.rows[0]), row(transform.rows[1]), row(transform.rows[2])};
 }
 
 inline bool is_finite(const Vec3& v) noexcept {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "library/geometry/box_math.hpp"
 #include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
 
@@ -13,7 +14,6 @@ using namespace geometry;
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Rect kWholePlane{-kInfinity, -kInfinity, kInfinity, kInfinity};
 
 float dot(const Vec4& row, const Vec3& p) {
@@ -41,6 +41,7 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
                                   double{std::fabs(row.z)} * reach.z + std::fabs(row.w));
     }
   }
+  out.extent = extent;
   out.coordinate_error = static_cast<float>(kProjectionRounding * magnitude);
   out.eye = eye_position(view);
   out.width = static_cast<float>(view.width);
@@ -56,6 +57,7 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
 }
 
 Rect projected_rect(const Projector& p, const Box& box) noexcept {
+  if (!holds(p.extent, box)) return kWholePlane;
   Rect ndc{kInfinity, kInfinity, -kInfinity, -kInfinity};
   float widest = 0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -1,4 +1,4 @@
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 
 #include <cmath>
 #include <limits>

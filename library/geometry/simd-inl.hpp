@@ -96,10 +96,19 @@ HWY_INLINE Points<V> cross(const Points<V>& a, const Points<V>& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
-// The largest coordinate, whatever its sign.
+// The larger one, whatever the signs; no number where one of them is none, which processors' own comparisons
+// drop or keep as each likes. Without signs, floats are in the order of their bits, and what is no number is
+// last.
+template <class V>
+HWY_INLINE V larger_of(const V& a, const V& b) {
+  const hn::DFromV<V> d;
+  const hn::RebindToSigned<hn::DFromV<V>> bits;
+  return hn::BitCast(d, hn::Max(hn::BitCast(bits, hn::Abs(a)), hn::BitCast(bits, hn::Abs(b))));
+}
+// The largest coordinate, likewise.
 template <class V>
 HWY_INLINE V largest(const Points<V>& p) {
-  return hn::Max(hn::Max(hn::Abs(p.x), hn::Abs(p.y)), hn::Abs(p.z));
+  return larger_of(larger_of(p.x, p.y), p.z);
 }
 
 // A row of a matrix times (point, 1).

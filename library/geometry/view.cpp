@@ -12,38 +12,39 @@ namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;
 
-Check check_size(std::uint32_t width, std::uint32_t height) {
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
-    return Failure{"view: size " + std::to_string(width) + "x" + std::to_string(height) +
-                   " is out of range, expected 1 to " + std::to_string(kMaxSide) + " pixels a side"};
-  }
+Status bad(const char* message) {
+  return {StatusCode::bad_view, message};
+}
+
+Status check_size(std::uint32_t width, std::uint32_t height) {
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+    return bad("view: its size is out of range, expected 1 to 16384 pixels a side");
   return {};
 }
 
-Check check_camera(const Camera& c) {
-  if (!is_finite(c.eye)) return Failure{"camera: the eye is not finite"};
-  if (!is_finite(c.forward) || !is_finite(c.up)) return Failure{"camera: a direction is not finite"};
+Status check_camera(const Camera& c) {
+  if (!is_finite(c.eye)) return bad("camera: the eye is not finite");
+  if (!is_finite(c.forward) || !is_finite(c.up)) return bad("camera: a direction is not finite");
   const glm::dvec3 forward = to_double(c.forward), up = to_double(c.up);
   const double lengths = glm::length(forward) * glm::length(up);
   if (!(lengths > 0) || !(glm::length(glm::cross(forward, up)) > 1e-6 * lengths)) {
-    return Failure{"camera: forward and up must not be zero or parallel"};
+    return bad("camera: forward and up must not be zero or parallel");
   }
-  if (!std::isfinite(c.shift_x) || !std::isfinite(c.shift_y))
-    return Failure{"camera: the shift is not finite"};
+  if (!std::isfinite(c.shift_x) || !std::isfinite(c.shift_y)) return bad("camera: the shift is not finite");
   if (c.orthographic_height != 0) {
     if (!(c.orthographic_height > 0) || !std::isfinite(c.orthographic_height)) {
-      return Failure{"camera: the orthographic height must be positive and finite"};
+      return bad("camera: the orthographic height must be positive and finite");
     }
     if (!std::isfinite(c.near_plane) || !std::isfinite(c.far_plane) || !(c.near_plane < c.far_plane)) {
-      return Failure{"camera: an orthographic view needs finite planes with near < far"};
+      return bad("camera: an orthographic view needs finite planes with near < far");
     }
     return {};
   }
   if (!(c.vertical_fov > 0) || !(c.vertical_fov < std::numbers::pi_v<float>)) {
-    return Failure{"camera: the vertical field of view must lie between 0 and pi radians"};
+    return bad("camera: the vertical field of view must lie between 0 and pi radians");
   }
   if (!(c.near_plane > 0) || !std::isfinite(c.near_plane) || !(c.near_plane < c.far_plane)) {
-    return Failure{"camera: a perspective view needs 0 < near < far"};
+    return bad("camera: a perspective view needs 0 < near < far");
   }
   return {};
 }
@@ -95,26 +96,26 @@ bool is_finite(const Mat4& m) {
 
 }  // namespace
 
-Result<View> make_view(const Camera& camera, std::uint32_t width, std::uint32_t height) {
-  if (Check bad = check_size(width, height)) return *bad;
-  if (Check bad = check_camera(camera)) return *bad;
+Result<View> make_view(const Camera& camera, std::uint32_t width, std::uint32_t height) noexcept {
+  if (const Status size = check_size(width, height); !size) return size;
+  if (const Status sound = check_camera(camera); !sound) return sound;
   View view;
   view.world_to_eye = to_mat4(look_along(camera));
   view.eye_to_clip = to_mat4(projection(camera, static_cast<double>(width) / height));
   view.width = width;
   view.height = height;
-  if (Check bad = check(view)) return *bad;
+  if (const Status sound = check(view); !sound) return sound;
   return view;
 }
 
-Check check(const View& view) {
-  if (Check bad = check_size(view.width, view.height)) return bad;
+Status check(const View& view) noexcept {
+  if (const Status size = check_size(view.width, view.height); !size) return size;
   if (!is_finite(view.world_to_eye) || !is_finite(view.eye_to_clip)) {
-    return Failure{"view: a matrix has a NaN or infinite element, expected finite matrices"};
+    return bad("view: a matrix has a NaN or infinite element, expected finite matrices");
   }
   const auto& v = view.world_to_eye.m;
   if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1) {
-    return Failure{"view: world_to_eye must be affine, with the last row 0 0 0 1"};
+    return bad("view: world_to_eye must be affine, with the last row 0 0 0 1");
   }
   // Scaled by the rows so that a small but sound matrix is not taken for a singular one.
   for (const Mat4* matrix : {&view.world_to_eye, &view.eye_to_clip}) {
@@ -124,11 +125,20 @@ Check check(const View& view) {
       if (length > 0) rows[r] /= length;
     }
     if (!(std::fabs(glm::determinant(rows)) > 1e-12)) {
-      return Failure{std::string("view: ") + (matrix == &view.world_to_eye ? "world_to_eye" : "eye_to_clip") +
-                     " is singular, expected an invertible matrix"};
+      return bad(matrix == &view.world_to_eye
+                     ? "view: world_to_eye is singular, expected an invertible matrix"
+                     : "view: eye_to_clip is singular, expected an invertible matrix");
     }
   }
   return {};
+}
+
+Status check(const WorldView& view) noexcept {
+  const WorldPoint& o = view.origin;
+  // False for NaN, too.
+  const bool near =
+      std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach;
+  return near ? check(view.view) : bad("view: its origin is out of range, expected within 1e11 m of 0");
 }
 
 Mat4 world_to_clip(const View& view) noexcept {

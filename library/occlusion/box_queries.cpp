@@ -32,8 +32,7 @@ HWY_INLINE BoxCorners corners_of(const EyeProjection& e, const std::array<const 
   };
   BoxCorners out{{corner(0), corner(3)}, {}};
   const auto& [low, high] = out.at;
-  out.reach = {hn::Max(hn::Abs(low.x), hn::Abs(high.x)), hn::Max(hn::Abs(low.y), hn::Abs(high.y)),
-               hn::Max(hn::Abs(low.z), hn::Abs(high.z))};
+  out.reach = {larger_of(low.x, high.x), larger_of(low.y, high.y), larger_of(low.z, high.z)};
   return out;
 }
 

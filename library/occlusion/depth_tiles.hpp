@@ -8,10 +8,16 @@
 #include <sightline/occlusion.hpp>
 
 #include "library/geometry/aligned_vector.hpp"
+#include "library/geometry/box_reader.hpp"
+#include "library/geometry/linear.hpp"
 #include "library/occlusion/eye_projection.hpp"
 #include "library/occlusion/occluder_topology.hpp"
 
 namespace sightline::occlusion {
+
+using geometry::BoxSpan;
+using geometry::RowTransform;
+using geometry::SphereSpan;
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
@@ -28,7 +34,8 @@ struct MeshScratch {
 };
 
 struct DepthTiles {
-  WorldView view;
+  WorldView view{{{}, {}, 1, 1}, {}};
+  bool begun = false;
   EyeProjection projection;
   PixelRays rays;
   std::uint32_t width = 0, height = 0;
@@ -55,7 +62,7 @@ void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// Allocates until it has seen its largest mesh.
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform);
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
 void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
@@ -77,3 +84,18 @@ bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blo
                      std::size_t count) noexcept;
 
 }  // namespace sightline::occlusion
+
+namespace sightline {
+
+struct OcclusionBuffer::State : occlusion::DepthTiles {};
+struct OccluderMesh::Topology : occlusion::OccluderTopology {};
+
+/// The way of the library's own to what a buffer holds.
+struct OcclusionAccess {
+  static const occlusion::DepthTiles& tiles(const OcclusionBuffer& buffer) noexcept { return *buffer.state_; }
+  static const occlusion::OccluderTopology& topology(const OccluderMesh& mesh) noexcept {
+    return *mesh.topology_;
+  }
+};
+
+}  // namespace sightline

@@ -38,7 +38,7 @@ HWY_INLINE VPoints about_eye(const EyeProjection& e, const VPoints& p) {
 }
 
 HWY_INLINE VF reach_of(const Corners& corners) {
-  return hn::Max(hn::Max(largest(corners[0]), largest(corners[1])), largest(corners[2]));
+  return larger_of(larger_of(largest(corners[0]), largest(corners[1])), largest(corners[2]));
 }
 
 // Corners on the image. Equal corners of different triangles give equal bits.

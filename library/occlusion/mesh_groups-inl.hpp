@@ -44,7 +44,8 @@ HWY_INLINE VF size_along(const Vec4& row, const VPoints& half) {
 }
 
 // The boxes around the moved boxes of groups first ….
-HWY_INLINE WideBoxes moved_boxes(const OccluderTopology& mesh, const Affine& transform, std::size_t first) {
+HWY_INLINE WideBoxes moved_boxes(const OccluderTopology& mesh, const RowTransform& transform,
+                                 std::size_t first) {
   const F f;
   const float* box = &mesh.box[first / 16 * 96 + first % 16];
   const VPoints c{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
@@ -76,7 +77,8 @@ HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
-HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
+                              const RowTransform& transform) {
   const F f;
   const ViewRows view = view_rows(tiles);
   MeshScratch& s = tiles.mesh;

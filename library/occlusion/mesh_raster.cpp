@@ -22,7 +22,7 @@ namespace sightline::occlusion::HWY_NAMESPACE {
 
 // Triangle 16·group + i of the mesh in double precision.
 std::array<std::array<double, 3>, 3> exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
-                                                   const Affine& transform, std::size_t group,
+                                                   const RowTransform& transform, std::size_t group,
                                                    std::size_t i) {
   std::array<std::array<double, 3>, 3> out;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -92,7 +92,7 @@ HWY_INLINE bool draw_quad(DepthTiles& tiles, const ReadyTriangles& ready, int i)
   return true;
 }
 
-HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group) {
   ReadyTriangles ready;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(F()))
@@ -118,7 +118,7 @@ HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) 
   for (std::size_t i = 0; i < 3; ++i) hwy::Prefetch(&mesh.neighbour[(group * 3 + i) * kGroup]);
 }
 
-void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform) {
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = tiles.mesh;
   constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together
@@ -150,7 +150,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 HWY_EXPORT(draw_triangles);
 
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform) {
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform) {
   MeshScratch& s = tiles.mesh;
   const std::size_t groups = mesh.groups.size();
   if (s.known.size() < groups) {

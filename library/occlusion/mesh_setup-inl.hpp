@@ -16,7 +16,7 @@ constexpr std::size_t kGroup = OccluderTopology::kGroup;
 
 // A vector of triangles' corners about the eye, from triangle 16·group + lane on.
 HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh,
-                                     const Affine& transform, std::size_t group, std::size_t lane) {
+                                     const RowTransform& transform, std::size_t group, std::size_t lane) {
   const F f;
   Corners out;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,7 +46,7 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
 }
 
 // Found when first asked for.
-void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                  std::size_t group) {
   const F f;
   MeshScratch& s = tiles.mesh;
@@ -80,8 +80,8 @@ struct Candidates {
   VF nearness[3], nearest;  // found where some are drawn
 };
 
-HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
-                                    std::size_t group, std::size_t lane) {
+HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh,
+                                    const RowTransform& transform, std::size_t group, std::size_t lane) {
   const F f;
   const EyeProjection& e = tiles.projection;
   Candidates c;
@@ -215,7 +215,7 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
 }
 
 // Triangles 16·group + lane … of the mesh.
-HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Affine& transform,
+HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                        std::size_t group, std::size_t lane, ReadyTriangles& out) {
   const F f;
   Candidates c = candidates_of(tiles, mesh, transform, group, lane);

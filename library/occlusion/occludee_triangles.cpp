@@ -1,6 +1,6 @@
 // Objects' triangles in the blocks that queries read, and the queries.
-#include <numeric>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "library/occlusion/depth_tiles.hpp"
 
@@ -12,70 +12,80 @@ namespace {
 
 constexpr std::size_t kPerBlock = TriangleBlock::kSize;
 
-Failure expected_corners(std::size_t expected, std::size_t given) {
-  return {"triangles that are asked for: expected " + std::to_string(expected) + " corners, got " +
-          std::to_string(given)};
-}
-
 void fill(std::span<TriangleBlock> blocks, std::span<const Vec3> corners) noexcept {
   for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].take(corners, b * kPerBlock);
 }
 
+constexpr Status kExpectedCorners{StatusCode::bad_mesh,
+                                  "occludees: expected three corners for each of their triangles"};
+
 }  // namespace
 
-OccludeeTriangles::OccludeeTriangles() = default;
-OccludeeTriangles::~OccludeeTriangles() = default;
-OccludeeTriangles::OccludeeTriangles(OccludeeTriangles&&) noexcept = default;
-OccludeeTriangles& OccludeeTriangles::operator=(OccludeeTriangles&&) noexcept = default;
+struct OccludeeTriangles::State {
+  std::vector<TriangleBlock> blocks;       // object by object
+  std::vector<std::uint32_t> first_block;  // one an object, and the end
+  std::vector<std::uint32_t> triangles;
 
-Check OccludeeTriangles::assign(std::span<const Vec3> corners,
-                                std::span<const std::uint32_t> triangles_per_object) {
-  const std::uint64_t expected =
-      3 * std::accumulate(triangles_per_object.begin(), triangles_per_object.end(), std::uint64_t{0});
-  if (corners.size() != expected) return expected_corners(expected, corners.size());
-  triangles_.assign(triangles_per_object.begin(), triangles_per_object.end());
-  first_block_.assign(1, 0);
-  for (const std::uint64_t count : triangles_)
-    first_block_.push_back(first_block_.back() +
-                           static_cast<std::uint32_t>((count + kPerBlock - 1) / kPerBlock));
-  blocks_.resize(first_block_.back());
-  for (std::size_t o = 0; o < triangles_.size(); ++o) {
-    const std::size_t count = std::size_t{3} * triangles_[o];
-    fill(std::span(blocks_).subspan(first_block_[o], first_block_[o + 1] - first_block_[o]),
-         corners.first(count));
+  [[nodiscard]] std::span<TriangleBlock> of(std::uint32_t object) noexcept {
+    if (object >= triangles.size()) return {};
+    return std::span(blocks).subspan(first_block[object], first_block[object + 1] - first_block[object]);
+  }
+};
+
+OccludeeTriangles::OccludeeTriangles() : state_(new State) {}
+OccludeeTriangles::~OccludeeTriangles() {
+  delete state_;
+}
+OccludeeTriangles::OccludeeTriangles(OccludeeTriangles&& other) noexcept
+    : state_(std::exchange(other.state_, nullptr)) {}
+OccludeeTriangles& OccludeeTriangles::operator=(OccludeeTriangles&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
+
+Status OccludeeTriangles::assign(std::span<const Vec3> corners,
+                                 std::span<const std::uint32_t> triangles_per_object) {
+  constexpr std::uint64_t kMost = 0xfffffffeu;
+  std::uint64_t triangles = 0, blocks = 0;
+  for (const std::uint32_t count : triangles_per_object)
+    triangles += count, blocks += (std::uint64_t{count} + kPerBlock - 1) / kPerBlock;
+  if (triangles_per_object.size() > kMost || blocks > kMost)
+    return {StatusCode::too_many, "occludees: expected at most 2^32 - 2 objects and blocks of 16 triangles"};
+  if (corners.size() != 3 * triangles) return kExpectedCorners;
+  State& s = *state_;
+  s.triangles.assign(triangles_per_object.begin(), triangles_per_object.end());
+  s.first_block.assign(1, 0);
+  for (const std::uint64_t count : s.triangles)
+    s.first_block.push_back(s.first_block.back() +
+                            static_cast<std::uint32_t>((count + kPerBlock - 1) / kPerBlock));
+  s.blocks.resize(blocks);
+  for (std::uint32_t o = 0; o < objects(); ++o) {
+    const std::size_t count = std::size_t{3} * s.triangles[o];
+    fill(s.of(o), corners.first(count));
     corners = corners.subspan(count);
   }
   return {};
 }
 
-Check OccludeeTriangles::set(std::uint32_t object, std::span<const Vec3> corners) {
-  if (object >= objects()) {
-    return Failure{"triangles that are asked for: expected an object below " + std::to_string(objects()) +
-                   ", got " + std::to_string(object)};
-  }
-  const std::size_t expected = std::size_t{3} * triangles_[object];
-  if (corners.size() != expected) return expected_corners(expected, corners.size());
-  const std::uint32_t first = first_block_[object];
-  fill(std::span(blocks_).subspan(first, first_block_[object + 1] - first), corners);
+Status OccludeeTriangles::set(std::uint32_t object, std::span<const Vec3> corners) {
+  if (object >= objects()) return {StatusCode::bad_argument, "occludees: there is no such object", object};
+  if (corners.size() != std::size_t{3} * state_->triangles[object]) return kExpectedCorners;
+  fill(state_->of(object), corners);
   return {};
 }
 
 std::uint32_t OccludeeTriangles::objects() const noexcept {
-  return static_cast<std::uint32_t>(triangles_.size());
+  return static_cast<std::uint32_t>(state_->triangles.size());
 }
 
 std::uint32_t OccludeeTriangles::triangles(std::uint32_t object) const noexcept {
-  return object < objects() ? triangles_[object] : 0;
-}
-
-std::span<const TriangleBlock> OccludeeTriangles::blocks(std::uint32_t object) const noexcept {
-  if (object >= objects()) return {};
-  return std::span(blocks_).subspan(first_block_[object], first_block_[object + 1] - first_block_[object]);
+  return object < objects() ? state_->triangles[object] : 0;
 }
 
 bool OcclusionBuffer::may_see(const OccludeeTriangles& triangles, std::uint32_t object) const noexcept {
-  if (object >= triangles.objects()) return true;
-  return occlusion::query_triangles(*tiles_, triangles.blocks(object), triangles.triangles_[object]);
+  if (object >= triangles.objects() || !state_->begun) return true;
+  return occlusion::query_triangles(*state_, triangles.state_->of(object),
+                                    triangles.state_->triangles[object]);
 }
 
 std::size_t OcclusionBuffer::keep_seen(const OccludeeTriangles& triangles,
@@ -83,7 +93,7 @@ std::size_t OcclusionBuffer::keep_seen(const OccludeeTriangles& triangles,
   constexpr std::size_t kAhead = 3;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (i + kAhead < objects.size()) occlusion::prefetch(triangles.blocks(objects[i + kAhead]));
+    if (i + kAhead < objects.size()) occlusion::prefetch(triangles.state_->of(objects[i + kAhead]));
     const std::uint32_t object = objects[i];
     objects[kept] = object;
     kept += may_see(triangles, object);

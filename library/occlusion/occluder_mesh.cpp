@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <bit>
 #include <unordered_map>
+#include <utility>
 
-#include <sightline/occlusion.hpp>
+#include <sightline/occluder.hpp>
 
-#include "library/occlusion/occluder_topology.hpp"
+#include "library/geometry/linear.hpp"
+#include "library/occlusion/depth_tiles.hpp"
 
 namespace sightline {
 
@@ -34,8 +36,6 @@ void add_triangles(OccluderTopology& mesh, std::span<const Vec3> positions,
   };
   for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
     const auto corners = indices.subspan(i, 3);
-    if (std::ranges::any_of(corners, [&](std::uint32_t index) { return index >= positions.size(); }))
-      continue;
     const std::array<std::uint32_t, 3> corner{vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
     if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0])
       mesh.triangles.push_back(corner);
@@ -65,20 +65,48 @@ void find_neighbours(OccluderTopology& mesh) {
   }
 }
 
-}  // namespace
-
-OccluderMesh::OccluderMesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices)
-    : topology_(std::make_unique<OccluderTopology>()) {
-  add_triangles(*topology_, positions, indices);
-  sort_along_curve(*topology_);
-  find_neighbours(*topology_);
-  pair_up(*topology_);
-  topology_->lay_out();
+Status check_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) noexcept {
+  constexpr std::size_t kMostTriangles = std::size_t{1} << 30;
+  if (indices.size() % 3 != 0)
+    return {StatusCode::bad_mesh, "occluder: expected three indices a triangle", indices.size()};
+  if (indices.size() / 3 > kMostTriangles || positions.size() >= OccluderTopology::kNone)
+    return {StatusCode::too_many, "occluder: expected at most 2^30 triangles and 2^32 - 2 positions"};
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!geometry::is_finite(positions[i]))
+      return {StatusCode::bad_mesh, "occluder: a position is not finite", i};
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= positions.size())
+      return {StatusCode::bad_mesh, "occluder: an index names no position", i};
+  }
+  return {};
 }
 
-OccluderMesh::~OccluderMesh() = default;
-OccluderMesh::OccluderMesh(OccluderMesh&&) noexcept = default;
-OccluderMesh& OccluderMesh::operator=(OccluderMesh&&) noexcept = default;
+}  // namespace
+
+OccluderMesh::OccluderMesh() : topology_(new Topology) {}
+OccluderMesh::~OccluderMesh() {
+  delete topology_;
+}
+OccluderMesh::OccluderMesh(OccluderMesh&& other) noexcept
+    : topology_(std::exchange(other.topology_, nullptr)) {}
+OccluderMesh& OccluderMesh::operator=(OccluderMesh&& other) noexcept {
+  std::swap(topology_, other.topology_);
+  return *this;
+}
+
+Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
+                                        std::span<const std::uint32_t> indices) {
+  if (const Status sound = check_mesh(positions, indices); !sound) return sound;
+  OccluderMesh mesh;
+  add_triangles(*mesh.topology_, positions, indices);
+  sort_along_curve(*mesh.topology_);
+  find_neighbours(*mesh.topology_);
+  pair_up(*mesh.topology_);
+  mesh.topology_->lay_out();
+  return mesh;
+}
+
 std::size_t OccluderMesh::triangles() const noexcept {
   return topology_->triangles.size();
 }

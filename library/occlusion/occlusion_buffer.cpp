@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "library/occlusion/depth_tiles.hpp"
 
@@ -11,6 +12,9 @@ namespace sightline {
 
 namespace {
 
+using geometry::BoxSpan;
+using geometry::kBlock;
+using geometry::SphereSpan;
 using occlusion::DepthTiles;
 using occlusion::kTile;
 
@@ -38,94 +42,172 @@ void set_size(DepthTiles& t, std::uint32_t width, std::uint32_t height) {
   }
 }
 
+// Before the first begin(): empty, so that everything may be seen.
+Status check_begun(const DepthTiles& tiles) noexcept {
+  if (tiles.begun) return {};
+  return {StatusCode::stale_buffer,
+          "occlusion: the buffer was never begun, expected begin() with a view first"};
+}
+
+bool is_affine(const Mat4& m) noexcept {
+  for (const float x : m.m) {
+    if (!std::isfinite(x)) return false;
+  }
+  return m.m[3] == 0 && m.m[7] == 0 && m.m[11] == 0 && m.m[15] == 1;
+}
+
+// Asks in blocks, laid out where the caller's arrays are not so already.
+template <class Block, class Ask>
+void ask_blocks(std::size_t count, std::uint8_t* visible, const Ask& ask) {
+  Block block;
+  for (std::size_t first = 0; first < count; first += geometry::kBlock)
+    ask(first, std::min(geometry::kBlock, count - first), block, visible + first);
+}
+
 }  // namespace
 
-OcclusionBuffer::OcclusionBuffer() : tiles_(std::make_unique<DepthTiles>()) {}
-OcclusionBuffer::~OcclusionBuffer() = default;
-OcclusionBuffer::OcclusionBuffer(OcclusionBuffer&&) noexcept = default;
-OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&&) noexcept = default;
+OcclusionBuffer::OcclusionBuffer() : state_(new State) {}
+OcclusionBuffer::~OcclusionBuffer() {
+  delete state_;
+}
+OcclusionBuffer::OcclusionBuffer(OcclusionBuffer&& other) noexcept
+    : state_(std::exchange(other.state_, nullptr)) {}
+OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
 
-Check OcclusionBuffer::begin(const WorldView& view) {
-  if (Check bad = check(view.view)) return bad;
-  const WorldPoint& o = view.origin;
-  if (!(std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach)) {
-    return Failure{"occlusion: the view's origin is out of range, expected within 1e11 m of 0"};
-  }
-  if (view.view.width > kMaxSide || view.view.height > kMaxSide) {
-    return Failure{"occlusion: expected a view of at most 8192 pixels a side"};
-  }
-  tiles_->view = view;
-  tiles_->projection = occlusion::eye_projection(view, view.origin);
-  tiles_->rays = occlusion::pixel_rays(view.view);
-  set_size(*tiles_, view.view.width, view.view.height);
+Status OcclusionBuffer::begin(const WorldView& view) {
+  if (const Status sound = check(view); !sound) return sound;
+  if (view.view.width > kMaxSide || view.view.height > kMaxSide)
+    return {StatusCode::bad_view, "occlusion: the view is too large, expected at most 8192 pixels a side"};
+  state_->view = view;
+  state_->begun = true;
+  state_->projection = occlusion::eye_projection(view, view.origin);
+  state_->rays = occlusion::pixel_rays(view.view);
+  set_size(*state_, view.view.width, view.view.height);
   return {};
 }
 
-void OcclusionBuffer::draw_boxes(std::span<const Box> boxes) noexcept {
-  occlusion::draw_boxes(*tiles_, boxes);
+const WorldView& OcclusionBuffer::view() const noexcept {
+  return state_->view;
+}
+bool OcclusionBuffer::begun() const noexcept {
+  return state_->begun;
 }
 
-void OcclusionBuffer::draw_boxes(std::span<const WorldBox> boxes) noexcept {
-  const auto inwards = [](double low, double high, float& from, float& to) {
-    from = static_cast<float>(low), to = static_cast<float>(high);
-    if (static_cast<double>(from) < low) from = std::nextafter(from, kInfinity);
-    if (static_cast<double>(to) > high) to = std::nextafter(to, -kInfinity);
-  };
-  const WorldPoint& o = tiles_->view.origin;
-  std::array<Box, 64> some;
-  for (std::size_t first = 0; first < boxes.size(); first += some.size()) {
-    const std::size_t count = std::min(some.size(), boxes.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      const WorldBox& b = boxes[first + i];
-      inwards(b.min.x - o.x, b.max.x - o.x, some[i].min.x, some[i].max.x);
-      inwards(b.min.y - o.y, b.max.y - o.y, some[i].min.y, some[i].max.y);
-      inwards(b.min.z - o.z, b.max.z - o.z, some[i].min.z, some[i].max.z);
-    }
-    occlusion::draw_boxes(*tiles_, std::span(some).first(count));
+Status OcclusionBuffer::draw_boxes(const BoxView& boxes) noexcept {
+  if (const Status begun = check_begun(*state_); !begun) return begun;
+  if (!boxes.sound())
+    return {StatusCode::bad_argument, "occlusion: a box's pointer is null or its stride too short"};
+  if (std::span<const Box> structs; BoxReader::lies_as_structs(boxes, state_->view.origin, structs)) {
+    occlusion::draw_boxes(*state_, structs);
+    return {};
   }
+  std::array<WorldBox, kBlock> exact;
+  std::array<Box, kBlock> block;
+  for (std::size_t first = 0; first < boxes.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, boxes.size() - first);
+    BoxReader::read(boxes, first, count, exact.data(), false);
+    for (std::size_t i = 0; i < count; ++i) block[i] = geometry::inner_box(exact[i], state_->view.origin);
+    occlusion::draw_boxes(*state_, std::span(block).first(count));
+  }
+  return {};
 }
 
-void OcclusionBuffer::draw_spheres(std::span<const Sphere> spheres) noexcept {
-  occlusion::draw_spheres(*tiles_, spheres);
+Status OcclusionBuffer::draw_spheres(const SphereView& spheres) noexcept {
+  if (const Status begun = check_begun(*state_); !begun) return begun;
+  if (!spheres.sound())
+    return {StatusCode::bad_argument, "occlusion: a sphere's pointer is null or its stride too short"};
+  if (std::span<const Sphere> structs; BoxReader::lies_as_structs(spheres, structs)) {
+    occlusion::draw_spheres(*state_, structs);
+    return {};
+  }
+  std::array<Sphere, kBlock> block;
+  for (std::size_t first = 0; first < spheres.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, spheres.size() - first);
+    for (std::size_t i = 0; i < count; ++i) block[i] = spheres[first + i];
+    occlusion::draw_spheres(*state_, std::span(block).first(count));
+  }
+  return {};
 }
 
-void OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Affine& transform) {
-  occlusion::draw_mesh(*tiles_, mesh.topology(), transform);
+Status OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Mat4& transform) {
+  if (const Status begun = check_begun(*state_); !begun) return begun;
+  if (!is_affine(transform)) {
+    return {StatusCode::bad_argument,
+            "occlusion: the transform is not finite or not affine, expected the last row 0 0 0 1"};
+  }
+  occlusion::draw_mesh(*state_, *mesh.topology_, geometry::row_transform(transform));
+  return {};
 }
 
 bool OcclusionBuffer::may_see(const Box& b) const noexcept {
+  if (!state_->begun) return true;
   std::uint8_t visible = 1;
-  occlusion::query_boxes(*tiles_, tiles_->projection,
+  occlusion::query_boxes(*state_, state_->projection,
                          {&b.min.x, &b.min.y, &b.min.z, &b.max.x, &b.max.y, &b.max.z, 1}, &visible);
   return visible != 0;
 }
 
-void OcclusionBuffer::may_see(const BoxSpan& boxes, std::span<std::uint8_t> visible) const noexcept {
-  occlusion::query_boxes(*tiles_, tiles_->projection, boxes, visible.data());
+Status OcclusionBuffer::may_see(const BoxView& boxes, std::span<std::uint8_t> visible) const noexcept {
+  const std::size_t count = boxes.size();
+  if (!boxes.sound())
+    return {StatusCode::bad_argument, "occlusion: a box's pointer is null or its stride too short"};
+  if (visible.size() < count)
+    return {StatusCode::buffer_too_small, "occlusion: expected room for one answer a box"};
+  if (!state_->begun) {
+    std::fill_n(visible.begin(), count, std::uint8_t{1});
+    return {};
+  }
+  // Arrays are read where they lie, about their own origin.
+  BoxSpan arrays;
+  if (BoxReader::lies_in_arrays(boxes, boxes.origin(), arrays)) {
+    const bool near = boxes.origin() == state_->view.origin;
+    const auto& projection =
+        near ? state_->projection : occlusion::eye_projection(state_->view, boxes.origin());
+    occlusion::query_boxes(*state_, projection, arrays, visible.data());
+    return {};
+  }
+  ask_blocks<geometry::BoxBlock>(
+      count, visible.data(), [&](std::size_t first, std::size_t size, auto& block, std::uint8_t* out) {
+        const BoxSpan laid_out = BoxReader::lay_out(boxes, first, size, state_->view.origin, block);
+        occlusion::query_boxes(*state_, state_->projection, laid_out, out);
+      });
+  return {};
 }
 
-void OcclusionBuffer::may_see(const BoxSpan& boxes, const WorldPoint& origin,
-                              std::span<std::uint8_t> visible) const noexcept {
-  occlusion::query_boxes(*tiles_, occlusion::eye_projection(tiles_->view, origin), boxes, visible.data());
-}
-
-void OcclusionBuffer::may_see(const SphereSpan& spheres, std::span<std::uint8_t> visible) const noexcept {
-  occlusion::query_spheres(*tiles_, tiles_->projection, spheres, visible.data());
+Status OcclusionBuffer::may_see(const SphereView& spheres, std::span<std::uint8_t> visible) const noexcept {
+  const std::size_t count = spheres.size();
+  if (!spheres.sound())
+    return {StatusCode::bad_argument, "occlusion: a sphere's pointer is null or its stride too short"};
+  if (visible.size() < count)
+    return {StatusCode::buffer_too_small, "occlusion: expected room for one answer a sphere"};
+  if (!state_->begun) {
+    std::fill_n(visible.begin(), count, std::uint8_t{1});
+    return {};
+  }
+  if (SphereSpan arrays; BoxReader::lies_in_arrays(spheres, arrays)) {
+    occlusion::query_spheres(*state_, state_->projection, arrays, visible.data());
+    return {};
+  }
+  ask_blocks<geometry::SphereBlock>(
+      count, visible.data(), [&](std::size_t first, std::size_t size, auto& block, std::uint8_t* out) {
+        occlusion::query_spheres(*state_, state_->projection, BoxReader::lay_out(spheres, first, size, block),
+                                 out);
+      });
+  return {};
 }
 
 bool OcclusionBuffer::may_see(std::span<const Vec3> triangles) const noexcept {
-  return occlusion::query_triangles(*tiles_, triangles);
+  return !state_->begun || occlusion::query_triangles(*state_, triangles);
 }
 
-std::uint32_t OcclusionBuffer::width() const noexcept {
-  return tiles_->width;
-}
-std::uint32_t OcclusionBuffer::height() const noexcept {
-  return tiles_->height;
-}
-
-void OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
-  const DepthTiles& t = *tiles_;
+Status OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
+  if (const Status begun = check_begun(*state_); !begun) return begun;
+  const DepthTiles& t = *state_;
+  if (pixels.size() < std::size_t{t.width} * t.height)
+    return {StatusCode::buffer_too_small, "occlusion: expected room for width x height pixels"};
   for (std::uint32_t y = 0; y < t.height; ++y) {
     for (std::uint32_t x = 0; x < t.width; ++x) {
       const std::size_t tile = std::size_t{y / kTile} * t.stride + x / kTile;
@@ -133,6 +215,7 @@ void OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
           t.nearest[tile] > -kInfinity ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile] : -kInfinity;
     }
   }
+  return {};
 }
 
 }  // namespace sightline

@@ -70,14 +70,14 @@ struct Rows {
 Complaint read_rows(Bytes bytes, std::size_t at, std::size_t rows, std::size_t columns, Rows& out) {
   const std::uint64_t stride = stride_of(columns), a_block = rows_a_block(stride);
   for (std::uint64_t first = 0; first < rows; first += a_block) {
-    if (!fits(at, 4, bytes.size())) return "ends before its last cell";
+    if (!fits(at, 4, bytes.size())) return "pvs: it ends before its last cell";
     const std::size_t length = read_at<std::uint32_t>(bytes, at);
     at += 4;
-    if (!fits(at, length, bytes.size())) return "a bitmap ends beyond the file";
+    if (!fits(at, length, bytes.size())) return "pvs: a bitmap ends beyond the file";
     const std::uint64_t here = std::min<std::uint64_t>(a_block, rows - first);
     auto take = [&](std::uint32_t bit) -> Complaint {
       const std::uint64_t row = first + bit / stride, column = bit % stride;
-      if (column >= columns) return "holds numbers out of range";
+      if (column >= columns) return "pvs: a set holds numbers out of range";
       if (out.members.size() >= kMostMembers) return kTooManyMembers;
       while (out.first.size() <= row) out.first.push_back(out.members.size());
       out.members.push_back(static_cast<std::uint32_t>(column));
@@ -87,7 +87,7 @@ Complaint read_rows(Bytes bytes, std::size_t at, std::size_t rows, std::size_t c
     if (const Complaint bad = walk_set(bitmap, static_cast<std::uint32_t>(here * stride), take)) return bad;
     at += length;
   }
-  if (at != bytes.size()) return "goes on after its last cell";
+  if (at != bytes.size()) return "pvs: it goes on after its last cell";
   out.first.resize(rows + 1, out.members.size());
   return nullptr;
 }
@@ -137,30 +137,30 @@ Complaint read_order(Bytes planes, std::size_t objects, Numbers& order) {
   }
   std::vector<std::uint8_t> stands(objects, 0);
   for (const std::uint32_t object : order) {
-    if (object >= objects || stands[object]) return "its objects stand in no order";
+    if (object >= objects || stands[object]) return "pvs: its objects stand in no order";
     stands[object] = 1;
   }
   return nullptr;
 }
 
 Complaint read_head(Bytes bytes, std::size_t count, std::size_t objects, Head& head) {
-  if (!fits(2, count, bytes.size())) return "ends before its last cell";
+  if (!fits(2, count, bytes.size())) return "pvs: it ends before its last cell";
   head.layout = static_cast<Layout>(bytes[0]);
   head.ordered = bytes[1] == std::byte{1};
   if (head.layout > Layout::by_object || (!head.ordered && bytes[1] != std::byte{0})) {
-    return "its layout is unknown";
+    return "pvs: its layout is unknown";
   }
   head.cells = bytes.subspan(2, count);
   head.length = 2 + count;
   for (const std::byte cell : head.cells) {
     const bool plain = cell <= std::byte{kOpen};
     if (cell > std::byte{kOpen + 3} || (!plain && head.layout != Layout::by_difference)) {
-      return "a cell is neither open nor closed";
+      return "pvs: a cell is neither open nor closed";
     }
   }
   if (!head.ordered) return nullptr;
   if (!fits(head.length, std::uint64_t{4} * objects, bytes.size())) {
-    return "ends within the order of its objects";
+    return "pvs: it ends within the order of its objects";
   }
   const Bytes planes = bytes.subspan(head.length, 4 * objects);
   head.length += 4 * objects;
@@ -169,7 +169,7 @@ Complaint read_head(Bytes bytes, std::size_t count, std::size_t objects, Head& h
 
 Complaint decode_by_object(Bytes bytes, const Head& head, const Numbers& open, CellPvs& cells) {
   // An order takes four bytes an object, so that there are as many objects as bytes account for.
-  if (!head.ordered) return "its objects stand in no order";
+  if (!head.ordered) return "pvs: its objects stand in no order";
   Rows seen;
   if (const Complaint bad = read_rows(bytes, head.length, cells.objects, open.size(), seen)) return bad;
   for (const std::uint32_t i : seen.members) ++cells.first[open[i] + 1];
@@ -197,9 +197,14 @@ bool append_cell(CellPvs& cells, std::uint32_t cell, std::uint8_t like, const Nu
   return true;
 }
 
-std::string decode_by_cell(Bytes bytes, const Head& head, const Numbers& open, CellPvs& cells) {
+Status damaged(Complaint why) {
+  return {StatusCode::bad_file, why};
+}
+
+Status decode_by_cell(Bytes bytes, const Head& head, const Numbers& open, CellPvs& cells) {
   Rows rows;
-  if (const Complaint bad = read_rows(bytes, head.length, open.size(), cells.objects, rows)) return bad;
+  if (const Complaint bad = read_rows(bytes, head.length, open.size(), cells.objects, rows))
+    return damaged(bad);
   Numbers difference;
   std::size_t row = 0;
   for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
@@ -212,9 +217,9 @@ std::string decode_by_cell(Bytes bytes, const Head& head, const Numbers& open, C
       }
       const auto like = static_cast<std::uint8_t>(static_cast<std::uint8_t>(head.cells[cell]) - kOpen);
       if (!append_cell(cells, cell, like, difference)) {
-        return "cell " + std::to_string(cell) + " is like one that is not there";
+        return {StatusCode::bad_file, "pvs: a cell is like one that is not there", cell};
       }
-      if (cells.visible.size() > kMostMembers) return kTooManyMembers;
+      if (cells.visible.size() > kMostMembers) return damaged(kTooManyMembers);
     }
     cells.first[cell + 1] = cells.visible.size();
   }
@@ -296,21 +301,16 @@ std::vector<std::byte> code_cells(const CellPvs& cells, Layout layout, std::span
   return out;
 }
 
-Check decode_cells(Bytes bytes, const std::string& name, CellPvs& cells) {
+Status decode_cells(Bytes bytes, CellPvs& cells) {
   const std::size_t count = std::size_t{cells.counts[0]} * cells.counts[1] * cells.counts[2];
   Head head;
-  if (const Complaint bad = read_head(bytes, count, cells.objects, head)) return Failure{name + ": " + bad};
+  if (const Complaint bad = read_head(bytes, count, cells.objects, head)) return damaged(bad);
   for (const std::byte cell : head.cells) cells.open.push_back(cell != std::byte{kClosed});
   const Numbers open = open_cells(cells);
   cells.first.assign(count + 1, 0);
-  std::string bad;
-  if (head.layout == Layout::by_object) {
-    if (const Complaint why = decode_by_object(bytes, head, open, cells)) bad = why;
-  } else {
-    bad = decode_by_cell(bytes, head, open, cells);
-  }
-  if (!bad.empty()) return Failure{name + ": " + bad};
-  return std::nullopt;
+  if (head.layout != Layout::by_object) return decode_by_cell(bytes, head, open, cells);
+  if (const Complaint bad = decode_by_object(bytes, head, open, cells)) return damaged(bad);
+  return {};
 }
 
 }  // namespace sightline::pvs

@@ -10,11 +10,10 @@
 
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <sightline/pvs.hpp>
-#include <sightline/result.hpp>
+#include <sightline/status.hpp>
 
 namespace sightline::pvs {
 
@@ -33,8 +32,8 @@ std::vector<std::uint32_t> object_order(const CellPvs& cells);
 std::vector<std::byte> code_cells(const CellPvs& cells, Layout layout, std::span<const std::uint32_t> order);
 
 /// Fills in `open`, `first` and `visible` of `cells`, whose `counts` and `objects` are known and sound.
-/// Refuses bytes that code_cells did not make; allocates no more than they and the cells account for. `name`
-/// is what the refusal calls them.
-Check decode_cells(std::span<const std::byte> bytes, const std::string& name, CellPvs& cells);
+/// Refuses bytes that code_cells did not make (index: the cell, where one is to blame); allocates no more
+/// than they and the cells account for.
+Status decode_cells(std::span<const std::byte> bytes, CellPvs& cells);
 
 }  // namespace sightline::pvs

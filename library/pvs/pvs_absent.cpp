@@ -3,13 +3,20 @@
 
 namespace sightline {
 
+namespace {
+
+constexpr Status kAbsent{
+    StatusCode::bad_file,
+    "pvs: this Sightline was built without SIGHTLINE_PVS, expected one with roaring and zstd"};
+
+}  // namespace
+
 Result<std::vector<std::byte>> write_pvs(const CellPvs&) {
-  return Failure{"pvs: this Sightline was built without SIGHTLINE_PVS, expected one with roaring and zstd"};
+  return kAbsent;
 }
 
-Result<CellPvs> read_pvs(std::span<const std::byte>, std::string_view name) {
-  return Failure{std::string(name) +
-                 ": this Sightline was built without SIGHTLINE_PVS, expected one with roaring and zstd"};
+Result<CellPvs> read_pvs(std::span<const std::byte>) {
+  return kAbsent;
 }
 
 }  // namespace sightline

@@ -50,7 +50,8 @@ Result<std::vector<std::byte>> compress(Bytes bytes) {
   std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
   const std::size_t size =
       ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), bytes.size() > kMany ? 9 : 19);
-  if (ZSTD_isError(size)) return Failure{std::string("bake: zstd: ") + ZSTD_getErrorName(size)};
+  if (ZSTD_isError(size))
+    return Status{StatusCode::too_many, "pvs: the sets do not fit into memory compressed"};
   packed.resize(size);
   return packed;
 }
@@ -81,53 +82,52 @@ struct Header {
   std::uint64_t unpacked_size = 0, packed_size = 0;
 };
 
-// Empty, or what is wrong, in words that follow the file's name.
-std::string read_counts(Bytes file, CellPvs& cells) {
+Status damaged(const char* why, std::size_t at) {
+  return {StatusCode::bad_file, why, at};
+}
+
+Status read_counts(Bytes file, CellPvs& cells) {
   cells.objects = read_at<std::uint32_t>(file, 12);
   cells.scene = read_at<std::uint64_t>(file, 16);
   std::uint64_t count = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     cells.counts[axis] = read_at<std::uint32_t>(file, 24 + 4 * axis);
     if (cells.counts[axis] == 0 || cells.counts[axis] > kMostCells) {
-      return "its number of cells is out of range";
+      return damaged("pvs: its number of cells is out of range", 24);
     }
     count *= cells.counts[axis];
-    if (count > kMostCells) return "its number of cells is out of range";
+    if (count > kMostCells) return damaged("pvs: its number of cells is out of range", 24);
   }
-  if (cells.objects == 0 || cells.objects > kMostObjects) return "its number of objects is out of range";
+  if (cells.objects == 0 || cells.objects > kMostObjects)
+    return damaged("pvs: its number of objects is out of range", 12);
   const auto bound = [&](std::size_t i) { return read_at<float>(file, 36 + 4 * i); };
   cells.bounds = {{bound(0), bound(1), bound(2)}, {bound(3), bound(4), bound(5)}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(bound(axis)) || !std::isfinite(bound(axis + 3)) || !(bound(axis) <= bound(axis + 3))) {
-      return "its bounds are not finite with min <= max";
+      return damaged("pvs: its bounds are not finite with min <= max", 36);
     }
   }
   return {};
 }
 
-std::string read_header(Bytes file, CellPvs& cells, Header& header) {
+Status read_header(Bytes file, CellPvs& cells, Header& header) {
   if (file.size() < sizeof kMagic || std::memcmp(file.data(), kMagic, sizeof kMagic) != 0) {
-    return "is no file of baked visibility, expected one that 'sightline bake' wrote";
+    return damaged("pvs: it is no file of baked visibility, expected one that 'sightline bake' wrote", 0);
   }
-  if (file.size() < kHeader) {
-    return "ends within its header, expected at least " + std::to_string(kHeader) + " bytes";
-  }
-  if (const auto format = read_at<std::uint32_t>(file, 8); format != kFormat) {
-    return "has version " + std::to_string(format) + ", expected " + std::to_string(kFormat) +
-           "; bake it again";
-  }
-  if (std::string bad = read_counts(file, cells); !bad.empty()) return bad;
+  if (file.size() < kHeader)
+    return damaged("pvs: it ends within its header, expected at least 84 bytes", file.size());
+  if (read_at<std::uint32_t>(file, 8) != kFormat)
+    return damaged("pvs: it has another version than 2, the one that is read; bake it again", 8);
+  if (const Status sound = read_counts(file, cells); !sound) return sound;
   header = {read_at<std::uint64_t>(file, 60), read_at<std::uint64_t>(file, 68)};
   const std::uint64_t rest = file.size() - kHeader;
-  if (header.packed_size > rest) {
-    return "is truncated: expected " + std::to_string(header.packed_size) + " bytes of sets, found " +
-           std::to_string(rest);
-  }
-  if (header.packed_size < rest) return "goes on after its end";
-  if (read_at<std::uint64_t>(file, kChecksumAt) != checksum_of_file(file)) {
-    return "is damaged: its checksum does not match";
-  }
-  if (header.unpacked_size > kMostBytes) return "its sets are too large";
+  if (header.packed_size > rest)
+    return damaged("pvs: it is truncated, expected as many bytes of sets as its header says", file.size());
+  if (header.packed_size < rest)
+    return damaged("pvs: it goes on after its end", kHeader + header.packed_size);
+  if (read_at<std::uint64_t>(file, kChecksumAt) != checksum_of_file(file))
+    return damaged("pvs: it is damaged, its checksum does not match", kChecksumAt);
+  if (header.unpacked_size > kMostBytes) return damaged("pvs: its sets are too large", 60);
   return {};
 }
 
@@ -135,8 +135,8 @@ std::string read_header(Bytes file, CellPvs& cells, Header& header) {
 
 Result<std::vector<std::byte>> write_pvs(const CellPvs& cells) {
   if (!sound(cells)) {
-    return Failure{
-        "bake: the cells are not sound, expected sets in ascending order of objects that there are"};
+    return Status{StatusCode::bad_argument,
+                  "pvs: the cells are not sound, expected sets in ascending order of objects that there are"};
   }
   const std::vector<std::uint32_t> order = pvs::object_order(cells);
   std::vector<std::byte> packed;
@@ -145,10 +145,11 @@ Result<std::vector<std::byte>> write_pvs(const CellPvs& cells) {
     if (layout == pvs::Layout::by_object && order.empty()) continue;
     const std::vector<std::byte> unpacked = pvs::code_cells(cells, layout, order);
     if (unpacked.size() > kMostBytes || cells.visible.size() > pvs::kMostMembers) {
-      return Failure{"bake: the sets are larger than Sightline reads, expected a larger --cell"};
+      return Status{StatusCode::too_many,
+                    "pvs: the sets are larger than Sightline reads, expected larger cells"};
     }
     Result<std::vector<std::byte>> smaller = compress(unpacked);
-    if (!smaller) return smaller.failure();
+    if (!smaller) return smaller.error();
     if (!packed.empty() && smaller->size() >= packed.size()) continue;
     packed = *std::move(smaller), unpacked_size = unpacked.size();
   }
@@ -167,22 +168,17 @@ Result<std::vector<std::byte>> write_pvs(const CellPvs& cells) {
   return file;
 }
 
-Result<CellPvs> read_pvs(Bytes file, std::string_view what) {
-  const std::string name(what);
+Result<CellPvs> read_pvs(Bytes file) {
   CellPvs cells;
   Header header;
-  if (const std::string bad = read_header(file, cells, header); !bad.empty()) {
-    return Failure{name + ": " + bad};
-  }
+  if (const Status sound = read_header(file, cells, header); !sound) return sound;
   const Bytes packed = file.subspan(kHeader);
-  if (ZSTD_getFrameContentSize(packed.data(), packed.size()) != header.unpacked_size) {
-    return Failure{name + ": its sets do not unpack"};
-  }
+  constexpr Status kNotUnpacked{StatusCode::bad_file, "pvs: its sets do not unpack", kHeader};
+  if (ZSTD_getFrameContentSize(packed.data(), packed.size()) != header.unpacked_size) return kNotUnpacked;
   std::vector<std::byte> sets(header.unpacked_size);
-  if (ZSTD_decompress(sets.data(), sets.size(), packed.data(), packed.size()) != header.unpacked_size) {
-    return Failure{name + ": its sets do not unpack"};
-  }
-  if (Check bad = pvs::decode_cells(sets, name, cells)) return *std::move(bad);
+  if (ZSTD_decompress(sets.data(), sets.size(), packed.data(), packed.size()) != header.unpacked_size)
+    return kNotUnpacked;
+  if (const Status sound = pvs::decode_cells(sets, cells); !sound) return sound;
   return cells;
 }
 

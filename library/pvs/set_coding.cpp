@@ -32,14 +32,14 @@ public:
                                                     : read_bits(high);
       if (bad) return bad;
     }
-    return at_ == bytes_.size() ? nullptr : "is longer than its containers";
+    return at_ == bytes_.size() ? nullptr : "pvs: a bitmap is longer than its containers";
   }
 
 private:
-  static constexpr Complaint kCutOff = "ends within a container";
+  static constexpr Complaint kCutOff = "pvs: a bitmap ends within a container";
 
   Complaint read_head() {
-    if (bytes_.size() < 4) return "ends within its header";
+    if (bytes_.size() < 4) return "pvs: it ends within its header";
     const auto cookie = read_at<std::uint32_t>(bytes_, 0);
     at_ = 4;
     if ((cookie & 0xffff) == kRuns) {
@@ -47,13 +47,14 @@ private:
       run_flags_ = at_;
       at_ += (count_ + 7) / 8;
     } else if (cookie == kNoRuns) {
-      if (bytes_.size() < 8) return "ends within its header";
+      if (bytes_.size() < 8) return "pvs: it ends within its header";
       count_ = read_at<std::uint32_t>(bytes_, 4);
       at_ = 8;
     } else {
-      return "is no bitmap";
+      return "pvs: a set is no bitmap";
     }
-    if (count_ > 65536 || !fits(at_, count_ * 4, bytes_.size())) return "names more containers than it holds";
+    if (count_ > 65536 || !fits(at_, count_ * 4, bytes_.size()))
+      return "pvs: a bitmap names more containers than it holds";
     keys_ = at_;
     at_ += count_ * 4;
     // Offsets, which follow from the sizes.
@@ -69,7 +70,7 @@ private:
     for (std::uint32_t r = 0; r < runs; ++r, at_ += 4) {
       const std::uint32_t start = read_at<std::uint16_t>(bytes_, at_),
                           length = read_at<std::uint16_t>(bytes_, at_ + 2);
-      if (start + length > 0xffff) return "has a run beyond its container";
+      if (start + length > 0xffff) return "pvs: a bitmap has a run beyond its container";
       for (std::uint32_t i = 0; i <= length; ++i) {
         if (const Complaint bad = add(high | (start + i))) return bad;
       }
@@ -101,7 +102,7 @@ private:
 
   Complaint add(std::uint32_t member) {
     if (static_cast<std::int64_t>(member) <= last_ || member >= limit_) {
-      return "holds numbers out of order or out of range";
+      return "pvs: a set holds numbers out of order or out of range";
     }
     last_ = member;
     return visit_(context_, member);
@@ -133,15 +134,12 @@ Complaint walk_set(Bytes bytes, std::uint32_t limit, Complaint (*visit)(void*, s
   return SetReader(bytes, limit, visit, context).read();
 }
 
-Check unpack_set(Bytes bytes, std::uint32_t limit, const std::string& what,
-                 std::vector<std::uint32_t>& members) {
-  const Complaint bad = walk_set(bytes, limit, [&](std::uint32_t member) -> Complaint {
+Complaint unpack_set(Bytes bytes, std::uint32_t limit, std::vector<std::uint32_t>& members) {
+  return walk_set(bytes, limit, [&](std::uint32_t member) -> Complaint {
     if (members.size() >= kMostMembers) return kTooManyMembers;
     members.push_back(member);
     return nullptr;
   });
-  if (bad) return Failure{what + ": " + bad};
-  return std::nullopt;
 }
 
 }  // namespace sightline::pvs

@@ -4,11 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <vector>
-
-#include <sightline/result.hpp>
 
 namespace sightline::pvs {
 
@@ -21,7 +18,7 @@ enum class Runs {
 /// A set, ascending.
 std::vector<std::byte> pack_set(std::span<const std::uint32_t> members, Runs runs = Runs::coded);
 
-/// What is wrong, in words that follow the name of a set; null where nothing is.
+/// What is wrong, a sentence; null where nothing is.
 using Complaint = const char*;
 
 /// Reads one, and checks everything: members ascending and below `limit`, nothing left over. Calls
@@ -39,13 +36,12 @@ Complaint walk_set(std::span<const std::byte> bytes, std::uint32_t limit, Visit&
       &visit);
 }
 
-/// Appends the members to `members`, and complains also where there are more than Sightline reads. `what`
-/// names the set.
-Check unpack_set(std::span<const std::byte> bytes, std::uint32_t limit, const std::string& what,
-                 std::vector<std::uint32_t>& members);
+/// Appends the members to `members`, and complains also where there are more than Sightline reads.
+Complaint unpack_set(std::span<const std::byte> bytes, std::uint32_t limit,
+                     std::vector<std::uint32_t>& members);
 
 /// A run is short in a file and long in memory.
 inline constexpr std::size_t kMostMembers = std::size_t{1} << 27;
-inline constexpr Complaint kTooManyMembers = "holds more than Sightline reads";
+inline constexpr Complaint kTooManyMembers = "pvs: a set holds more than Sightline reads";
 
 }  // namespace sightline::pvs

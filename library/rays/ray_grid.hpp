@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 #include <sightline/view.hpp>
 
 namespace sightline::rays {

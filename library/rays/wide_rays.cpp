@@ -310,15 +310,17 @@ void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, WideStack& stack, 
 
 namespace {
 
-// A grid that jobs cast some rows of tiles of at a time, each the next that nobody has begun. The pieces are
-// the same for any number of jobs, and so are the packets: the work is, too.
-struct SharedGrid {
+// Rays that jobs cast some of at a time, each the next that nobody has begun. The pieces are the same for any
+// number of jobs, and so are the packets: the work is, too.
+struct SharedRays {
   static constexpr std::size_t kPiece = 1024;
 
   const rays::WideBvh& bvh;
-  const RayGrid& grid;
+  std::span<const PreparedRay> rays;
+  std::span<const std::uint32_t> order;  // all rays
+  ObjectId* object;
+  float* distance;
   std::span<WideStack> stacks;
-  RayHits& hits;
   bool together;
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> met{0}, nodes{0}, boxes{0};
@@ -327,11 +329,11 @@ struct SharedGrid {
     WideStack& stack = stacks[job];
     grow(stack, bvh);
     RayStats stats;
-    const std::size_t count = grid.size();
+    const std::size_t count = order.size();
     for (std::size_t at; (at = next.fetch_add(kPiece, std::memory_order_relaxed)) < count;) {
       HWY_DYNAMIC_DISPATCH(cast)
-      (bvh.nodes().data(), grid.prepared.data(), grid.order.data() + at, std::min(kPiece, count - at),
-       together, hits.object.data(), hits.distance.data(), &stack, &stats);
+      (bvh.nodes().data(), rays.data(), order.data() + at, std::min(kPiece, count - at), together, object,
+       distance, &stack, &stats);
     }
     met += stats.hits, nodes += stats.nodes, boxes += stats.boxes;
   }
@@ -339,19 +341,29 @@ struct SharedGrid {
 
 }  // namespace
 
-void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, const JobSystem& jobs,
-               std::span<WideStack> stacks, RayHits& hits) {
-  hits.reset(grid.size());
+void cast_wide(const rays::WideBvh& bvh, std::span<const PreparedRay> rays,
+               std::span<const std::uint32_t> order, const JobSystem& jobs, std::span<WideStack> stacks,
+               std::span<ObjectId> object, std::span<float> distance, RayStats& stats) {
+  stats.rays += order.size();
+  std::fill_n(object.begin(), rays.size(), kNoObject);
+  std::fill_n(distance.begin(), rays.size(), -1.0f);
   if (bvh.nodes().empty()) return;
-  SharedGrid shared{bvh, grid, stacks, hits, go_together(bvh, grid.size())};
-  const auto run = [](void* data, std::uint32_t job) { static_cast<SharedGrid*>(data)->cast_pieces(job); };
+  SharedRays shared{bvh, rays, order, object.data(), distance.data(), stacks, go_together(bvh, order.size())};
+  const auto run = [](void* data, std::uint32_t job) { static_cast<SharedRays*>(data)->cast_pieces(job); };
   const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(jobs.threads, stacks.size()));
   if (jobs.run && count > 1) {
     jobs.run(jobs.user, count, run, &shared);
   } else {
     run(&shared, 0);
   }
-  hits.stats.hits = shared.met, hits.stats.nodes = shared.nodes, hits.stats.boxes = shared.boxes;
+  stats.hits += shared.met, stats.nodes += shared.nodes, stats.boxes += shared.boxes;
+}
+
+void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, const JobSystem& jobs,
+               std::span<WideStack> stacks, RayHits& hits) {
+  hits.object.resize(grid.size()), hits.distance.resize(grid.size());
+  hits.stats = {};
+  cast_wide(bvh, grid.prepared, grid.order, jobs, stacks, hits.object, hits.distance, hits.stats);
 }
 
 }  // namespace sightline::rays

@@ -4,7 +4,7 @@
 #include <span>
 
 #include <sightline/jobs.hpp>
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 
 #include "library/rays/ray_grid.hpp"
 #include "library/rays/ray_hits.hpp"
@@ -29,8 +29,13 @@ void cast_wide(const rays::WideBvh& bvh, std::span<const PreparedRay> rays,
 /// A whole grid, tile by tile, into a result that is reset first.
 void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, WideStack& stack, RayHits& hits);
 
-/// The same shared out over at most jobs.threads jobs, one for each of `stacks` (at least one): the same
-/// result, statistics included, for any number of them.
+/// All rays in some order, shared out over at most jobs.threads jobs, one for each of `stacks` (at least
+/// one): the same hits and statistics for any number of them.
+void cast_wide(const rays::WideBvh& bvh, std::span<const PreparedRay> rays,
+               std::span<const std::uint32_t> order, const JobSystem& jobs, std::span<WideStack> stacks,
+               std::span<ObjectId> object, std::span<float> distance, RayStats& stats);
+
+/// The same of a grid, into a result that is reset first.
 void cast_wide(const rays::WideBvh& bvh, const RayGrid& grid, const JobSystem& jobs,
                std::span<WideStack> stacks, RayHits& hits);
 

@@ -11,7 +11,7 @@
 
 #include <bit>
 
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 
 #include "library/geometry/simd-inl.hpp"
 #include "library/rays/wide_bvh.hpp"

@@ -15,8 +15,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/status.hpp>
 
 #include "library/geometry/aligned_vector.hpp"
 
@@ -167,8 +168,8 @@ public:
   /// between, that copies each object less than thrice. ChunkViews are void afterwards.
   void tighten();
 
-  /// Nothing if every invariant above holds; for tests, it looks at everything.
-  [[nodiscard]] Check check() const;
+  /// Whether every invariant above holds; for tests, it looks at everything.
+  [[nodiscard]] Status check() const;
 
 private:
   struct Chunk {
@@ -234,9 +235,9 @@ private:
   void extend_group(std::uint32_t group, const Box& box) noexcept;
   void shrink(std::uint32_t chunk, const Box& gone) noexcept;
   void shrink_group(std::uint32_t group, const Box& gone) noexcept;
-  Check check_chunk(std::uint32_t chunk) const;
-  Check check_group(std::uint32_t group) const;
-  Check check_node(std::uint32_t node) const;
+  Status check_chunk(std::uint32_t chunk) const;
+  Status check_group(std::uint32_t group) const;
+  Status check_node(std::uint32_t node) const;
   Box tight(const Chunk& chunk) const noexcept;
   Box tight(const Group& group) const noexcept;
   void loosen(std::uint32_t node, const Box& gone) noexcept;

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 
@@ -40,6 +41,12 @@ struct CullerState {
   PassInput input;
   ObjectId* out = nullptr;
   std::uint8_t* masks = nullptr;
+  /// Of several views that layers tell apart, where the caller wants no masks.
+  std::vector<std::uint8_t> scratch_masks;
+
+  const WorldState* world = nullptr;
+  std::array<std::uint32_t, kMaxViews> layers{};  // of the caller's views
+  bool filters_layers = false;
 };
 
 namespace {
@@ -48,8 +55,8 @@ std::uint8_t side_along(float normal, std::uint8_t axis, bool far) {
   return static_cast<std::uint8_t>(axis + ((normal >= 0) != far ? 3 : 0));
 }
 
-SectorView sector_view(const WorldView& view, const Sector& sector, const CullOptions& options,
-                       const OcclusionBuffer* occlusion) {
+SectorView sector_view(const CullView& culled, const Sector& sector) {
+  const WorldView& view = culled.view;
   SectorView out;
   const glm::dvec3 offset(sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
                           sector.origin.z - view.origin.z);
@@ -57,30 +64,30 @@ SectorView sector_view(const WorldView& view, const Sector& sector, const CullOp
   moved[3] = glm::dvec4(offset, 1.0);
   const glm::dmat4 to_eye = to_double(view.view.world_to_eye) * moved;
   const glm::dmat4 clip = to_double(view.view.eye_to_clip) * to_eye;
-  out.frustum = frustum_of(clip, view_direction(view.view), sector.map->nodes()[0].bounds);
+  out.planes = frustum_of(clip, view_direction(view.view), sector.map->nodes()[0].bounds).planes;
   for (std::size_t p = 0; p < Frustum::sides; ++p) {
-    const Vec3& n = out.frustum.planes[p].normal;
+    const Vec3& n = out.planes[p].normal;
     out.near_side[p] = {side_along(n.x, 0, false), side_along(n.y, 1, false), side_along(n.z, 2, false)};
     out.far_side[p] = {side_along(n.x, 0, true), side_along(n.y, 1, true), side_along(n.z, 2, true)};
   }
   out.eye = to_vec3(glm::dvec3(glm::inverse(to_eye)[3]));
-  if (options.min_area > 0) {
+  if (culled.min_area > 0) {
     const Projector projector = make_projector(view.view, {});
     out.orthographic = projector.orthographic;
-    out.area_scale = std::numbers::pi_v<float> * projector.pixels_per_metre * projector.pixels_per_metre /
-                     options.min_area;
+    out.area_scale =
+        std::numbers::pi_v<float> * projector.pixels_per_metre * projector.pixels_per_metre / culled.min_area;
   }
-  if (occlusion) {
-    out.occluders = &occlusion->tiles();
-    out.projection = occlusion::eye_projection(occlusion->tiles().view, sector.origin);
+  if (culled.occlusion) {
+    out.occluders = &OcclusionAccess::tiles(*culled.occlusion);
+    out.projection = occlusion::eye_projection(view, sector.origin);
   }
   return out;
 }
 
 // The planes among `planes` that the box crosses, or kOutside; `failed` is tried first, and remembers.
-PlaneSet classify(const Frustum& frustum, const Box& box, PlaneSet planes, std::uint8_t& failed) {
+PlaneSet classify(const SectorView& view, const Box& box, PlaneSet planes, std::uint8_t& failed) {
   const auto far_enough = [&](int p, bool far) {
-    const Plane& plane = frustum.planes[static_cast<std::size_t>(p)];
+    const Plane& plane = view.planes[static_cast<std::size_t>(p)];
     const bool x = (plane.normal.x >= 0) != far, y = (plane.normal.y >= 0) != far,
                z = (plane.normal.z >= 0) != far;
     return signed_distance(plane, x ? box.max.x : box.min.x, y ? box.max.y : box.min.y,
@@ -121,8 +128,7 @@ private:
     for (std::size_t v = 0; v < views_; ++v) {
       if (planes[v] == kOutside) continue;
       if (planes[v] != 0) {
-        const Frustum& frustum = state_.views[sector_ * views_ + v].frustum;
-        planes[v] = classify(frustum, box, planes[v], failed[v]);
+        planes[v] = classify(state_.views[sector_ * views_ + v], box, planes[v], failed[v]);
       }
       any = any || planes[v] != kOutside;
     }
@@ -149,12 +155,33 @@ private:
   std::uint64_t visited_ = 0;
 };
 
+// Takes out what lies in no layer of the views that may see it; returns how many are left.
+std::size_t keep_layers(const CullerState& state, std::size_t count, ObjectId* ids, std::uint8_t* masks) {
+  const std::vector<std::uint32_t>& layers = state.world->layers;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ObjectId id = ids[i];
+    const std::uint32_t layer = id < layers.size() ? layers[id] : kAllLayers;
+    std::uint8_t seen = masks ? masks[i] : std::uint8_t{1};
+    for (std::uint32_t rest = seen; rest != 0; rest &= rest - 1) {
+      if ((layer & state.layers[static_cast<std::size_t>(std::countr_zero(rest))]) == 0)
+        seen &= static_cast<std::uint8_t>(~(rest & (0u - rest)));
+    }
+    ids[kept] = id;
+    if (masks) masks[kept] = seen;
+    kept += seen != 0;
+  }
+  return kept;
+}
+
 void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
-  job.counts = cull_groups(state.input, entries, state.out + job.first_output,
-                           state.masks ? state.masks + job.first_output : nullptr);
+  ObjectId* ids = state.out + job.first_output;
+  std::uint8_t* masks = state.masks ? state.masks + job.first_output : nullptr;
+  job.counts = cull_groups(state.input, entries, ids, masks);
+  if (state.filters_layers) job.counts.written = keep_layers(state, job.counts.written, ids, masks);
 }
 
 // Parts of about equally many objects; each writes to where it would stand if all were visible.
@@ -184,15 +211,14 @@ struct DifferentViews {
   std::array<std::uint8_t, kMaxViews> bits{};   // of all that are the same
 };
 
-DifferentViews different_views(std::span<const WorldView> views, const CullOptions& options) noexcept {
+DifferentViews different_views(std::span<const CullView> views) noexcept {
   DifferentViews out;
-  const auto same = [&](std::size_t a, std::size_t b) {
-    return views[a] == views[b] &&
-           (options.occlusion.empty() || options.occlusion[a] == options.occlusion[b]);
+  const auto same = [&](const CullView& a, const CullView& b) {
+    return a.view == b.view && a.occlusion == b.occlusion && a.min_area == b.min_area;
   };
   for (std::size_t v = 0; v < views.size(); ++v) {
     std::size_t d = 0;
-    while (d < out.count && !same(out.first[d], v)) ++d;
+    while (d < out.count && !same(views[out.first[d]], views[v])) ++d;
     if (d == out.count) out.first[out.count++] = static_cast<std::uint8_t>(v);
     out.bits[d] |= static_cast<std::uint8_t>(1u << v);
   }
@@ -201,12 +227,12 @@ DifferentViews different_views(std::span<const WorldView> views, const CullOptio
 
 // Sorts the sectors: adds to the state those that some view may see, and their groups. Returns how many
 // regions and groups it looked at.
-std::uint64_t find_entries(CullerState& state, const World& world, std::span<const WorldView> views,
-                           const DifferentViews& different, const CullOptions& options) {
-  const auto& sectors = world.state().sectors;
+std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
+                           const DifferentViews& different) {
+  const auto& sectors = state.world->sectors;
   const auto of_different = std::span(different.first).first(different.count);
   state.maps.clear(), state.views.clear(), state.entries.clear();
-  for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]]);
+  for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]].view);
   // Room for all sectors, so that a camera that turns allocates nothing.
   state.maps.reserve(sectors.size());
   state.views.reserve(sectors.size() * different.count);
@@ -227,10 +253,7 @@ std::uint64_t find_entries(CullerState& state, const World& world, std::span<con
     }
     const auto kept = static_cast<std::uint32_t>(state.maps.size());
     state.maps.push_back(sector.map.get());
-    for (const std::uint8_t v : of_different) {
-      const OcclusionBuffer* occlusion = options.occlusion.empty() ? nullptr : options.occlusion[v];
-      state.views.push_back(sector_view(views[v], sector, options, occlusion));
-    }
+    for (const std::uint8_t v : of_different) state.views.push_back(sector_view(views[v], sector));
     state.failed[s].resize(sector.map->nodes().size() * kMaxViews, 0);
     visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
   }
@@ -253,50 +276,83 @@ void join_outputs(const CullerState& state, std::uint32_t jobs, CullResult& resu
   }
 }
 
-CullError check_call(const World& world, std::span<const WorldView> views, const CullOptions& options,
-                     std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
-  if (views.empty() || views.size() > kMaxViews) return CullError::views;
-  if (!(options.min_area >= 0) || !std::isfinite(options.min_area)) return CullError::options;
-  if (!options.occlusion.empty() && options.occlusion.size() != views.size()) return CullError::options;
-  for (const OcclusionBuffer* buffer : options.occlusion) {
-    if (buffer && buffer->width() == 0) return CullError::options;  // begin() was never called
-  }
-  if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs) return CullError::options;
+Status check_view(const CullView& view, std::size_t index) noexcept {
+  if (const Status sound = check(view.view); !sound) return {StatusCode::bad_view, sound.message(), index};
+  if (!(view.min_area >= 0) || !std::isfinite(view.min_area))
+    return {StatusCode::bad_argument, "cull: a view's min_area is negative or not finite", index};
+  if (!view.occlusion) return {};
+  if (!view.occlusion->begun())
+    return {StatusCode::stale_buffer, "cull: a view's occlusion buffer was never begun", index};
+  if (view.occlusion->view() != view.view)
+    return {StatusCode::stale_buffer,
+            "cull: an occlusion buffer was begun with another view than it stands beside", index};
+  return {};
+}
+
+Status check_call(const World& world, std::span<const CullView> views, const CullOptions& options,
+                  const CullOutput& output) noexcept {
+  if (views.empty() || views.size() > kMaxViews)
+    return {StatusCode::bad_argument, "cull: expected 1 to 8 views", views.size()};
+  if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs)
+    return {StatusCode::bad_argument, "cull: expected 1 to 64 jobs"};
   const std::size_t needed = cull_capacity(world, options);
-  if (visible.size() < needed || (!masks.empty() && masks.size() < needed)) return CullError::buffer;
-  for (const WorldView& view : views) {
-    const WorldPoint& o = view.origin;
-    const bool near =
-        std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach;
-    if (!near || sightline::check(view.view)) return CullError::view;
+  if (output.ids.size() < needed)
+    return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
+  if (!output.masks.empty() && output.masks.size() < needed)
+    return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() masks, or none"};
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (const Status sound = check_view(views[v], v); !sound) return sound;
   }
-  return CullError::none;
+  return {};
+}
+
+// Whether layers drop anything, and what that takes.
+void prepare_layers(CullerState& state, std::span<const CullView> views, std::size_t room) {
+  state.filters_layers = !state.world->layers.empty();
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    state.layers[v] = views[v].layers;
+    state.filters_layers = state.filters_layers || views[v].layers == 0;
+  }
+  if (!state.filters_layers || state.masks || views.size() == 1) return;
+  if (state.scratch_masks.size() < room) state.scratch_masks.resize(room);
+  state.masks = state.scratch_masks.data();
+}
+
+void write_values(const std::vector<std::uint32_t>& values, std::span<ObjectId> ids) noexcept {
+  for (ObjectId& id : ids) id = id < values.size() ? values[id] : id;
 }
 
 }  // namespace
 }  // namespace world
 
+struct Culler::State : world::CullerState {};
+
 std::size_t cull_capacity(const World& world, const CullOptions& options) noexcept {
-  return world.size() + kCullPadding * std::max(options.jobs.threads, 1u);
+  return world.size() + kCullPadding * std::clamp(options.jobs.threads, 1u, kMaxJobs);
 }
 
-Culler::Culler() : state_(std::make_unique<world::CullerState>()) {}
-Culler::~Culler() = default;
-Culler::Culler(Culler&&) noexcept = default;
-Culler& Culler::operator=(Culler&&) noexcept = default;
+Culler::Culler() : state_(new State) {}
+Culler::~Culler() {
+  delete state_;
+}
+Culler::Culler(Culler&& other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
+Culler& Culler::operator=(Culler&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
 
-CullResult Culler::cull(const World& world, std::span<const WorldView> views, const CullOptions& options,
-                        std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
-  CullResult result;
-  result.error = world::check_call(world, views, options, visible, masks);
-  if (result.error != CullError::none) return result;
-
+Result<CullResult> Culler::cull(const World& world, std::span<const CullView> views,
+                                const CullOptions& options, const CullOutput& output) noexcept {
+  if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
   world::CullerState& state = *state_;
-  const world::DifferentViews different = world::different_views(views, options);
-  result.nodes_visited = world::find_entries(state, world, views, different, options);
+  state.world = &WorldAccess::state(world);
+  const world::DifferentViews different = world::different_views(views);
+  CullResult result;
+  result.nodes_visited = world::find_entries(state, views, different);
   state.input = {state.maps, state.views, different.count, different.bits};
-  state.out = visible.data();
-  state.masks = masks.empty() ? nullptr : masks.data();
+  state.out = output.ids.data();
+  state.masks = output.masks.empty() ? nullptr : output.masks.data();
+  world::prepare_layers(state, views, output.ids.size());
   const std::uint32_t threads = options.jobs.run ? options.jobs.threads : 1;
   const std::uint32_t jobs = world::split_work(state, threads);
   if (jobs > 1) {
@@ -305,12 +361,8 @@ CullResult Culler::cull(const World& world, std::span<const WorldView> views, co
     world::run_job(&state, 0);
   }
   world::join_outputs(state, jobs, result);
+  if (options.values_for_ids) world::write_values(state.world->values, output.ids.first(result.count));
   return result;
-}
-
-CullResult cull(World& world, std::span<const WorldView> views, const CullOptions& options,
-                std::span<ObjectId> visible, std::span<std::uint8_t> masks) noexcept {
-  return world.state().culler.cull(world, views, options, visible, masks);
 }
 
 }  // namespace sightline

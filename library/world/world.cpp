@@ -1,10 +1,13 @@
 #include <sightline/world.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
+#include <hwy/cache_control.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "library/geometry/box_reader.hpp"
 #include "library/world/free_list.hpp"
 #include "library/world/world_state.hpp"
 
@@ -23,24 +26,10 @@ std::int64_t cell_of(double low, double high) {
   return static_cast<std::int64_t>(std::floor((0.5 * low + 0.5 * high) / kSectorSide + 0.5));
 }
 
-float down(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-float up(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
-
 }  // namespace
 
 SectorCell sector_cell(const WorldBox& b) noexcept {
   return {cell_of(b.min.x, b.max.x), cell_of(b.min.y, b.max.y), cell_of(b.min.z, b.max.z)};
-}
-
-Box relative_box(const WorldBox& b, const WorldPoint& o) noexcept {
-  return {{down(b.min.x - o.x), down(b.min.y - o.y), down(b.min.z - o.z)},
-          {up(b.max.x - o.x), up(b.max.y - o.y), up(b.max.z - o.z)}};
 }
 
 std::uint32_t WorldState::sector_at(const SectorCell& cell) {
@@ -85,83 +74,154 @@ void WorldState::tidy() {
 
 namespace {
 
+using geometry::kBlock;
 using world::ChunkMap;
 using world::WorldState;
 
-bool in_reach(double low, double high) {
-  // False for NaN, too.
-  return low >= -kWorldReach && high <= kWorldReach && low <= high;
-}
+using Handles = Strided<const Handle>;
+using Column = Strided<const std::uint32_t>;
 
-Check check_boxes(std::span<const WorldBox> boxes) {
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const WorldBox& b = boxes[i];
-    if (in_reach(b.min.x, b.max.x) && in_reach(b.min.y, b.max.y) && in_reach(b.min.z, b.max.z)) continue;
-    return Failure{"world: box " + std::to_string(i) + " of " + std::to_string(boxes.size()) +
-                   " is not valid, expected min <= max within 1e11 m of 0"};
+Status check_boxes(const BoxView& boxes) noexcept {
+  if (!boxes.sound())
+    return {StatusCode::bad_argument, "world: a box's pointer is null or its stride too short"};
+  std::array<WorldBox, kBlock> block;
+  for (std::size_t first = 0; first < boxes.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, boxes.size() - first);
+    BoxReader::read(boxes, first, count, block.data(), true);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!geometry::is_valid(block[i]))
+        return {StatusCode::bad_box, "world: a box is not valid, expected min <= max within 1e11 m of 0",
+                first + i};
+    }
   }
   return {};
 }
 
-Failure stale(std::size_t i, std::size_t count) {
-  return {"world: handle " + std::to_string(i) + " of " + std::to_string(count) +
-          " names no object that stands in this world"};
-}
-
-Check check_handles(const World& world, std::span<const Handle> handles) {
+Status check_handles(const World& world, const Handles& handles) noexcept {
+  if (!handles.sound())
+    return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   for (std::size_t i = 0; i < handles.size(); ++i) {
-    if (!world.contains(handles[i])) return stale(i, handles.size());
+    if (!world.contains(handles[i]))
+      return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
   }
   return {};
+}
+
+Status check_column(const Column& column, std::size_t expected) noexcept {
+  if (!column.sound())
+    return {StatusCode::bad_argument, "world: a column's pointer is null or its stride too short"};
+  if (column.size() != expected)
+    return {StatusCode::bad_argument, "world: expected one element of a column an object"};
+  return {};
+}
+
+// Calls take(i, box) for each box.
+template <class Take>
+void for_each_box(const BoxView& boxes, const Take& take) {
+  std::array<WorldBox, kBlock> block;
+  for (std::size_t first = 0; first < boxes.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, boxes.size() - first);
+    BoxReader::read(boxes, first, count, block.data(), true);
+    for (std::size_t i = 0; i < count; ++i) take(first + i, block[i]);
+  }
+}
+
+// Room for so many more objects.
+void reserve(WorldState& s, std::size_t more) {
+  const std::size_t reused = std::min(more, s.free_ids.size());
+  const std::size_t limit = s.objects.size() + more - reused;
+  if (limit <= s.objects.capacity()) return;
+  const std::size_t room = std::max(limit, 2 * s.objects.capacity());
+  s.objects.reserve(room);
+  s.locations.reserve(room);
+}
+
+// A column comes to be with the first value that somebody sets; ids without one have `otherwise`(id).
+template <class Otherwise>
+void set_column(std::vector<std::uint32_t>& column, std::size_t ids, const Handles& handles,
+                const Column& values, const Otherwise& otherwise) {
+  while (column.size() < ids) column.push_back(otherwise(column.size()));
+  for (std::size_t i = 0; i < handles.size(); ++i) column[handles[i].index] = values[i];
+}
+
+std::uint32_t own_id(std::size_t id) {
+  return static_cast<std::uint32_t>(id);
+}
+std::uint32_t all_layers(std::size_t) {
+  return kAllLayers;
+}
+
+// New objects' columns; where nobody gives any, reused ids lose what their last objects had.
+void fill_columns(WorldState& s, const Handles& handles, const ObjectColumns& given) {
+  const auto fill = [&](std::vector<std::uint32_t>& column, const Column& values, auto otherwise) {
+    if (values.size() > 0) return set_column(column, s.objects.size(), handles, values, otherwise);
+    if (column.empty()) return;
+    while (column.size() < s.objects.size()) column.push_back(otherwise(column.size()));
+    for (std::size_t i = 0; i < handles.size(); ++i) column[handles[i].index] = otherwise(handles[i].index);
+  };
+  fill(s.layers, given.layers, all_layers);
+  fill(s.values, given.values, own_id);
 }
 
 }  // namespace
 
-World::World() : state_(std::make_unique<WorldState>()) {}
-World::~World() = default;
-World::World(World&&) noexcept = default;
-World& World::operator=(World&&) noexcept = default;
+World::World() : state_(new State) {}
+World::~World() {
+  delete state_;
+}
+World::World(World&& other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
+World& World::operator=(World&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
 
-Check World::insert(std::span<const WorldBox> boxes, std::span<Handle> handles) {
-  if (boxes.size() != handles.size()) return Failure{"world: expected one handle a box"};
-  if (Check bad = check_boxes(boxes)) return bad;
+Status World::insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns) {
+  if (!handles.sound())
+    return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
+  if (boxes.size() != handles.size()) return {StatusCode::bad_argument, "world: expected one handle a box"};
+  for (const Column& column : {columns.layers, columns.values}) {
+    if (column.size() == 0) continue;
+    if (const Status sound = check_column(column, boxes.size()); !sound) return sound;
+  }
   WorldState& s = *state_;
   constexpr std::size_t kMostObjects = std::size_t{1} << 31;
-  if (boxes.size() > kMostObjects - s.size) return Failure{"world: it cannot hold more than 2^31 objects"};
-  const std::size_t reused = std::min(boxes.size(), s.free_ids.size());
-  const std::size_t limit = s.objects.size() + boxes.size() - reused;
-  if (limit > s.objects.capacity()) {
-    const std::size_t room = std::max(limit, 2 * s.objects.capacity());
-    s.objects.reserve(room);
-    s.locations.reserve(room);
-  }
+  if (boxes.size() > kMostObjects - s.size)
+    return {StatusCode::too_many, "world: it cannot hold more than 2^31 objects"};
+  if (const Status sound = check_boxes(boxes); !sound) return sound;
+  reserve(s, boxes.size());
   world::SectorCell last_cell;
   std::uint32_t sector = ChunkMap::kNone;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
+  for_each_box(boxes, [&](std::size_t i, const WorldBox& box) {
     const ObjectId id = world::take_element(s.objects, s.free_ids);
     if (s.locations.size() < s.objects.size()) s.locations.emplace_back();
-    const world::SectorCell cell = world::sector_cell(boxes[i]);
+    const world::SectorCell cell = world::sector_cell(box);
     if (sector == ChunkMap::kNone || !(cell == last_cell)) {
       sector = s.sector_at(cell), last_cell = cell;
       s.touch(sector);
     }
-    s.sectors[sector].map->insert(id, world::relative_box(boxes[i], s.sectors[sector].origin));
+    s.sectors[sector].map->insert(id, geometry::relative_box(box, s.sectors[sector].origin));
     s.objects[id].sector = sector;
-    handles[i] = {id, s.objects[id].generation};
-  }
+    handles.set(i, {id, s.objects[id].generation});
+  });
   s.tidy();
   s.size += boxes.size();
+  const bool any_column =
+      columns.layers.size() + columns.values.size() + s.layers.size() + s.values.size() > 0;
+  if (any_column) fill_columns(s, handles, columns);
   return {};
 }
 
-Check World::move(std::span<const Handle> handles, std::span<const WorldBox> boxes) {
-  if (boxes.size() != handles.size()) return Failure{"world: expected one box a handle"};
-  if (Check bad = check_boxes(boxes)) return bad;
-  if (Check bad = check_handles(*this, handles)) return bad;
+Status World::move(Strided<const Handle> handles, const BoxView& boxes) {
+  if (boxes.size() != handles.size()) return {StatusCode::bad_argument, "world: expected one box a handle"};
+  if (const Status stand = check_handles(*this, handles); !stand) return stand;
+  if (const Status sound = check_boxes(boxes); !sound) return sound;
   WorldState& s = *state_;
-  for (std::size_t i = 0; i < handles.size(); ++i) {
+  // Where an object stands is the first thing to wait for.
+  constexpr std::size_t kAhead = 16;
+  for_each_box(boxes, [&](std::size_t i, const WorldBox& box) {
     const ObjectId id = handles[i].index;
-    const world::SectorCell cell = world::sector_cell(boxes[i]);
+    if (i + kAhead < handles.size()) hwy::Prefetch(&s.locations[handles[i + kAhead].index]);
+    const world::SectorCell cell = world::sector_cell(box);
     const std::uint32_t from = s.objects[id].sector;
     const WorldPoint& origin = s.sectors[from].origin;
     const bool stays = static_cast<double>(cell.x) * world::kSectorSide == origin.x &&
@@ -169,21 +229,21 @@ Check World::move(std::span<const Handle> handles, std::span<const WorldBox> box
                        static_cast<double>(cell.z) * world::kSectorSide == origin.z;
     s.touch(from);
     if (stays) {
-      s.sectors[from].map->move(id, world::relative_box(boxes[i], origin));
+      s.sectors[from].map->move(id, geometry::relative_box(box, origin));
     } else {
       const std::uint32_t to = s.sector_at(cell);
       s.touch(to);
       s.sectors[from].map->remove(id);
-      s.sectors[to].map->insert(id, world::relative_box(boxes[i], s.sectors[to].origin));
+      s.sectors[to].map->insert(id, geometry::relative_box(box, s.sectors[to].origin));
       s.objects[id].sector = to;
     }
-  }
+  });
   s.tidy();
   return {};
 }
 
-Check World::remove(std::span<const Handle> handles) {
-  if (Check bad = check_handles(*this, handles)) return bad;
+Status World::remove(Strided<const Handle> handles) {
+  if (const Status stand = check_handles(*this, handles); !stand) return stand;
   WorldState& s = *state_;
   // A handle that stands twice is stale the second time; the new generations are taken back then.
   for (std::size_t i = 0; i < handles.size(); ++i) {
@@ -192,17 +252,32 @@ Check World::remove(std::span<const Handle> handles) {
       continue;
     }
     for (std::size_t k = 0; k < i; ++k) --s.objects[handles[k].index].generation;
-    return stale(i, handles.size());
+    return {StatusCode::stale_handle, "world: a handle stands there twice", i};
   }
-  for (const Handle& handle : handles) {
-    world::WorldObject& object = s.objects[handle.index];
+  for (std::size_t i = 0; i < handles.size(); ++i) {
+    const ObjectId id = handles[i].index;
+    world::WorldObject& object = s.objects[id];
     s.touch(object.sector);
-    s.sectors[object.sector].map->remove(handle.index);
+    s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
-    s.free_ids.push_back(handle.index);
+    s.free_ids.push_back(id);
   }
   s.size -= handles.size();
   s.tidy();
+  return {};
+}
+
+Status World::set_layers(Strided<const Handle> handles, Strided<const std::uint32_t> layers) {
+  if (const Status stand = check_handles(*this, handles); !stand) return stand;
+  if (const Status sound = check_column(layers, handles.size()); !sound) return sound;
+  set_column(state_->layers, state_->objects.size(), handles, layers, all_layers);
+  return {};
+}
+
+Status World::set_values(Strided<const Handle> handles, Strided<const std::uint32_t> values) {
+  if (const Status stand = check_handles(*this, handles); !stand) return stand;
+  if (const Status sound = check_column(values, handles.size()); !sound) return sound;
+  set_column(state_->values, state_->objects.size(), handles, values, own_id);
   return {};
 }
 
@@ -221,6 +296,16 @@ WorldBox World::box(Handle handle) const noexcept {
            o.z + static_cast<double>(b.min.z)},
           {o.x + static_cast<double>(b.max.x), o.y + static_cast<double>(b.max.y),
            o.z + static_cast<double>(b.max.z)}};
+}
+
+std::uint32_t World::layers(Handle handle) const noexcept {
+  if (!contains(handle)) return 0;
+  return handle.index < state_->layers.size() ? state_->layers[handle.index] : kAllLayers;
+}
+
+std::uint32_t World::value(Handle handle) const noexcept {
+  if (!contains(handle)) return kNoObject;
+  return handle.index < state_->values.size() ? state_->values[handle.index] : handle.index;
 }
 
 Handle World::handle(ObjectId id) const noexcept {

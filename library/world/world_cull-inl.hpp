@@ -13,7 +13,7 @@
 #include <bit>
 #include <cstring>
 
-#include <sightline/culling.hpp>
+#include <sightline/frustum.hpp>
 
 #include "library/geometry/simd-inl.hpp"
 #include "library/world/world_cull.hpp"
@@ -69,7 +69,7 @@ HWY_INLINE ChunkBits classify_boxes(const Sides& sides, std::uint32_t count, con
   ChunkBits out;
   for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
     const int p = std::countr_zero(rest);
-    const Plane& plane = view.frustum.planes[p];
+    const Plane& plane = view.planes[p];
     const auto &near = view.near_side[p], &far = view.far_side[p];
     for (std::size_t i = 0; i < count; i += lanes) {
       outside |= bits_of(f, behind(plane, sides, near, i)) << i;
@@ -123,7 +123,7 @@ HWY_INLINE std::size_t corners_of(const ChunkMap::ChunkView& chunk, const Sector
     const int p = std::countr_zero(rest);
     const auto& near = view.near_side[p];
     out[count++] = {chunk.min_x + step * near[0], chunk.min_x + step * near[1], chunk.min_x + step * near[2],
-                    &view.frustum.planes[p]};
+                    &view.planes[p]};
   }
   return count;
 }

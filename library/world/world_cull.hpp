@@ -20,7 +20,7 @@ inline constexpr PlaneSet kOutside = 0x80;
 
 /// One view as a sector sees it: relative to the sector's origin.
 struct SectorView {
-  Frustum frustum;
+  std::array<Plane, Frustum::sides> planes;
   /// For each plane the sides of a box (as ChunkMap::Group orders them) farthest along its normal, and their
   /// opposites.
   std::array<std::array<std::uint8_t, 3>, Frustum::sides> near_side{}, far_side{};

@@ -52,10 +52,11 @@ struct WorldState {
   ChunkMap::Locations locations;  ///< shared by all sectors' maps
   std::vector<WorldObject> objects;
   std::vector<ObjectId> free_ids;
+  /// One an id, or empty as long as nobody has set any.
+  std::vector<std::uint32_t> layers, values;
   std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
   std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
-  Culler culler;  ///< of the free function cull()
 
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose map changes.
@@ -66,7 +67,17 @@ struct WorldState {
 
 /// The sector that holds a box's centre.
 SectorCell sector_cell(const WorldBox& box) noexcept;
-/// The box seen from an origin, rounded outwards.
-Box relative_box(const WorldBox& box, const WorldPoint& origin) noexcept;
 
 }  // namespace sightline::world
+
+namespace sightline {
+
+struct World::State : world::WorldState {};
+
+/// The way of the library's own to what a world holds.
+struct WorldAccess {
+  static const world::WorldState& state(const World& world) noexcept { return *world.state_; }
+  static world::WorldState& state(World& world) noexcept { return *world.state_; }
+};
+
+}  // namespace sightline

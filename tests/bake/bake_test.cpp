@@ -20,12 +20,12 @@ namespace {
 const CellOptions kCoarse{.cell = 15, .target = 1e-3};
 
 Scene forest() {
-  return *generate_world("forest?trees=150&size=60");
+  return generate_world("forest?trees=150&size=60");
 }
 
 TEST(PvsFile, OfAnotherSceneIsRefused) {
-  const Scene a = *generate_world("soup?triangles=200&seed=1"),
-              b = *generate_world("soup?triangles=200&seed=2");
+  const Scene a = generate_world("soup?triangles=200&seed=1"),
+              b = generate_world("soup?triangles=200&seed=2");
   CellPvs cells;
   cells.objects = static_cast<std::uint32_t>(a.size());
   cells.scene = fingerprint(a);
@@ -82,7 +82,7 @@ TEST(Bake, LosesLittleFromAnywhereInTheCells) {
   const test::TemporaryFolder folder;
   const BakeResult result = bake(scene, {.cell = 20, .target = 1e-3}, folder / "a.pvs", {});
   scene.cells = std::make_shared<CellPvs>(bake::read_pvs_file(folder / "a.pvs"));
-  const auto method = *create_method("baked", scene);
+  const auto method = create_method("baked", scene);
   const oracle::EmbreeJudge judge(scene);
   scene::Random random(5);
   std::uint64_t lost = 0, pixels = 0;
@@ -156,8 +156,8 @@ TEST(Baked, DrawsEverythingInViewOutsideItsCells) {
   scene.cells = cells;
   Frame baked, all;
   const View view = *make_view({.eye = {0, 500, 0}, .forward = {0, -1, 0}, .up = {1, 0, 0}}, 200, 200);
-  cull(**create_method("baked", scene), view, baked);
-  cull(**create_method("vfc-vc?bounds=box", scene), view, all);
+  cull(*create_method("baked", scene), view, baked);
+  cull(*create_method("vfc-vc?bounds=box", scene), view, all);
   EXPECT_EQ(baked.visible.size(), scene.size());
   EXPECT_EQ(baked.visible.size(), all.visible.size());
 }

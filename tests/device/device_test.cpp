@@ -69,13 +69,13 @@ TEST(DeviceFeatures, AMethodNamesTheFeatureItLacks) {
   options.withheld = {"geometryShader"};
   options.validation = true;
   device::Device device(options);
-  const Scene scene = or_throw(generate_world("regular?columns=2&rows=2&detail=0"));
+  const Scene scene = generate_world("regular?columns=2&rows=2&detail=0");
   {
     device::Renderer renderer(device, scene);
-    EXPECT_NO_THROW(or_throw(create_method("roc", MethodSite{scene, &renderer})));
-    EXPECT_NO_THROW(or_throw(create_method("resident-chunk", MethodSite{scene, &renderer})));
+    EXPECT_NO_THROW(create_method("roc", MethodSite{scene, &renderer}));
+    EXPECT_NO_THROW(create_method("resident-chunk", MethodSite{scene, &renderer}));
     try {
-      or_throw(create_method("vertex-chunk", MethodSite{scene, &renderer}));
+      create_method("vertex-chunk", MethodSite{scene, &renderer});
       FAIL() << "made without geometryShader";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("geometryShader"), std::string::npos) << error.what();
@@ -86,7 +86,7 @@ TEST(DeviceFeatures, AMethodNamesTheFeatureItLacks) {
 }
 
 TEST(DeviceMemory, SaysWhatThereWasNoRoomForAndLeaksNothing) {
-  const Scene scene = or_throw(generate_world("regular?detail=3"));
+  const Scene scene = generate_world("regular?detail=3");
   device::DeviceOptions options;
   options.validation = true;
   // Wherever memory runs out, what was made before is freed again.
@@ -95,7 +95,7 @@ TEST(DeviceMemory, SaysWhatThereWasNoRoomForAndLeaksNothing) {
     device::Device device(options);
     try {
       device::Renderer renderer(device, scene);
-      const auto method = or_throw(create_method("resident-chunk", MethodSite{scene, &renderer}));
+      const auto method = create_method("resident-chunk", MethodSite{scene, &renderer});
       const View view = view_of({}, 1280, 720);
       Frame frame;
       renderer.frame(view, [&](device::Recorder& recorder) {
@@ -149,14 +149,14 @@ TEST(DeviceMemory, RefusesMoreThanADeviceCanGive) {
 
 TEST(DeviceRegistry, RefusesUnknownNamesKeysAndValues) {
   device::Device device;
-  const Scene scene = or_throw(generate_world("regular?columns=2&rows=2&detail=0"));
+  const Scene scene = generate_world("regular?columns=2&rows=2&detail=0");
   device::Renderer renderer(device, scene);
   for (const char* wrong :
        {"no-such-method", "roc?no=1", "roc?contribution=maybe", "vertex-chunk?depth=99", "level-pvs"}) {
-    EXPECT_THROW(or_throw(create_method(wrong, MethodSite{scene, &renderer})), Error) << wrong;
+    EXPECT_THROW(create_method(wrong, MethodSite{scene, &renderer}), Error) << wrong;
   }
   for (const std::string& name : measure::fitting_methods(scene, true)) {
-    EXPECT_NO_THROW(or_throw(create_method(name, MethodSite{scene, &renderer}))) << name;
+    EXPECT_NO_THROW(create_method(name, MethodSite{scene, &renderer})) << name;
   }
 }
 

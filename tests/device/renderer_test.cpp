@@ -26,7 +26,7 @@ device::Picture draw_all(device::Renderer& renderer, const View& view) {
 }
 
 TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
-  const Scene scene = or_throw(generate_world("forest?trees=300&size=120"));
+  const Scene scene = generate_world("forest?trees=300&size=120");
   device::Renderer renderer(device(), scene);
   const View view = view_of(camera_at(scene, "near"));
   const device::Picture expected = draw_all(renderer, view);
@@ -81,7 +81,7 @@ TEST_F(RendererTest, UpIsUpAndNearerHidesFartherWithEitherDepth) {
 }
 
 TEST_F(RendererTest, MovedObjectsAreDrawnWhereTheyStand) {
-  Scene scene = or_throw(generate_world("irregular?spheres=200&size=60&detail=1"));
+  Scene scene = generate_world("irregular?spheres=200&size=60&detail=1");
   device::Renderer renderer(device(), scene);
   const View view = view_of(camera_at(scene, "near"));
   std::vector<ObjectId> moved;
@@ -100,7 +100,7 @@ TEST_F(ItemBufferTest, AgreesWithRaysThroughPixelCentresButForSilhouettes) {
   std::uint64_t pixels = 0, different = 0, objects = 0, disputed = 0;
   for (const char* world : {"regular?columns=12&rows=12&detail=2", "irregular?spheres=400&size=60&detail=2",
                             "forest?trees=300&size=120"}) {
-    const Scene scene = or_throw(generate_world(world));
+    const Scene scene = generate_world(world);
     device::Renderer renderer(device(), scene);
     oracle::RasterItemBuffer pass(renderer);
     const oracle::EmbreeJudge embree(scene);

@@ -30,13 +30,13 @@ std::vector<DrawCommand> everything(const Scene& scene, const TriangleGeometry& 
 
 TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
   std::vector<Scene> scenes;
-  scenes.push_back(*generate_world("soup?triangles=4000&size=60"));
+  scenes.push_back(generate_world("soup?triangles=4000&size=60"));
   scenes.push_back(test::scene_of(test::awkward_triangles()[0].triangles));
   for (const Scene& scene : scenes) {
     device::Renderer renderer(device(), scene);
     for (const std::string name :
          {"simple-octree", "drawcall-wise-kd-tree", "zhang-grid", "zhang-octree", "cluster-cone"}) {
-      const auto method = *create_method(name, scene);
+      const auto method = create_method(name, scene);
       device::TriangleDraws draws(renderer, *method->geometry());
       const auto all = everything(scene, *method->geometry());
       std::size_t shown = 0;
@@ -59,9 +59,9 @@ TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
 
 // Two independent judges of facing: the rasteriser's winding and the rays' normals.
 TEST_F(TriangleDrawsTest, BackFacesAreThoseOfTheRayJudge) {
-  const Scene scene = *generate_world("soup?triangles=4000&size=60");
+  const Scene scene = generate_world("soup?triangles=4000&size=60");
   device::Renderer renderer(device(), scene);
-  const auto zhang = *create_method("zhang-octree", scene);
+  const auto zhang = create_method("zhang-octree", scene);
   device::TriangleDraws draws(renderer, *zhang->geometry());
   const oracle::EmbreeJudge judge(scene, oracle::Faces::front);
   std::size_t differ = 0, all = 0;
@@ -107,10 +107,10 @@ TEST_F(TriangleDrawsTest, TransparentTrianglesBlendAsWithoutCulling) {
   Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
   for (ObjectId object = 0; object < scene.size(); object += 3) scene.surface[object] = Surface::transparent;
   device::Renderer renderer(device(), scene);
-  const auto all = *create_method("simple-octree", scene);  // its list is the scene's, in order
+  const auto all = create_method("simple-octree", scene);  // its list is the scene's, in order
   for (const std::string name : {"simple-octree", "drawcall-wise-kd-tree", "zhang-grid",
                                  "zhang-octree?height=6", "cluster-cone", "adaptive"}) {
-    const auto method = *create_method(name, scene);
+    const auto method = create_method(name, scene);
     TriangleGeometry everything = *all->geometry();
     everything.front_faces_only = method->geometry()->front_faces_only;
     device::TriangleDraws draws(renderer, *method->geometry()), truth(renderer, everything);
@@ -136,10 +136,10 @@ TEST(TriangleDraws, NeedNoGeometryShaders) {
   options.withheld = {"geometryShader"};
   options.validation = true;
   device::Device device(options);
-  const Scene scene = *generate_world("soup?triangles=500&size=60");
+  const Scene scene = generate_world("soup?triangles=500&size=60");
   {
     device::Renderer renderer(device, scene);
-    const auto method = *create_method("cluster-cone", scene);
+    const auto method = create_method("cluster-cone", scene);
     device::TriangleDraws draws(renderer, *method->geometry());
     const View view = view_of({.eye = {0, 0, 90}, .forward = {0, 0, -1}}, 160, 100);
     Frame frame;
@@ -153,7 +153,7 @@ TEST(TriangleDraws, NeedNoGeometryShaders) {
 TEST_F(TriangleDrawsTest, DrawsAPictureWithBlendedTrianglesLast) {
   const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
   device::Renderer renderer(device(), scene);
-  const auto method = *create_method("drawcall-wise-octree", scene);
+  const auto method = create_method("drawcall-wise-octree", scene);
   device::TriangleDraws draws(renderer, *method->geometry());
   const View view = view_of({.eye = {0, 5, 90}, .forward = {0, 0, -1}});
   Frame frame;

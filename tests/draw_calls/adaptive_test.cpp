@@ -151,9 +151,9 @@ View look_round(int frame) {
 }
 
 TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
-  const Scene scene = *generate_world("soup?triangles=6000&size=60");
+  const Scene scene = generate_world("soup?triangles=6000&size=60");
   for (const auto& [call, triangle] : {std::pair{100.0, 1.0}, std::pair{8.0, 1.0}, std::pair{0.1, 1.0}}) {
-    const auto method = *create_method("adaptive", scene);
+    const auto method = create_method("adaptive", scene);
     auto& adaptive = static_cast<Adaptive&>(*method);
     Frame frame;
     int frames = 0;
@@ -175,7 +175,7 @@ TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
          {"simple-octree?submission=merged", "drawcall-wise-kd-tree?height=2", "zhang-grid?height=2",
           "zhang-octree?height=3&submission=multi-draw", "zhang-kd-tree?height=5", "cluster-cone?size=8",
           "cluster-cone?size=64", "cluster-cone?size=256", "cluster-cone?size=16&submission=multi-draw"}) {
-      best = std::min(best, mean(**create_method(name, scene)));
+      best = std::min(best, mean(*create_method(name, scene)));
     }
     EXPECT_LE(mean(*method), 1.05 * best) << adaptive.in_use() << " at " << call << " a call";
   }
@@ -183,8 +183,8 @@ TEST(AdaptiveMethod, SettlesWithinFivePercentOfTheBestByWhatFramesTake) {
 
 // Whatever it tries, the picture is right, and draws are ranges of the one geometry that it gave at first.
 TEST(AdaptiveMethod, LosesNothingWhileItTries) {
-  Scene scene = *generate_world("soup?triangles=3000&size=60");
-  const auto method = *create_method("adaptive", scene);
+  Scene scene = generate_world("soup?triangles=3000&size=60");
+  const auto method = create_method("adaptive", scene);
   auto& adaptive = static_cast<Adaptive&>(*method);
   const auto* indices = method->geometry()->indices.data();
   oracle::TriangleJudge judge(scene);
@@ -207,8 +207,8 @@ TEST(AdaptiveMethod, LosesNothingWhileItTries) {
 }
 
 TEST(AdaptiveMethod, SameTimesSameDraws) {
-  const Scene scene = *generate_world("soup?triangles=2000&size=60");
-  const auto one = *create_method("adaptive", scene), other = *create_method("adaptive", scene);
+  const Scene scene = generate_world("soup?triangles=2000&size=60");
+  const auto one = create_method("adaptive", scene), other = create_method("adaptive", scene);
   Frame a, b;
   for (int f = 0; f < 1800; ++f) {
     cull(*one, look_round(f), a), cull(*other, look_round(f), b);

@@ -53,7 +53,7 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
   const Scene triangles = oracle::one_object_a_triangle(scene);
   const auto cameras = camera::random_cameras(scene, 6, 9);
   for (const std::string& name : kAll) {
-    const auto method = *create_method(name, scene);
+    const auto method = create_method(name, scene);
     const oracle::Faces faces =
         method->geometry()->front_faces_only ? oracle::Faces::front : oracle::Faces::both;
     const oracle::EmbreeJudge judge(triangles, faces);
@@ -97,7 +97,7 @@ TEST(DrawCalls, EveryTriangleWithACornerInViewIsSubmitted) {
         std::vector<std::unique_ptr<Method>> methods;
         for (const std::string strategy : {"simple-", "drawcall-wise-"}) {
           for (const std::string submission : {"calls", "multi-draw", "merged"}) {
-            methods.push_back(*create_method(
+            methods.push_back(create_method(
                 strategy + structure + "?height=" + height + "&submission=" + submission, scene));
           }
         }
@@ -140,7 +140,7 @@ TEST(DrawCalls, BlendTransparentTrianglesOnceAndFarToNear) {
     for (const std::string submission : {"calls", "multi-draw", "merged"}) {
       if (name == "adaptive" && submission != "calls") continue;
       const auto method =
-          *create_method(name == "adaptive" ? name : name + "?submission=" + submission, scene);
+          create_method(name == "adaptive" ? name : name + "?submission=" + submission, scene);
       for (int v = 0; v < 20; ++v) {
         const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
         const Vec3 eye = eye_position(view), forward = view_direction(view);
@@ -179,9 +179,9 @@ TEST(DrawCalls, BlendTransparentTrianglesOnceAndFarToNear) {
 }
 
 TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
-  const Scene scene = *generate_world("soup?triangles=20000&size=60");
-  const auto zhang = *create_method("zhang-octree", scene),
-             plain = *create_method("drawcall-wise-octree", scene);
+  const Scene scene = generate_world("soup?triangles=20000&size=60");
+  const auto zhang = create_method("zhang-octree", scene),
+             plain = create_method("drawcall-wise-octree", scene);
   scene::Random random(62);
   std::uint64_t fewer = 0, all = 0;
   for (int v = 0; v < 40; ++v) {
@@ -196,9 +196,9 @@ TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
 
 // Dear calls want few of them, dear triangles want few of those.
 TEST(DrawCalls, AdaptivePicksByWhatTheDeviceCharges) {
-  const Scene scene = *generate_world("soup?triangles=6000&size=60");
-  const auto dear_calls = *create_method("adaptive?call-ns=1000000&command-ns=1000000&triangle-ns=1", scene);
-  const auto dear_triangles = *create_method("adaptive?call-ns=1&command-ns=1&triangle-ns=1000", scene);
+  const Scene scene = generate_world("soup?triangles=6000&size=60");
+  const auto dear_calls = create_method("adaptive?call-ns=1000000&command-ns=1000000&triangle-ns=1", scene);
+  const auto dear_triangles = create_method("adaptive?call-ns=1&command-ns=1&triangle-ns=1000", scene);
   CullStats a, b;
   for (int v = 0; v < 20; ++v) {
     const float turn = 0.314f * static_cast<float>(v);
@@ -214,8 +214,8 @@ TEST(DrawCalls, AdaptivePicksByWhatTheDeviceCharges) {
 }
 
 TEST(DrawCalls, AdaptiveFollowsMovedObjects) {
-  Scene scene = *generate_world("soup?triangles=3000&size=60");
-  const auto method = *create_method("adaptive", scene);
+  Scene scene = generate_world("soup?triangles=3000&size=60");
+  const auto method = create_method("adaptive", scene);
   Affine away;
   away.rows[0].w = 500;
   scene.move_object(0, away);
@@ -233,7 +233,7 @@ TEST(DrawCalls, DrawMovedObjectsWhereTheyAre) {
        {"simple-octree", "simple-grid?submission=merged", "drawcall-wise-kd-tree?height=6",
         "drawcall-wise-grid?submission=merged", "zhang-octree", "cluster-cone", "adaptive"}) {
     Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
-    const auto method = *create_method(name, scene);
+    const auto method = create_method(name, scene);
     scene::Random random(64);
     for (int move = 0; move < 8; ++move) {
       std::vector<ObjectId> moved;
@@ -279,8 +279,8 @@ TEST(DrawCalls, DrawMovedObjectsWhereTheyAre) {
 // What stands still stays where it was: an update's cost is that of what moved.
 TEST(DrawCalls, MovingAnObjectLeavesTheOthersAlone) {
   for (const std::string name : {"drawcall-wise-octree", "zhang-kd-tree", "cluster-cone"}) {
-    Scene scene = *generate_world("soup?triangles=20000&per-object=20&size=60");
-    const auto method = *create_method(name, scene);
+    Scene scene = generate_world("soup?triangles=20000&per-object=20&size=60");
+    const auto method = create_method(name, scene);
     const std::vector<std::uint32_t> before(method->geometry()->sources.begin(),
                                             method->geometry()->sources.end());
     Affine away;
@@ -297,7 +297,7 @@ TEST(DrawCalls, MovingAnObjectLeavesTheOthersAlone) {
 }
 
 TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
-  Scene scene = *generate_world("soup?triangles=5000&size=60");
+  Scene scene = generate_world("soup?triangles=5000&size=60");
   const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
   measure::Bench bench(scene, names);
   const auto result = measure::verify(bench, camera::random_cameras(scene, 20, 3), 96, 64);
@@ -307,9 +307,9 @@ TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
 }
 
 TEST(DrawCalls, AllocateNothingOnceTheyHaveGrown) {
-  const Scene scene = *generate_world("soup?triangles=5000&size=60");
+  const Scene scene = generate_world("soup?triangles=5000&size=60");
   for (const std::string& name : kAll) {
-    const auto method = *create_method(name, scene);
+    const auto method = create_method(name, scene);
     const View view = *make_view({.eye = {0, 0, 0}}, 320, 200);
     Frame frame;
     cull(*method, view, frame);

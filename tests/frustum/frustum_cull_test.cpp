@@ -1,7 +1,11 @@
-#include <sightline/culling.hpp>
+#include <sightline/boxes.hpp>
+#include <sightline/frustum.hpp>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "support/random_views.hpp"
 
@@ -24,19 +28,19 @@ World random_world(scene::Random& random, std::size_t count) {
   return world;
 }
 
-SphereSpan spheres_of(const World& w) {
-  return {w.x.data(), w.y.data(), w.z.data(), w.radius.data(), w.x.size()};
+SphereView spheres_of(const World& w) {
+  return SphereView::arrays(w.x.data(), w.y.data(), w.z.data(), w.radius.data(), w.x.size());
 }
 
 std::vector<ObjectId> boxes_in(const Frustum& frustum, const World& world) {
   std::vector<ObjectId> out(world.boxes.size() + kCullPadding);
-  out.resize(cull_boxes(frustum, span_of(world.boxes), out));
+  out.resize(*cull_boxes(frustum, world.boxes.view(), out));
   return out;
 }
 
 std::vector<ObjectId> spheres_in(const Frustum& frustum, const World& world) {
   std::vector<ObjectId> out(world.x.size() + kCullPadding);
-  out.resize(cull_spheres(frustum, spheres_of(world), out));
+  out.resize(*cull_spheres(frustum, spheres_of(world), out));
   return out;
 }
 
@@ -61,6 +65,62 @@ TEST(FrustumCull, EqualsTestingOneByOneForEverySimdTarget) {
     }
   }
   hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(FrustumCull, ReadsAnyLayoutAndKeepsWhatReachesBeyondTheExtent) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    scene::Random random(2);
+    World world = random_world(random, 333);
+    const Box extent{{-600, -600, -600}, {600, 600, 600}};
+    for (std::size_t i = 0; i < 333; i += 10) {
+      Box far = world.boxes[i];
+      far.max.y = i % 20 ? 601.0f : INFINITY;
+      world.boxes.set(i, far);
+      world.x[i] = i % 20 ? -601.0f : INFINITY;
+    }
+    std::vector<Box> structs;
+    std::vector<Sphere> spheres;
+    for (std::size_t i = 0; i < 333; ++i) {
+      structs.push_back(world.boxes[i]);
+      spheres.push_back({{world.x[i], world.y[i], world.z[i]}, world.radius[i]});
+    }
+    std::vector<ObjectId> out(333 + kCullPadding);
+    for (int v = 0; v < 10; ++v) {
+      const Frustum frustum = make_frustum(test::random_view(random, test::kAround), extent);
+      const std::vector<ObjectId> boxes = boxes_in(frustum, world), round = spheres_in(frustum, world);
+      for (ObjectId i = 0; i < 333; i += 10) {
+        ASSERT_TRUE(std::ranges::binary_search(boxes, i));
+        ASSERT_TRUE(std::ranges::binary_search(round, i));
+      }
+      ASSERT_LT(boxes.size(), 333u);
+      ASSERT_EQ(std::vector(out.begin(), out.begin() + *cull_boxes(frustum, structs, out)), boxes);
+      ASSERT_EQ(std::vector(out.begin(), out.begin() + *cull_spheres(frustum, spheres, out)), round);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(FrustumCull, RefusesShortOutputsAndUnsoundViews) {
+  const Frustum frustum = make_frustum(*make_view(Camera{}, 64, 64), test::kAround);
+  scene::Random random(3);
+  const World world = random_world(random, 100);
+  std::vector<ObjectId> out(100 + kCullPadding);
+  const auto boxes = [&](const BoxView& view, std::size_t room) {
+    return cull_boxes(frustum, view, std::span(out).first(room)).error().code();
+  };
+  EXPECT_EQ(boxes(world.boxes.view(), out.size()), StatusCode::ok);
+  EXPECT_EQ(boxes(world.boxes.view(), out.size() - 1), StatusCode::buffer_too_small);
+  const float* none = nullptr;
+  EXPECT_EQ(boxes(BoxView::min_max(none, 24, 3), out.size()), StatusCode::bad_argument);
+  EXPECT_EQ(boxes(BoxView::min_max(world.boxes.min_x.data(), 8, 3), out.size()), StatusCode::bad_argument);
+  const auto too_many = static_cast<std::size_t>(-1);
+  EXPECT_EQ(boxes(BoxView::min_max(world.boxes.min_x.data(), 24, too_many), out.size()),
+            StatusCode::bad_argument);
+  EXPECT_EQ(cull_spheres(frustum, spheres_of(world), std::span(out).first(100)).error().code(),
+            StatusCode::buffer_too_small);
+  EXPECT_EQ(cull_spheres(frustum, SphereView(none, none, 16, 1), out).error().code(),
+            StatusCode::bad_argument);
 }
 
 }  // namespace

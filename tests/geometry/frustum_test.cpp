@@ -1,4 +1,5 @@
 #include <sightline/frustum.hpp>
+#include <sightline/projection.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,7 @@ TEST(Frustum, AgreesWithBruteForceInDoublePrecision) {
   int outside = 0, kept = 0;
   for (int v = 0; v < 500; ++v) {
     const View view = test::random_view(random, test::kAround);
-    const Frustum frustum = make_frustum(view, {{-600, -600, -600}, {600, 600, 600}});
+    const Frustum frustum = make_frustum(view, {{-900, -900, -900}, {900, 900, 900}});
     for (int b = 0; b < 200; ++b) {
       const Box box = test::random_box(random, test::kAround);
       const double clearance = clip_clearance(view, box);
@@ -111,6 +112,23 @@ TEST(Frustum, AnInfiniteFarPlaneNeverRejects) {
     const Box far_box{{-1, -1, -1e7f}, {1, 1, -1e7f}};
     EXPECT_TRUE(overlaps(make_frustum(*make_view(camera, 100, 100), far_box), far_box));
   }
+}
+
+// Planes are rounded for an extent: what reaches beyond it is never called outside.
+TEST(Frustum, KeepsWhatReachesBeyondTheExtent) {
+  const Frustum frustum = make_frustum(*make_view(Camera{}, 64, 64), {{-100, -100, -100}, {100, 100, 100}});
+  const Box behind{{-1, -1, 50}, {1, 1, 60}};
+  EXPECT_EQ(classify(frustum, behind), Overlap::outside);
+  EXPECT_FALSE(overlaps(frustum, Sphere{{0, 0, 50}, 1}));
+  for (const float far : {101.0f, 1e30f, INFINITY}) {
+    Box beyond = behind;
+    beyond.max.z = far;
+    EXPECT_EQ(classify(frustum, beyond), Overlap::crossing) << far;
+    EXPECT_TRUE(overlaps(frustum, Sphere{{0, 0, far}, 1})) << far;
+  }
+  const Projector projector = make_projector(*make_view(Camera{}, 64, 64), {{-9, -9, -9}, {9, 9, 9}});
+  EXPECT_LT(projected_rect(projector, {{-1, -1, -9}, {1, 1, -8}}).max_x, 64);
+  EXPECT_EQ(projected_rect(projector, {{-1, -1, -10}, {1, 1, -8}}).max_x, INFINITY);
 }
 
 }  // namespace

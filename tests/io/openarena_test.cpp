@@ -43,7 +43,7 @@ TEST_F(OpenArena, AllLevelsLoadWithPlacesInFreeSpace) {
     const Scene scene = load_scene("pak1-maps.pk3:" + name);
     by_triangles.emplace_back(triangle_count(scene), "pak1-maps.pk3:" + name);
     ASSERT_TRUE(scene.level);
-    EXPECT_FALSE(check(scene));
+    EXPECT_NO_THROW(check(scene));
     EXPECT_GE(scene.viewpoints.size(), 4u);
     EXPECT_GE(scene.waypoints.size(), scene.viewpoints.size() / 2);
     std::vector<std::uint8_t> mask(scene.size());

@@ -34,7 +34,7 @@ std::string refusal_of_bsp(const Blob& bytes) {
 TEST(Quake3, ObjectsAreTheFacesInOrder) {
   const Scene scene = read(two_rooms());
   ASSERT_EQ(scene.size(), 6u);
-  EXPECT_FALSE(check(scene));
+  EXPECT_NO_THROW(check(scene));
   const std::vector<std::uint64_t> triangles{2, 72, 1, 8, 0, 1};
   for (ObjectId o = 0; o < scene.size(); ++o) {
     EXPECT_EQ(scene.mesh[o], o);

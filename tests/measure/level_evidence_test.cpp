@@ -76,7 +76,7 @@ TEST(LevelEvidence, TableHasEveryReason) {
 }
 
 TEST(LevelEvidence, NeedsALevel) {
-  const Scene scene = or_throw(generate_world("regular?columns=2&rows=2"));
+  const Scene scene = generate_world("regular?columns=2&rows=2");
   const oracle::EmbreeJudge judge(scene);
   EXPECT_THROW(gather_level_evidence(scene, judge, 1, 8, 1), Error);
 }

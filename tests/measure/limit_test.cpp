@@ -17,7 +17,7 @@ measure::MeasureOptions small_and_limited() {
 }
 
 TEST_F(LimitTest, DrawsWhatTheItemBufferSeesAndNothingElse) {
-  Scene scene = or_throw(generate_world("irregular?spheres=600&size=80&detail=1"));
+  Scene scene = generate_world("irregular?spheres=600&size=80&detail=1");
   const std::vector<std::string> names{"none", "vfc-vc"};
   measure::Bench bench(scene, names, &device());
   const camera::CameraPath path = camera::make_path(scene, "near", 4);
@@ -52,7 +52,7 @@ TEST_F(LimitTest, DrawsWhatTheItemBufferSeesAndNothingElse) {
 }
 
 TEST_F(LimitTest, IsLeftOutUnlessAskedForAndWhereObjectsMove) {
-  Scene scene = or_throw(generate_world("irregular?spheres=100&size=40&detail=1"));
+  Scene scene = generate_world("irregular?spheres=100&size=40&detail=1");
   const std::vector<std::string> names{"none"};
   measure::Bench bench(scene, names, &device());
   const camera::CameraPath path = camera::make_path(scene, "near", 1);

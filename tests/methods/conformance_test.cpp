@@ -1,16 +1,21 @@
 // What every method of the registry keeps to, whatever it is: a new one is tested the day it is added.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
+#include <numeric>
 #include <set>
 
 #include <sightline/workbench/method.hpp>
 #include <sightline/workbench/worlds.hpp>
 
 #include "support/random_views.hpp"
+#include "support/refusal.hpp"
 
 namespace sightline {
 namespace {
+
+using testing::HasSubstr;
 
 constexpr Box kAround{{-60, -5, -60}, {60, 30, 60}};
 
@@ -63,10 +68,10 @@ void expect_sound(const Scene& scene, const Frame& frame, const TriangleGeometry
 class Conformance : public testing::TestWithParam<std::string> {};
 
 TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
-  const Scene scene = *generate_world(GetParam());
+  const Scene scene = generate_world(GetParam());
   for (const MethodInfo& info : all_methods()) {
     if (!info.cpu.suits(scene)) continue;
-    const auto method = *create_method(info.name, scene), twin = *create_method(info.name, scene);
+    const auto method = create_method(info.name, scene), twin = create_method(info.name, scene);
     scene::Random random(11);
     Frame frame, again;
     for (int v = 0; v < 50; ++v) {
@@ -83,7 +88,7 @@ TEST_P(Conformance, EveryMethodIsSoundAndRepeatable) {
 // verification does the hiding, this only what needs no picture: a lone object in view is always
 // kept.
 TEST_P(Conformance, ALoneObjectInViewIsKept) {
-  Scene all = *generate_world(GetParam());
+  Scene all = generate_world(GetParam());
   scene::Random random(12);
   for (const MethodInfo& info : all_methods()) {
     if (!info.cpu.suits(all) || info.cpu.guarantee == Guarantee::approximate) continue;
@@ -104,7 +109,7 @@ TEST_P(Conformance, ALoneObjectInViewIsKept) {
       Camera camera{.eye = eye, .forward = {centre.x - eye.x, centre.y - eye.y, centre.z - eye.z}};
       if (std::fabs(way.y) > 0.9f) camera.up = {1, 0, 0};
       Frame frame;
-      cull(**create_method(info.name, lone), *make_view(camera, 640, 360), frame);
+      cull(*create_method(info.name, lone), *make_view(camera, 640, 360), frame);
       ASSERT_EQ(frame.visible.size(), 1u) << info.name;
     }
   }
@@ -112,11 +117,11 @@ TEST_P(Conformance, ALoneObjectInViewIsKept) {
 
 TEST_P(Conformance, MovedObjectsAreFollowed) {
   for (const MethodInfo& info : all_methods()) {
-    Scene scene = *generate_world(GetParam());
+    Scene scene = generate_world(GetParam());
     // "adaptive" picks its structure when it is made, so that a fresh one may keep another set; see its own
     // tests.
     if (!info.cpu.suits(scene) || info.name == "adaptive") continue;
-    const auto method = *create_method(info.name, scene);
+    const auto method = create_method(info.name, scene);
     scene::Random random(13);
     for (int step = 0; step < 10; ++step) {
       std::vector<ObjectId> moved;
@@ -133,7 +138,7 @@ TEST_P(Conformance, MovedObjectsAreFollowed) {
       for (ObjectId object = 0; method->geometry() && object < scene.size(); ++object)
         moved.push_back(object);
       method->update(moved);
-      const auto fresh = *create_method(info.name, scene);
+      const auto fresh = create_method(info.name, scene);
       const View view = test::random_view(random, kAround);
       Frame frame, expected;
       cull(*method, view, frame);
@@ -142,6 +147,78 @@ TEST_P(Conformance, MovedObjectsAreFollowed) {
       std::sort(expected.visible.begin(), expected.visible.end());
       ASSERT_EQ(frame.visible, expected.visible) << info.name;
     }
+  }
+}
+
+// Refusals must name what is wrong; what is refused changes nothing.
+void expect_refusals(Method& method, Scene& scene, std::string_view name) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  scene::Random random(14);
+  const View view = test::random_view(random, kAround);
+  Frame before, after;
+  cull(method, view, before);
+  for (const auto spoil :
+       {+[](View& v) { v.world_to_eye.m[12] = kNaN; }, +[](View& v) { v.eye_to_clip = {{}}; },
+        +[](View& v) { v.width = 0; }, +[](View& v) { v.height = 1u << 20; }}) {
+    View bad = view;
+    spoil(bad);
+    EXPECT_NE(test::refusal([&] { cull(method, bad, after); }), "") << name;
+  }
+  const ObjectId beyond[]{static_cast<ObjectId>(scene.size())};
+  EXPECT_THAT(test::refusal([&] { method.update(beyond); }), HasSubstr("no such object")) << name;
+  const Affine home = scene.transform[3];
+  scene.move_object(3, {{Vec4{1, 0, 0, kNaN}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
+  const ObjectId third[]{3};
+  EXPECT_THAT(test::refusal([&] { method.update(third); }), HasSubstr("object 3")) << name;
+  scene.move_object(3, home);
+  cull(method, view, after);
+  EXPECT_EQ(before.visible, after.visible) << name;
+}
+
+void expect_refusal_of_a_grown_scene(Method& method, std::string_view name) {
+  const ObjectId first[]{0};
+  Frame frame;
+  scene::Random random(15);
+  const View view = test::random_view(random, kAround);
+  EXPECT_THAT(test::refusal([&] { method.update(first); }), HasSubstr("make it anew")) << name;
+  EXPECT_THAT(test::refusal([&] { cull(method, view, frame); }), HasSubstr("make it anew")) << name;
+}
+
+// A world with all that some method needs.
+Scene fit_for_all() {
+  Scene scene = generate_world("soup?triangles=1000&per-object=50&size=60");
+  const auto objects = static_cast<std::uint32_t>(scene.size());
+  LevelPvs& level = scene.level.emplace();
+  level.leaf_objects.resize(objects);
+  std::iota(level.leaf_objects.begin(), level.leaf_objects.end(), 0u);
+  level.leaves = {{0, extent(scene), 0, objects}};
+  level.in_some_leaf.assign(objects, 1), level.in_world_model.assign(objects, 1);
+  CellPvs cells;
+  cells.bounds = extent(scene), cells.counts = {1, 1, 1}, cells.objects = objects;
+  cells.open = {1}, cells.first = {0, objects}, cells.visible = level.leaf_objects;
+  scene.cells = std::make_shared<CellPvs>(cells);
+  return scene;
+}
+
+TEST(Contract, EveryMethodRefusesWhatItCannotWorkWith) {
+  for (const MethodInfo& info : all_methods()) {
+    if (!info.cpu.exists()) continue;
+    Scene scene = fit_for_all();
+    ASSERT_TRUE(info.cpu.suits(scene)) << info.name;
+    const auto method = create_method(info.name, scene);
+    expect_refusals(*method, scene, info.name);
+    Scene with_object = fit_for_all(), with_mesh = fit_for_all();
+    const auto second = create_method(info.name, with_object), third = create_method(info.name, with_mesh);
+    with_object.add_object(0, {});
+    expect_refusal_of_a_grown_scene(*second, info.name);
+    with_mesh.add_mesh(with_mesh.positions, {}, with_mesh.indices);
+    expect_refusal_of_a_grown_scene(*third, info.name);
+    // Made anew it knows all of them.
+    with_object.level.reset(), with_object.cells.reset();
+    if (!info.cpu.suits(with_object)) continue;
+    Frame frame;
+    cull(*create_method(info.name, with_object), *make_view({.eye = {0, 0, 100}}, 64, 64), frame);
+    EXPECT_EQ(frame.stats.objects, with_object.size()) << info.name;
   }
 }
 

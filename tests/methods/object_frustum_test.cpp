@@ -34,11 +34,11 @@ TEST(ObjectFrustum, KeepsExactlyWhatTestingEveryObjectKeeps) {
       Case{"irregular?spheres=2000&detail=0", "?bounds=sphere"}, Case{"soup?triangles=40000", "?bounds=box"}};
   scene::Random random(21);
   for (const Case& c : kCases) {
-    const Scene scene = *generate_world(c.world);
+    const Scene scene = generate_world(c.world);
     const std::string parameters = c.parameters;
-    const auto fine = *create_method("object-frustum" + parameters, scene);
-    const auto flat = *create_method("vfc-vc" + parameters, scene);
-    const auto coarse = *create_method("grid-cell" + parameters, scene);
+    const auto fine = create_method("object-frustum" + parameters, scene);
+    const auto flat = create_method("vfc-vc" + parameters, scene);
+    const auto coarse = create_method("grid-cell" + parameters, scene);
     const Box all = extent(scene);
     std::size_t some = 0;
     for (int v = 0; v < 2500; ++v) {
@@ -145,7 +145,7 @@ TEST(ObjectFrustum, SortsCellsLikeThePapersWalkOnAGridTurnedToTheView) {
   scene::Random random(22);
   std::size_t inside = 0, crossing = 0;
   for (int round = 0; round < 30; ++round) {
-    const Scene scene = *generate_world("forest?trees=4000&size=1000&seed=" + std::to_string(round));
+    const Scene scene = generate_world("forest?trees=4000&size=1000&seed=" + std::to_string(round));
     partition::ObjectGrid grid;
     grid.build(scene.bounds, random.between(15, 60));
     for (int v = 0; v < 50; ++v) {
@@ -175,8 +175,8 @@ TEST(ObjectFrustum, SortsCellsLikeThePapersWalkOnAGridTurnedToTheView) {
 }
 
 TEST(ObjectFrustum, TestsOnlyObjectsOfCrossingCells) {
-  const Scene scene = *generate_world("forest");
-  const auto method = *create_method("object-frustum", scene);
+  const Scene scene = generate_world("forest");
+  const auto method = create_method("object-frustum", scene);
   Frame frame;
   cull(*method, *make_view({.eye = {0, 8.9f, 0}, .far_plane = 600}, 1280, 720), frame);
   EXPECT_GT(frame.visible.size(), 500u);

@@ -6,6 +6,7 @@
 
 #include "library/geometry/linear.hpp"
 #include "library/occlusion/depth_tiles.hpp"
+#include "library/occlusion/occluder_topology.hpp"
 #include "workbench/scene/shapes.hpp"
 
 namespace sightline::methods {
@@ -16,7 +17,7 @@ TEST(OccluderProxy, StandsInForAClosedConvexMeshAndLiesInsideIt) {
   const std::optional<OccluderMesh> proxy = occluder_proxy(round.positions, round.indices);
   ASSERT_TRUE(proxy);
   EXPECT_EQ(proxy->triangles(), 80u);
-  for (const Vec3& p : proxy->topology().positions) {
+  for (const Vec3& p : OcclusionAccess::topology(*proxy).positions) {
     EXPECT_LT(p.x * p.x + p.y * p.y + p.z * p.z, 1.0f);
     EXPECT_GT(p.x * p.x + p.y * p.y + p.z * p.z, 0.9f);
   }

@@ -5,18 +5,19 @@
 #include <sightline/workbench/method.hpp>
 #include <sightline/workbench/worlds.hpp>
 
+#include "support/refusal.hpp"
+
 namespace sightline {
 namespace {
 
 using testing::HasSubstr;
 
 Scene small_world() {
-  return *generate_world("regular?columns=3&rows=3&detail=0");
+  return generate_world("regular?columns=3&rows=3&detail=0");
 }
 
 std::string refusal(std::string_view specification, const Scene& scene) {
-  const auto method = create_method(specification, scene);
-  return method ? std::string() : method.failure().message;
+  return test::refusal([&] { return create_method(specification, scene); });
 }
 
 TEST(Registry, NamesAreUniqueAndFound) {
@@ -43,9 +44,9 @@ TEST(Registry, RefusesWithASentence) {
 
 TEST(Registry, GuaranteesFollowTheParameters) {
   const Scene scene = small_world();
-  EXPECT_EQ((*create_method("vfc-vc", scene))->guarantee(), Guarantee::conservative);
-  EXPECT_EQ((*create_method("vfc-vc?contribution=exact", scene))->guarantee(), Guarantee::conservative);
-  EXPECT_EQ((*create_method("vfc-vc?contribution=area", scene))->guarantee(), Guarantee::approximate);
+  EXPECT_EQ(create_method("vfc-vc", scene)->guarantee(), Guarantee::conservative);
+  EXPECT_EQ(create_method("vfc-vc?contribution=exact", scene)->guarantee(), Guarantee::conservative);
+  EXPECT_EQ(create_method("vfc-vc?contribution=area", scene)->guarantee(), Guarantee::approximate);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(ItemBuffer, RowZeroIsUp) {
 }
 
 TEST(ItemBuffer, SphereCoversItsDiscWithinTheFacets) {
-  Scene scene = or_throw(generate_world("regular?columns=1&rows=1"));
+  Scene scene = generate_world("regular?columns=1&rows=1");
   ASSERT_EQ(scene.size(), 1u);
   const Sphere sphere = scene.sphere(0);
   Camera camera;
@@ -253,7 +253,7 @@ Nearest brute_force(const Scene& scene, const PixelRay& ray) {
 }
 
 TEST(ItemBuffer, EqualsBruteForceInDoublePrecision) {
-  Scene scene = or_throw(generate_world("soup?triangles=400&per-object=10&size=16&seed=5"));
+  Scene scene = generate_world("soup?triangles=400&per-object=10&size=16&seed=5");
   EmbreeJudge judge(scene);
   const Box all = extent(scene);
   scene::Random random(11);
@@ -285,7 +285,7 @@ TEST(ItemBuffer, EqualsBruteForceInDoublePrecision) {
 }
 
 TEST(ItemBuffer, SameAnswerTwiceAndConfirmedByDouble) {
-  Scene scene = or_throw(generate_world("irregular"));
+  Scene scene = generate_world("irregular");
   EmbreeJudge judge(scene), again(scene);
   Camera camera;
   camera.eye = {0, 2, 0}, camera.forward = {1, -0.1f, 0.4f};

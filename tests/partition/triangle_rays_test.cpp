@@ -43,7 +43,7 @@ TEST(TriangleRays, AgreeWithEveryTriangleInDoublePrecision) {
   for (const char* world :
        {"soup?triangles=2000&per-object=20&size=40", "forest?trees=60&size=40&transparent=0.3",
         "irregular?spheres=100&size=30&detail=1"}) {
-    const Scene scene = *generate_world(world);
+    const Scene scene = generate_world(world);
     const TriangleRays rays(scene);
     scene::Random random(61);
     std::size_t hits = 0, differ = 0, cast = 0;
@@ -110,7 +110,7 @@ TEST(TriangleRays, SeeAllThatLiesOnTheSameSpot) {
 }
 
 TEST(TriangleRays, ARayOfNoNumbersMeetsNothing) {
-  const Scene scene = *generate_world("soup?triangles=50&per-object=5&size=10");
+  const Scene scene = generate_world("soup?triangles=50&per-object=5&size=10");
   const TriangleRays rays(scene);
   const float infinite = std::numeric_limits<float>::infinity(), nan = std::nanf("");
   for (const Vec3 bad : {Vec3{nan, 0, 0}, Vec3{infinite, infinite, infinite}, Vec3{0, -infinite, nan}}) {
@@ -129,7 +129,7 @@ TEST(TriangleRays, ARayOfNoNumbersMeetsNothing) {
 }
 
 TEST(TriangleRays, FollowMovedObjects) {
-  Scene scene = *generate_world("regular?columns=2&rows=1&detail=2");
+  Scene scene = generate_world("regular?columns=2&rows=1&detail=2");
   TriangleRays rays(scene);
   const std::vector<Ray> ray{{{0, 50, 0}, {0, -1, 0}}};
   std::vector<ObjectId> nearest(1);
@@ -151,7 +151,7 @@ TEST(TriangleRays, FollowMovedObjects) {
 TEST(GuidedRays, LoseNoMoreThanTheirTarget) {
   for (const char* world : {"soup?triangles=4000&per-object=10&size=60", "strata?triangles=30000",
                             "forest?trees=400&size=80", "irregular?spheres=400&size=60&detail=1"}) {
-    const Scene scene = *generate_world(world);
+    const Scene scene = generate_world(world);
     const TriangleRays rays(scene);
     methods::GuidedRays guided;
     TriangleRays::Stack stack;
@@ -174,7 +174,7 @@ TEST(GuidedRays, LoseNoMoreThanTheirTarget) {
 }
 
 TEST(GuidedRays, StandTheSmallestImages) {
-  const Scene scene = *generate_world("regular?columns=3&rows=3&detail=1");
+  const Scene scene = generate_world("regular?columns=3&rows=3&detail=1");
   const TriangleRays rays(scene);
   methods::GuidedRays guided;
   TriangleRays::Stack stack;

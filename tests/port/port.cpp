@@ -84,6 +84,8 @@ View view_of(scene::Random& random, Kind kind, const Vec3& eye) {
 }
 
 constexpr Box kSpace{{-200, -10, -200}, {200, 30, 200}};
+/// Holds all boxes about points in there.
+constexpr Box kReach{{-210, -20, -210}, {210, 40, 210}};
 
 Box box_of(scene::Random& random, float most) {
   const Vec3 at = random.inside(kSpace);
@@ -118,12 +120,12 @@ void print_geometry(const std::vector<NamedView>& views) {
   Hash planes, points, areas, rects;
   scene::Random random(2);
   for (const NamedView& named : views) {
-    const Frustum frustum = make_frustum(named.view, kSpace);
+    const Frustum frustum = make_frustum(named.view, kReach);
     for (const Plane& plane : frustum.planes) planes.add_plane(plane);
     points.add_vec(eye_position(named.view)), points.add_vec(view_direction(named.view));
     const Mat4 to_clip = world_to_clip(named.view);
     for (const float x : to_clip.m) points.add(x);
-    const Projector projector = make_projector(named.view, kSpace);
+    const Projector projector = make_projector(named.view, kReach);
     for (int i = 0; i < 500; ++i) {
       const Sphere sphere{random.inside(kSpace), random.between(0.1f, 5)};
       areas.add(projected_area(projector, sphere)), areas.add(projected_area_bound(projector, sphere));
@@ -151,13 +153,17 @@ void print_frustum(const std::vector<NamedView>& views) {
   }
   std::vector<ObjectId> visible(boxes.size() + kCullPadding);
   for (const NamedView& named : views) {
-    const Frustum planes = make_frustum(named.view, kSpace);
-    const std::size_t seen = cull_boxes(planes, span_of(boxes), visible);
+    const Frustum planes = make_frustum(named.view, kReach);
+    const std::size_t seen = *cull_boxes(planes, boxes.view(), visible);
     print("frustum.boxes." + named.name, std::span(visible).first(seen));
-    const std::size_t round =
-        cull_spheres(planes, {x.data(), y.data(), z.data(), radius.data(), x.size()}, visible);
+    const std::size_t round = *cull_spheres(
+        planes, SphereView::arrays(x.data(), y.data(), z.data(), radius.data(), x.size()), visible);
     print("frustum.spheres." + named.name, std::span(visible).first(round));
   }
+}
+
+void expect(const Status& status) {
+  if (!status) std::printf("refused: %s\n", status.message());
 }
 
 // Walls, and a mesh: a sphere's octahedron, coarse and closed.
@@ -168,18 +174,17 @@ void draw_occluders(OcclusionBuffer& buffer) {
     const Vec3 at = random.inside(kSpace);
     walls.push_back({{at.x - 12, -10, at.z - 1}, {at.x + 12, at.y + 5, at.z + 1}});
   }
-  buffer.draw_boxes(walls);
+  expect(buffer.draw_boxes(walls));
   const std::vector<Vec3> corners{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const std::vector<std::uint32_t> faces{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-  const OccluderMesh mesh(corners, faces);
+  const OccluderMesh mesh = *OccluderMesh::make(corners, faces);
   for (int i = 0; i < 30; ++i) {
     const Vec3 at = random.inside(kSpace);
     const float size = random.between(1, 9);
-    Affine place;
-    place.rows = {Vec4{size, 0, 0.3f * size, at.x}, Vec4{0, size, 0, at.y},
-                  Vec4{-0.3f * size, 0, size, at.z}};
-    buffer.draw_mesh(mesh, place);
+    const float turned = 0.3f * size;
+    expect(buffer.draw_mesh(mesh,
+                            {{size, 0, -turned, 0, 0, size, 0, 0, turned, 0, size, 0, at.x, at.y, at.z, 1}}));
   }
 }
 
@@ -191,15 +196,15 @@ void print_occlusion(const std::vector<NamedView>& views) {
   std::vector<float> depth;
   std::vector<std::uint8_t> seen(boxes.size());
   for (const NamedView& named : views) {
-    if (buffer.begin({named.view, {}})) std::printf("occlusion.%s refused\n", named.name.c_str());
+    expect(buffer.begin({named.view, {}}));
     draw_occluders(buffer);
     depth.assign(std::size_t{named.view.width} * named.view.height, 0);
-    buffer.read_nearness(depth);
+    expect(buffer.read_nearness(depth));
     print("occlusion.depth." + named.name, depth);
     Hash covered;
     for (const float nearness : depth) covered.add(static_cast<std::uint8_t>(nearness > 0));
     covered.print("occlusion.coverage." + named.name);
-    buffer.may_see(span_of(boxes), seen);
+    expect(buffer.may_see(boxes.view(), seen));
     print("occlusion.boxes." + named.name, seen);
   }
 }
@@ -210,28 +215,30 @@ void print_world(const std::vector<NamedView>& views) {
   for (int i = 0; i < 30000; ++i) boxes.push_back(world_box(box_of(random, 3)));
   std::vector<Handle> handles(boxes.size());
   World world;
-  if (world.insert(boxes, handles)) std::printf("world.insert refused\n");
+  expect(world.insert(boxes, handles));
   Culler culler;
   OcclusionBuffer buffer;
-  const OcclusionBuffer* occluders = &buffer;
   std::vector<ObjectId> visible(cull_capacity(world));
   for (const NamedView& named : views) {
     for (std::size_t i = 0; i < boxes.size(); i += 7) {
       const double step = random.between(-2, 2);
       boxes[i].min.x += step, boxes[i].max.x += step;
-      if (world.move({&handles[i], 1}, {&boxes[i], 1})) std::printf("world.move refused\n");
+      expect(world.move({&handles[i], 1}, std::span(&boxes[i], 1)));
     }
-    const WorldView view{named.view, {}};
-    const CullResult all = culler.cull(world, {&view, 1}, {}, visible);
-    print("world.frustum." + named.name, std::span(visible).first(all.count));
-    if (buffer.begin(view)) std::printf("world.occlusion refused\n");
+    CullView view{.view = {named.view, {}}};
+    const auto cull = [&](const char* with) {
+      const auto culled = culler.cull(world, view, visible);
+      expect(culled.error());
+      print("world." + std::string(with) + "." + named.name,
+            std::span(visible).first(culled ? culled->count : 0));
+    };
+    cull("frustum");
+    expect(buffer.begin(view.view));
     draw_occluders(buffer);
-    const CullOptions hidden{.min_area = 0, .occlusion = {&occluders, 1}, .jobs = {}};
-    const CullResult few = culler.cull(world, {&view, 1}, hidden, visible);
-    print("world.occlusion." + named.name, std::span(visible).first(few.count));
-    const CullOptions large{.min_area = 4, .occlusion = {}, .jobs = {}};
-    const CullResult big = culler.cull(world, {&view, 1}, large, visible);
-    print("world.contribution." + named.name, std::span(visible).first(big.count));
+    view.occlusion = &buffer;
+    cull("occlusion");
+    view.occlusion = nullptr, view.min_area = 4;
+    cull("contribution");
   }
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "raster_occlusion/examine.hpp"
+#include "support/refusal.hpp"
 #include "workbench/scene/shapes.hpp"
 
 namespace sightline {
@@ -93,10 +94,7 @@ TEST_F(EdgeCases, OneObject) {
 }
 
 TEST_F(EdgeCases, NoObjectIsRefusedBeforeItReachesADevice) {
-  const Scene scene;
-  const Check refused = check(scene);
-  ASSERT_TRUE(refused);
-  EXPECT_NE(refused->message.find("object"), std::string::npos) << refused->message;
+  EXPECT_THAT(test::refusal([] { check(Scene{}); }), testing::HasSubstr("object"));
 }
 
 TEST_F(EdgeCases, OnlyTransparentObjects) {
@@ -205,7 +203,7 @@ TEST_F(EdgeCases, DispatchesWiderThanADeviceAllows) {
   options.validation = true;
   options.widest_dispatch = 3;
   device::Device narrow(options);
-  Scene scene = or_throw(generate_world("irregular?detail=0"));
+  Scene scene = generate_world("irregular?detail=0");
   {
     Examination examination(narrow, scene, kOcclusionMethods);
     scene::Random random(6);

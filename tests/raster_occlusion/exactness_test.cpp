@@ -17,7 +17,7 @@ std::vector<std::string> with_exact_contribution() {
 
 // Every random view is a camera cut: none of the last frame's visible objects says anything about it.
 TEST_P(Exactness, NothingIsLostAfterACameraCut) {
-  Scene scene = or_throw(generate_world(GetParam()));
+  Scene scene = generate_world(GetParam());
   Examination examination(device(), scene, kOcclusionMethods);
   std::size_t index = 0;
   for (const Camera& camera : camera::random_cameras(scene, 24, 3)) {
@@ -29,7 +29,7 @@ TEST_P(Exactness, NothingIsLostAfterACameraCut) {
 }
 
 TEST_P(Exactness, NothingIsLostWithTheExactContributionTest) {
-  Scene scene = or_throw(generate_world(GetParam()));
+  Scene scene = generate_world(GetParam());
   Examination examination(device(), scene, with_exact_contribution());
   std::size_t index = 0;
   for (const Camera& camera : camera::random_cameras(scene, 8, 4)) {
@@ -38,7 +38,7 @@ TEST_P(Exactness, NothingIsLostWithTheExactContributionTest) {
 }
 
 TEST_P(Exactness, NothingIsLostWhileObjectsAndCameraMove) {
-  Scene scene = or_throw(generate_world(GetParam()));
+  Scene scene = generate_world(GetParam());
   Examination examination(device(), scene, kOcclusionMethods);
   scene::Random random(8);
   Camera camera = camera_at(scene, "near");
@@ -55,7 +55,7 @@ TEST_P(Exactness, NothingIsLostWhileObjectsAndCameraMove) {
 // positions off its own grid draws them at the near plane, before the boxes that hold them.
 using EdgeOn = DeviceTest;
 TEST_F(EdgeOn, TrianglesStayWithinTheirBoxes) {
-  Scene scene = or_throw(generate_world("forest?trees=3000&size=300"));
+  Scene scene = generate_world("forest?trees=3000&size=300");
   Camera camera;
   camera.eye = {-199.25568f, 16.579414f, -79.85297f};
   camera.forward = {1, 0, 4.371139e-8f};

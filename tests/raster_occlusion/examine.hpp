@@ -74,7 +74,7 @@ private:
   }
 
   std::unique_ptr<Method> make(const std::string& specification) {
-    return or_throw(create_method(specification, MethodSite{scene_, &renderer_}));
+    return create_method(specification, MethodSite{scene_, &renderer_});
   }
 
   struct Examined {

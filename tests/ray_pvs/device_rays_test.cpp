@@ -90,7 +90,7 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsOnTheFiveModelsAndTheIrregularWorld) {
   for (const char* world :
        {"strata?triangles=20000&model=1", "strata?triangles=20000&model=2", "strata?triangles=20000&model=3",
         "strata?triangles=20000&model=4", "strata?triangles=20000&model=5", "irregular?detail=0"}) {
-    const Scene scene = or_throw(generate_world(world));
+    const Scene scene = generate_world(world);
     Casters casters(device(), scene);
     rays::RayGrid grid;
     grid.make(view_of(camera_at(scene, "far")), 100, 100);
@@ -125,16 +125,16 @@ TEST_F(DeviceRaysTest, RoundsOfManyBoxesLeaveNothingOut) {
 }
 
 TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
-  const Scene scene = or_throw(generate_world("strata?triangles=40000"));
+  const Scene scene = generate_world("strata?triangles=40000");
   device::Renderer renderer(device(), scene);
   const View view = view_of(camera_at(scene, "far"));
-  const auto boca = or_throw(create_method("boca", scene));
+  const auto boca = create_method("boca", scene);
   Frame expected;
   cull(*boca, view, expected);
   std::ranges::sort(expected.visible);
   EXPECT_GT(expected.visible.size(), 50u);
   for (const char* name : {"iwcpa", "bvha", "saa"}) {
-    const auto method = or_throw(create_method(name, MethodSite{scene, &renderer}));
+    const auto method = create_method(name, MethodSite{scene, &renderer});
     Frame frame;
     renderer.frame(view, [&](device::Recorder& recorder) {
       FrameContext context{view, frame, &recorder};

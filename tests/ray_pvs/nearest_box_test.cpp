@@ -82,7 +82,7 @@ TEST(NearestBox, IsTheSameForEveryMethodOnNastyScenes) {
 
 TEST(NearestBox, IsTheSameForEveryMethodOnTheFiveModels) {
   for (int model = 1; model <= 5; ++model) {
-    const Scene scene = *generate_world("strata?triangles=20000&model=" + std::to_string(model));
+    const Scene scene = generate_world("strata?triangles=20000&model=" + std::to_string(model));
     const Trees trees(scene.bounds);
     const View view = *make_view(
         {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 10000}, 1280,
@@ -94,7 +94,7 @@ TEST(NearestBox, IsTheSameForEveryMethodOnTheFiveModels) {
 }
 
 TEST(NearestBox, IsTheSameForEveryMethodOnTheIrregularWorldAlsoAlongAxes) {
-  const Scene scene = *generate_world("irregular?detail=0");
+  const Scene scene = generate_world("irregular?detail=0");
   const Trees trees(scene.bounds);
   rays::RayGrid grid;
   for (const Viewpoint& from : scene.viewpoints) {
@@ -125,7 +125,7 @@ TEST(NearestBox, IsTheSameForEveryMethodInAGameLevel) {
 }
 
 TEST(NearestBox, OfAGridIsTheSameTileByTile) {
-  const Scene scene = *generate_world("strata?triangles=20000");
+  const Scene scene = generate_world("strata?triangles=20000");
   const Trees trees(scene.bounds);
   rays::RayGrid grid;
   grid.make(*make_view({.eye = scene.viewpoints[0].eye, .forward = scene.viewpoints[0].forward}, 640, 480),
@@ -138,7 +138,7 @@ TEST(NearestBox, OfAGridIsTheSameTileByTile) {
 }
 
 TEST(NearestBox, OfAGridIsTheSameForAnyNumberOfThreads) {
-  const Scene scene = *generate_world("strata?triangles=20000&model=3");
+  const Scene scene = generate_world("strata?triangles=20000&model=3");
   const Trees trees(scene.bounds);
   rays::RayGrid grid;
   const View view = *make_view(

@@ -28,7 +28,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct Material {
-  Scene scene = or_throw(generate_world("regular?columns=12&rows=12"));
+  Scene scene = generate_world("regular?columns=12&rows=12");
   measure::Bench bench{scene, test::kExactMethods};
   measure::Comparison comparison;
   Snapshot snapshot;
@@ -156,7 +156,7 @@ TEST(Pictures, ItemBufferIsClearWhereNothingIsAndColouredByObject) {
 }
 
 TEST(Pictures, TopViewShowsALostObjectInItsColour) {
-  Scene scene = or_throw(generate_world("regular?columns=3&rows=3&spacing=10"));
+  Scene scene = generate_world("regular?columns=3&rows=3&spacing=10");
   Snapshot snapshot;
   snapshot.camera.eye = {0, 1, 30};
   snapshot.view = or_throw(make_view(snapshot.camera, 64, 36));

@@ -28,7 +28,7 @@ may[bindings/c]="" may[bindings/python]="" may[examples]="bindings/c"
 
 # A public header that a folder owns.
 declare -A public=(
-  [library/geometry]=types.hpp [library/frustum]=culling.hpp [library/occlusion]=occlusion.hpp
+  [library/geometry]=types.hpp [library/occlusion]=occlusion.hpp
   [library/world]=world.hpp [library/pvs]=pvs.hpp [$w/scene]=workbench/scene.hpp [$w/io]=workbench/io.hpp
   [$w/submission]=workbench/frame.hpp [$w/methods]=workbench/method.hpp)
 

@@ -39,13 +39,13 @@ bool may_cover(const Scene& scene, const View& view, ObjectId object) {
 }
 
 TEST(Contribution, OffKeepsEverything) {
-  const Scene scene = *generate_world("irregular?spheres=500&detail=1");
+  const Scene scene = generate_world("irregular?spheres=500&detail=1");
   const View view = *make_view({.eye = {0, 5, 200}}, 320, 200);
   EXPECT_EQ(filtered(scene, view, {}).size(), 500u);
 }
 
 TEST(Contribution, ExactDropsOnlyWhatCoversNoSample) {
-  const Scene scene = *generate_world("irregular?spheres=800&detail=1");
+  const Scene scene = generate_world("irregular?spheres=800&detail=1");
   scene::Random random(4);
   std::size_t dropped = 0;
   for (int v = 0; v < 40; ++v) {
@@ -64,7 +64,7 @@ TEST(Contribution, ExactDropsOnlyWhatCoversNoSample) {
 }
 
 TEST(Contribution, AreaDropsWhatIsSmallerThanThePixelsAskedFor) {
-  const Scene scene = *generate_world("regular?columns=3&rows=100&detail=1");
+  const Scene scene = generate_world("regular?columns=3&rows=100&detail=1");
   const View view = *make_view({.eye = {0, 1, 140}, .far_plane = 5000}, 200, 100);
   const std::size_t all = filtered(scene, view, {Kind::area, 0}).size();
   const std::size_t one = filtered(scene, view, {Kind::area, 1}).size();

@@ -16,7 +16,7 @@ float depth_of(const Scene& scene, const View& view, ObjectId id) {
 }
 
 TEST(DrawList, DrawsEachVisibleObjectOnceInTheOrderOfAFrame) {
-  const Scene scene = *generate_world("forest?trees=3000");
+  const Scene scene = generate_world("forest?trees=3000");
   const View view = *make_view({.eye = {10, 8.9f, -20}, .forward = {0.3f, 0, 1}}, 640, 360);
   Frame frame;
   for (ObjectId id = 0; id < scene.size(); id += 2) frame.visible.push_back(id);
@@ -60,7 +60,7 @@ TEST(DrawList, DrawsEachVisibleObjectOnceInTheOrderOfAFrame) {
 }
 
 TEST(DrawList, OneCallAMeshForOpaqueThings) {
-  const Scene scene = *generate_world("regular?columns=10&rows=10&detail=0");
+  const Scene scene = generate_world("regular?columns=10&rows=10&detail=0");
   Frame frame;
   frame.visible.resize(100);
   std::iota(frame.visible.begin(), frame.visible.end(), ObjectId{0});
@@ -71,7 +71,7 @@ TEST(DrawList, OneCallAMeshForOpaqueThings) {
 }
 
 TEST(DrawList, NothingVisibleDrawsNothing) {
-  const Scene scene = *generate_world("regular?columns=2&rows=2&detail=0");
+  const Scene scene = generate_world("regular?columns=2&rows=2&detail=0");
   Frame frame;
   DrawList(scene).build(scene, *make_view({}, 64, 64), frame);
   EXPECT_TRUE(frame.draws.empty());

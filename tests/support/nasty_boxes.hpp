@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 #include <sightline/workbench/scene.hpp>
 
 #include "support/random_views.hpp"

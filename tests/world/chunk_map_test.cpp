@@ -23,8 +23,8 @@ Box random_box(Random& random, float reach, float largest) {
 }
 
 std::string failure(const ChunkMap& map) {
-  const Check bad = map.check();
-  return bad ? bad->message : "";
+  const Status sound = map.check();
+  return sound ? "" : std::string(sound.message()) + " " + std::to_string(sound.index());
 }
 
 // The objects of the chunks that a walk leaves, tested one by one where their chunk crosses.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/cull.hpp"
 #include "workbench/scene/random.hpp"
 
 #if defined(__has_feature)
@@ -25,19 +26,18 @@ TEST(Tbb, CullsTheSameOnItsThreads) {
     b = {{at.x - 1.0, at.y - 1.0, at.z - 1.0}, {at.x + 1.0, at.y + 1.0, at.z + 1.0}};
   }
   std::vector<Handle> handles(boxes.size());
-  ASSERT_FALSE(world.insert(boxes, handles));
+  ASSERT_TRUE(world.insert(boxes, handles));
   const WorldView view{*make_view(Camera{.eye = {0, 5, 0}}, 1280, 720), {}};
   std::vector<ObjectId> alone(cull_capacity(world));
-  alone.resize(cull(world, {&view, 1}, {}, alone).count);
+  alone.resize(test::cull(world, view, alone).count);
+  Culler culler;
   EXPECT_GT(alone.size(), 1000u);
   for (const std::uint32_t threads : {0u, 1u, 2u, 8u, 1000u}) {
     const CullOptions options{.jobs = tbb_jobs(threads)};
     EXPECT_GE(options.jobs.threads, 1u);
     EXPECT_LE(options.jobs.threads, kMaxJobs);
     std::vector<ObjectId> visible(cull_capacity(world, options));
-    const CullResult result = cull(world, {&view, 1}, options, visible);
-    ASSERT_EQ(result.error, CullError::none);
-    visible.resize(result.count);
+    visible.resize(test::cull(culler, world, test::cull_views({&view, 1}), visible, {}, options).count);
     EXPECT_EQ(visible, alone) << threads << " threads";
   }
 }

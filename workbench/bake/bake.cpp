@@ -145,8 +145,10 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   cells.first.assign(1, 0);
   for (const auto& [cell, set] : done) {
     cells.open[cell] = !set.empty();
-    if (!set.empty())
-      or_throw(pvs::unpack_set(set, cells.objects, "bake: cell " + std::to_string(cell), cells.visible));
+    if (!set.empty()) {
+      if (const pvs::Complaint wrong = pvs::unpack_set(set, cells.objects, cells.visible))
+        throw Error(sentence_about("bake: cell " + std::to_string(cell), wrong));
+    }
     cells.first.push_back(cells.visible.size());
   }
   write_pvs_file(cells, file);

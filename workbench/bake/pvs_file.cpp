@@ -11,7 +11,15 @@ void write_pvs_file(const CellPvs& cells, const std::filesystem::path& file) {
 }
 
 CellPvs read_pvs_file(const std::filesystem::path& file) {
-  return or_throw(read_pvs(io::read_file(file), file.string()));
+  Result<CellPvs> cells = read_pvs(io::read_file(file));
+  if (!cells) throw Error(sentence_about(file.string(), to_string(cells.error())));
+  return *std::move(cells);
+}
+
+std::string sentence_about(const std::string& what, std::string_view sentence) {
+  constexpr std::string_view kSubject = "pvs: ";
+  if (sentence.starts_with(kSubject)) sentence.remove_prefix(kSubject.size());
+  return what + ": " + std::string(sentence);
 }
 
 void check_belongs(const CellPvs& cells, const std::string& file, const Scene& scene) {

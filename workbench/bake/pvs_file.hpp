@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include <sightline/pvs.hpp>
 #include <sightline/workbench/error.hpp>
@@ -14,6 +15,9 @@ namespace sightline::bake {
 void write_pvs_file(const CellPvs& cells, const std::filesystem::path& file);
 /// Throws Error, one sentence, for what read_pvs refuses.
 CellPvs read_pvs_file(const std::filesystem::path& file);
+
+/// What the library says of visible sets, about a file or a cell by name.
+std::string sentence_about(const std::string& what, std::string_view sentence);
 
 /// Throws Error unless the sets were baked for this very scene.
 void check_belongs(const CellPvs& cells, const std::string& file, const Scene& scene);

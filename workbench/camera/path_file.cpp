@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include <sightline/workbench/error.hpp>
@@ -109,7 +110,7 @@ Camera read_camera(const std::string& where, const Json& view) {
   bool reversed = false;
   read.flag("reversed", reversed);
   camera.depth = reversed ? Depth::reversed : Depth::standard;
-  if (const auto made = make_view(camera, 64, 64); !made) throw Error(where + ": " + made.failure().message);
+  if (const auto made = make_view(camera, 64, 64); !made) throw Error(where + ": " + to_string(made.error()));
   return camera;
 }
 

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <sightline/workbench/error.hpp>
+
 #include "workbench/device/view_data.hpp"
 
 namespace sightline::device {
@@ -14,11 +16,9 @@ namespace {
 constexpr std::uint32_t kObjectVert[] =
 #include "shaders/object.vert.inc"
     ;
-constexpr std::uint32_t kShadeFrag[] =
+constexpr std::uint32_t kObjectShadeFrag[] =
 #include "shaders/shade.frag.inc"
     ;
-
-constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 struct DrawPush {
   vk::DeviceAddress objects, list, extra;
@@ -58,6 +58,7 @@ double FrameTimes::gpu_ms(PassKind kind) const noexcept {
 Renderer::Renderer(Device& device, const Scene& scene)
     : device_(device),
       scene_(scene),
+      held_(scene, "renderer"),
       buffers_(device, scene),
       draws_(device, buffers_),
       extent_(extent(scene)),
@@ -69,11 +70,12 @@ Renderer::Renderer(Device& device, const Scene& scene)
       descriptors_(make_pool(device)),
       view_set_(device.handle(), {*descriptors_, *device.set_layout()}),
       depth_pipeline_(device, {.vertex = kObjectVert, .input = Input::mesh}),
-      lit_pipeline_(
-          device,
-          {.vertex = kObjectVert, .fragment = kShadeFrag, .input = Input::mesh, .colour = kColourFormat}),
+      lit_pipeline_(device, {.vertex = kObjectVert,
+                             .fragment = kObjectShadeFrag,
+                             .input = Input::mesh,
+                             .colour = kColourFormat}),
       blend_pipeline_(device, {.vertex = kObjectVert,
-                               .fragment = kShadeFrag,
+                               .fragment = kObjectShadeFrag,
                                .input = Input::mesh,
                                .colour = kColourFormat,
                                .blend = true,
@@ -86,6 +88,7 @@ Renderer::Renderer(Device& device, const Scene& scene)
 }
 
 void Renderer::update(std::span<const ObjectId> moved) {
+  held_.require_sound(moved);
   for (const ObjectId object : moved) grow(extent_, scene_.bounds[object], scene_.radius[object]);
   buffers_.update(device_, scene_, moved);
 }
@@ -117,6 +120,8 @@ void Renderer::sort_transparent(const View& view) {
 }
 
 FrameTimes Renderer::frame(const View& view, const std::function<void(Recorder&)>& record, Timed timed) {
+  or_throw(check(view));
+  held_.require_same();
   resize(view.width, view.height);
   FrameTimes times;
   const auto start = std::chrono::steady_clock::now();

@@ -5,27 +5,17 @@
 #include <optional>
 
 #include <sightline/workbench/frame.hpp>
+#include <sightline/workbench/held_scene.hpp>
 
+#include "workbench/device/frame_times.hpp"
 #include "workbench/device/recorder.hpp"
 #include "workbench/device/scene_buffers.hpp"
 #include "workbench/device/visible_draws.hpp"
 
 namespace sightline::device {
 
-struct FrameTimes {
-  std::vector<PassTime> passes;  ///< GPU, in order; none where they were not asked for
-  double record_ms = 0;          ///< CPU, what the recording function took: culling on the CPU stands in it
-  double frame_ms = 0;           ///< from the beginning of recording to the finished picture
-
-  [[nodiscard]] double gpu_ms(PassKind kind) const noexcept;
-};
-
-/// The red, green, blue and alpha bytes of a picture, row 0 first, red lowest.
-struct Picture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint32_t> pixels;
-  bool operator==(const Picture&) const = default;
-};
+/// Of indirect draws, in bytes: a DrawCommand is what the device reads.
+inline constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 class Renderer {
 public:
@@ -37,14 +27,16 @@ public:
   [[nodiscard]] const SceneBuffers& buffers() const noexcept { return buffers_; }
   [[nodiscard]] const VisibleDraws& draws() const noexcept { return draws_; }
 
-  /// Sends the new transforms of moved objects.
+  /// Throws Error where objects or meshes were added to the scene since it was copied, as update() and
+  /// frame() do.
+  void require_same_scene() const { held_.require_same(); }
+
+  /// Sends the new transforms of moved objects. Throws Error for an object that is not in the scene or has no
+  /// finite bounds.
   void update(std::span<const ObjectId> moved);
 
-  /// What is timed besides the whole frame. On llvmpipe each timestamp is a round through all its threads, a
-  /// tenth of a short frame, so that a frame tells its own time best without.
-  enum class Timed : std::uint8_t { frame, passes };
-  /// Records, submits and waits for a frame of the view's size. The view has passed check(). Depth and colour
-  /// hold the last frame until they are cleared.
+  /// Records, submits and waits for a frame of the view's size. Throws Error for a view that does not pass
+  /// check(). Depth and colour hold the last frame until they are cleared.
   FrameTimes frame(const View& view, const std::function<void(Recorder&)>& record,
                    Timed timed = Timed::frame);
 
@@ -79,6 +71,7 @@ private:
 
   Device& device_;
   const Scene& scene_;
+  HeldScene held_;
   SceneBuffers buffers_;
   VisibleDraws draws_;
   Box extent_;

@@ -5,16 +5,9 @@
 #include <vector>
 
 #include "workbench/device/device.hpp"
+#include "workbench/device/frame_times.hpp"
 
 namespace sightline::device {
-
-enum class PassKind : std::uint8_t { cull, draw };
-
-struct PassTime {
-  std::string name;
-  PassKind kind;
-  double milliseconds;
-};
 
 class Timer {
 public:

@@ -10,14 +10,12 @@ namespace {
 constexpr std::uint32_t kTriangleVert[] =
 #include "shaders/triangle.vert.inc"
     ;
-constexpr std::uint32_t kShadeFrag[] =
+constexpr std::uint32_t kTriangleShadeFrag[] =
 #include "shaders/triangle_shade.frag.inc"
     ;
 constexpr std::uint32_t kIdFrag[] =
 #include "shaders/triangle_id.frag.inc"
     ;
-
-constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
 std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const Scene& scene) {
   std::vector<shared::CornerData> out;
@@ -34,12 +32,12 @@ std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const 
 
 TriangleDraws::Pipelines::Pipelines(const Device& device, bool cull_back)
     : lit(device, {.vertex = kTriangleVert,
-                   .fragment = kShadeFrag,
+                   .fragment = kTriangleShadeFrag,
                    .input = Input::corner,
                    .colour = kColourFormat,
                    .cull_back = cull_back}),
       blended(device, {.vertex = kTriangleVert,
-                       .fragment = kShadeFrag,
+                       .fragment = kTriangleShadeFrag,
                        .input = Input::corner,
                        .colour = kColourFormat,
                        .blend = true,

@@ -199,7 +199,7 @@ private:
 
 void write_glb(const Scene& scene, const std::filesystem::path& path) {
   using namespace io::gltf;
-  or_throw(check(scene));
+  check(scene);
   if (scene.size() > kMaxObjects) {
     throw Error(fmt::format("{}: cannot hold {} objects, expected at most {}", path.string(), scene.size(),
                             kMaxObjects));

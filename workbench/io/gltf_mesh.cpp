@@ -9,6 +9,8 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/scene/vertex_normals.hpp"
+
 namespace sightline::io::gltf {
 
 namespace {
@@ -37,30 +39,6 @@ std::vector<std::uint32_t> as_triangles(std::vector<std::uint32_t> corners, std:
 
 Vec3 read_vec3(const Accessor& accessor, std::uint64_t i) {
   return {accessor.component(i, 0), accessor.component(i, 1), accessor.component(i, 2)};
-}
-
-/// Unit length; false where there is no direction.
-bool normalise(std::array<double, 3>& v) {
-  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  if (!(length > 1e-30) || !std::isfinite(length)) return false;
-  for (double& x : v) x /= length;
-  return true;
-}
-
-/// Sums of the normals of the triangles around each vertex, weighted by area.
-std::vector<std::array<double, 3>> sum_normals(std::span<const Vec3> positions,
-                                               std::span<const std::uint32_t> indices) {
-  std::vector<std::array<double, 3>> sums(positions.size(), {0, 0, 0});
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const Vec3 &a = positions[indices[i]], &b = positions[indices[i + 1]], &c = positions[indices[i + 2]];
-    const double ux = double{b.x} - a.x, uy = double{b.y} - a.y, uz = double{b.z} - a.z;
-    const double vx = double{c.x} - a.x, vy = double{c.y} - a.y, vz = double{c.z} - a.z;
-    const std::array<double, 3> normal{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t axis = 0; axis < 3; ++axis) sums[indices[i + k]][axis] += normal[axis];
-    }
-  }
-  return sums;
 }
 
 void require_vec3(const Accessor& accessor, const char* what) {
@@ -141,25 +119,19 @@ std::uint32_t MeshReader::make(const Key& key) {
     }
     positions.push_back(p);
   }
-  std::vector<std::array<double, 3>> sums;
+  std::vector<Vec3> computed;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    std::array<double, 3> n{0, 0, 0};
-    if (given != nullptr) {
-      const Vec3 stored = read_vec3(*given, used[i]);
-      n = {stored.x, stored.y, stored.z};
-      // What is of unit length already keeps its bits.
-      const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-      if (std::abs(squared - 1) < 1e-6) {
-        normals[i] = stored;
-        continue;
-      }
+    const Vec3 stored = given == nullptr ? Vec3{} : read_vec3(*given, used[i]);
+    std::array<double, 3> n{stored.x, stored.y, stored.z};
+    // What is of unit length already keeps its bits.
+    if (std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6) {
+      normals[i] = stored;
+    } else if (scene::normalise(n)) {
+      normals[i] = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
+    } else {
+      if (computed.empty()) computed = scene::vertex_normals(positions, corners);
+      normals[i] = computed[i];
     }
-    if (!normalise(n)) {
-      if (sums.empty()) sums = sum_normals(positions, corners);
-      n = sums[i];
-      if (!normalise(n)) n = {0, 1, 0};
-    }
-    normals[i] = {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
   }
   return scene_.add_mesh(positions, normals, corners);
 }

@@ -270,7 +270,7 @@ Scene read_gltf(std::span<const std::byte> bytes, std::string name, const std::f
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }
-  or_throw(check(scene));
+  check(scene);
   return scene;
 }
 

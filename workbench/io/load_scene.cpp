@@ -38,7 +38,7 @@ Scene load(std::string_view specification, const LoadOptions& options) {
     throw Error("no scene given, expected world:NAME or a .glb, .gltf, .bsp or archive.pk3:maps/name.bsp");
   if (text.find('\0') != std::string::npos)
     throw Error("the scene's name holds a zero byte, expected a file name");
-  if (text.starts_with(kWorld)) return or_throw(generate_world(specification.substr(kWorld.size())));
+  if (text.starts_with(kWorld)) return generate_world(specification.substr(kWorld.size()));
   if (const std::size_t at = text.find(kArchive); at != std::string::npos) {
     const std::filesystem::path archive = find_archive(text.substr(0, at + kArchive.size() - 1));
     return read_bsp(io::unpack_entry(archive, text.substr(at + kArchive.size())), text, options);
@@ -59,7 +59,7 @@ Scene load(std::string_view specification, const LoadOptions& options) {
 
 Scene load_scene(std::string_view specification, const LoadOptions& options) {
   Scene scene = load(specification, options);
-  or_throw(check(scene));
+  check(scene);
   return scene;
 }
 

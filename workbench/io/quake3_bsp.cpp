@@ -393,7 +393,7 @@ LevelPvs read_level_pvs(const Level& level, const std::pair<std::size_t, std::si
   read_tree(level, pvs);
   read_leaves(level, face_count, pvs);
   read_visibility(level, pvs);
-  or_throw(check(pvs, face_count));
+  check(pvs, face_count);
   drop_unreached_leaves(pvs);
   return pvs;
 }
@@ -409,7 +409,7 @@ Scene read(Bytes bytes, std::string name, std::uint32_t patch_level) {
   const auto models = read_models(level, face_count);
   read_faces(level, patch_level, place_faces(entities, models, face_count), scene);
   scene.level = read_level_pvs(level, models[0], face_count);
-  or_throw(check(scene));
+  check(scene);
   add_places(entities, scene);
   return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/device/renderer.hpp"
 #include "workbench/methods/drawn_on_device.hpp"
 
 namespace sightline::measure {
@@ -12,10 +13,11 @@ Bench::Bench(Scene& scene, std::span<const std::string> specifications, device::
     : scene_(scene), renderer_(device ? std::make_unique<device::Renderer>(*device, scene) : nullptr) {
   oracle_ = renderer_ ? oracle::make_raster_oracle(*renderer_) : oracle::make_ray_oracle(scene);
   for (const std::string& specification : specifications) {
-    subjects_.push_back(
-        {specification, or_throw(create_method(specification, MethodSite{scene, renderer_.get()}))});
+    subjects_.push_back({specification, create_method(specification, MethodSite{scene, renderer_.get()})});
   }
 }
+
+Bench::~Bench() = default;
 
 std::string Bench::device_name() const {
   return renderer_ ? renderer_->device().info().name : "cpu";
@@ -26,7 +28,7 @@ Subject& Bench::add(std::string name, std::unique_ptr<Method> method) {
   return subjects_.emplace_back(std::move(name), std::move(method));
 }
 
-device::FrameTimes Bench::run(Subject& subject, const View& view, device::Renderer::Timed timed) {
+device::FrameTimes Bench::run(Subject& subject, const View& view, device::Timed timed) {
   device::FrameTimes times;
   if (!renderer_) {
     const auto begin = std::chrono::steady_clock::now();

@@ -9,7 +9,7 @@
 
 #include <sightline/workbench/method.hpp>
 
-#include "workbench/device/renderer.hpp"
+#include "workbench/device/frame_times.hpp"
 #include "workbench/oracle/oracle.hpp"
 
 namespace sightline::measure {
@@ -26,6 +26,7 @@ public:
   /// On the CPU, or on a device where one is given. Scene and device outlive the bench. Throws Error for a
   /// method that does not exist or does not fit.
   Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device = nullptr);
+  ~Bench();
 
   [[nodiscard]] Scene& scene() noexcept { return scene_; }
   [[nodiscard]] std::span<Subject> subjects() noexcept { return subjects_; }
@@ -40,8 +41,7 @@ public:
   void remove_last() { subjects_.pop_back(); }
 
   /// One frame of one subject, which is told what it took; on the CPU it is culled alone.
-  device::FrameTimes run(Subject& subject, const View& view,
-                         device::Renderer::Timed timed = device::Renderer::Timed::frame);
+  device::FrameTimes run(Subject& subject, const View& view, device::Timed timed = device::Timed::frame);
   /// What the subject's last frame was worth, which was of this view. With `picture`, on a device, its
   /// picture is compared, too; the next picture is drawn anew in any case.
   enum class Compare : std::uint8_t { sets, pictures };

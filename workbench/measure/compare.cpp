@@ -18,20 +18,19 @@ struct Samples {
 /// Draws what it is told.
 class Told final : public Method {
 public:
-  explicit Told(const Scene& scene) : scene_(scene), draw_list_(scene) {}
+  explicit Told(const Scene& scene) : Method(scene), draw_list_(scene) {}
 
   std::vector<ObjectId> visible;
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
-  void update(std::span<const ObjectId>) override {}
-  void record(FrameContext& context) override {
+  void do_update(std::span<const ObjectId>) override {}
+  void do_record(FrameContext& context) override {
     context.output.clear();
     context.output.visible.assign(visible.begin(), visible.end());
     draw_list_.build(scene_, context.view, context.output);
   }
 
 private:
-  const Scene& scene_;
   submission::DrawList draw_list_;
 };
 
@@ -60,8 +59,8 @@ private:
   Told* told_;
 };
 
-void take(Samples& samples, const device::FrameTimes& times, bool drawn, device::Renderer::Timed timed) {
-  if (timed == device::Renderer::Timed::passes) {
+void take(Samples& samples, const device::FrameTimes& times, bool drawn, device::Timed timed) {
+  if (timed == device::Timed::passes) {
     samples.gpu.push_back(times.gpu_ms(device::PassKind::cull));
     return;
   }
@@ -72,7 +71,7 @@ void take(Samples& samples, const device::FrameTimes& times, bool drawn, device:
 /// All subjects of one view by turns; each keeps its last answer.
 std::vector<Samples> take_times(Bench& bench, const View& view, std::size_t turn,
                                 const MeasureOptions& options, Mover& mover) {
-  using Timed = device::Renderer::Timed;
+  using Timed = device::Timed;
   const auto subjects = bench.subjects();
   const bool drawn = bench.renderer() != nullptr;
   std::vector<Samples> samples(subjects.size());

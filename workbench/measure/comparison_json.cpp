@@ -1,6 +1,7 @@
 #include "workbench/measure/comparison_json.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include <sightline/version.hpp>
 

@@ -11,12 +11,12 @@ namespace {
 class DrawnOnDevice final : public Method {
 public:
   DrawnOnDevice(std::unique_ptr<Method> method, device::Renderer& renderer)
-      : renderer_(renderer), method_(std::move(method)) {
+      : Method(renderer.scene()), renderer_(renderer), method_(std::move(method)) {
     copy_triangles();
   }
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return method_->guarantee(); }
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     if (objects.empty()) return;
     method_->update(objects);
     copy_triangles();
@@ -24,7 +24,7 @@ public:
   void report_frame_time(double milliseconds) noexcept override { method_->report_frame_time(milliseconds); }
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return method_->geometry(); }
 
-  void record(FrameContext& context) override {
+  void do_record(FrameContext& context) override {
     sightline::cull(*method_, context.view, context.output);
     const auto pass = context.recorder->pass("draw", device::PassKind::draw);
     const Frame& frame = context.output;

@@ -9,14 +9,17 @@ namespace sightline::methods {
 /// that.
 class CpuMethod : public Method {
 public:
-  void record(FrameContext& context) final { cull(context.view, context.output); }
+  using Method::Method;
   virtual void cull(const View& view, Frame& frame) noexcept = 0;
+
+private:
+  void do_record(FrameContext& context) final { cull(context.view, context.output); }
 };
 
 /// The form for the CPU of a method whose constructor takes the scene and its parameters.
 template <class M>
-Result<std::unique_ptr<Method>> make_on_cpu(const MethodSite& site, const Parameters& parameters) {
-  return std::unique_ptr<Method>(std::make_unique<M>(site.scene, parameters));
+std::unique_ptr<Method> make_on_cpu(const MethodSite& site, const Parameters& parameters) {
+  return std::make_unique<M>(site.scene, parameters);
 }
 template <class M>
 constexpr MethodForm on_cpu(Guarantee guarantee, std::span<const ParameterInfo> parameters = {}) {
@@ -25,8 +28,8 @@ constexpr MethodForm on_cpu(Guarantee guarantee, std::span<const ParameterInfo> 
 
 /// The form for a device of a method whose constructor takes the renderer and its parameters.
 template <class M>
-Result<std::unique_ptr<Method>> make_on_device(const MethodSite& site, const Parameters& parameters) {
-  return std::unique_ptr<Method>(std::make_unique<M>(*site.renderer, parameters));
+std::unique_ptr<Method> make_on_device(const MethodSite& site, const Parameters& parameters) {
+  return std::make_unique<M>(*site.renderer, parameters);
 }
 template <class M>
 constexpr MethodForm on_device(Guarantee guarantee, std::span<const ParameterInfo> parameters = {}) {

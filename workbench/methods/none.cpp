@@ -10,10 +10,10 @@ namespace {
 
 class None final : public CpuMethod {
 public:
-  None(const Scene& scene, const Parameters&) : scene_(scene), draw_list_(scene) {}
+  None(const Scene& scene, const Parameters&) : CpuMethod(scene), draw_list_(scene) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
   void cull(const View& view, Frame& frame) noexcept override {
     frame.clear();
@@ -24,21 +24,21 @@ public:
   }
 
 private:
-  const Scene& scene_;
   submission::DrawList draw_list_;
 };
 
 class NoneOnDevice final : public Method {
 public:
   NoneOnDevice(device::Renderer& renderer, const Parameters&)
-      : renderer_(renderer),
+      : Method(renderer.scene()),
+        renderer_(renderer),
         flags_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "flags"),
         draws_(renderer.draws().make_buffers(renderer.device())) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
-  void record(FrameContext& context) override {
+  void do_record(FrameContext& context) override {
     device::Recorder& frame = *context.recorder;
     const auto pass = frame.pass("draw", device::PassKind::draw);
     // Opaque objects are listed once; transparent ones are sorted anew for each view.

@@ -1,6 +1,7 @@
 // All methods in one table. Each line names what a method's file defines: a MethodInfo, or an array of them.
 #include <vector>
 
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/method.hpp>
 
 #include "workbench/device/renderer.hpp"
@@ -41,6 +42,17 @@ SIGHTLINE_METHODS(SIGHTLINE_DECLARE, SIGHTLINE_DECLARE_FAMILY)
 
 }  // namespace methods
 
+void Method::update(std::span<const ObjectId> objects) {
+  held_.require_sound(objects);
+  do_update(objects);
+}
+
+void Method::record(FrameContext& context) {
+  or_throw(check(context.view));
+  held_.require_same();
+  do_record(context);
+}
+
 std::string_view to_string(Guarantee guarantee) noexcept {
   switch (guarantee) {
     case Guarantee::exact:
@@ -73,37 +85,37 @@ const MethodInfo* find_method(std::string_view name) noexcept {
 
 namespace {
 
-Failure no_such_method(std::string_view name, bool on_device) {
+[[noreturn]] void refuse_name(std::string_view name, bool on_device) {
   std::string known;
   for (const MethodInfo& method : all_methods()) {
     if (on_device || method.cpu.exists()) known.append(known.empty() ? "" : ", ").append(method.name);
   }
-  return {"method '" + std::string(name) + "': no such method" + (find_method(name) ? " on the CPU" : "") +
-          ", expected one of " + known};
+  throw Error("method '" + std::string(name) + "': no such method" +
+              (find_method(name) ? " on the CPU" : "") + ", expected one of " + known);
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Method>> create_method(std::string_view specification, const Scene& scene) {
+std::unique_ptr<Method> create_method(std::string_view specification, const Scene& scene) {
   return create_method(specification, MethodSite{scene});
 }
 
-Result<std::unique_ptr<Method>> create_method(std::string_view specification, const MethodSite& site) {
+std::unique_ptr<Method> create_method(std::string_view specification, const MethodSite& site) {
   const std::string name(specified_name(specification));
   const MethodInfo* info = find_method(name);
-  if (!info || (!site.renderer && !info->cpu.exists())) return no_such_method(name, site.renderer);
+  if (!info || (!site.renderer && !info->cpu.exists())) refuse_name(name, site.renderer);
   const bool on_device = site.renderer && info->device.exists();
   const MethodForm& form = on_device ? info->device : info->cpu;
-  Result<Parameters> parameters = parse_parameters("method", specification, form.parameters);
-  if (!parameters) return parameters.failure();
-  if (Check bad = check(site.scene)) return *bad;
+  const Parameters parameters = parse_parameters("method", specification, form.parameters);
+  check(site.scene);
+  if (site.renderer) site.renderer->require_same_scene();
   if (!form.suits(site.scene)) {
-    return Failure{"method '" + name + "': scene '" + site.scene.name + "' lacks " + std::string(form.needs)};
+    throw Error("method '" + name + "': scene '" + site.scene.name + "' lacks " + std::string(form.needs));
   }
   if (on_device && !form.needs.empty()) site.renderer->device().require(form.needs, "method '" + name + "'");
-  Result<std::unique_ptr<Method>> made = form.create(site, *parameters);
-  if (!made || !site.renderer || on_device) return made;
-  return methods::draw_on_device(std::move(*made), *site.renderer);
+  std::unique_ptr<Method> made = form.create(site, parameters);
+  if (!site.renderer || on_device) return made;
+  return methods::draw_on_device(std::move(made), *site.renderer);
 }
 
 }  // namespace sightline

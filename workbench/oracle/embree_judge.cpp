@@ -11,6 +11,7 @@
 #include <string>
 
 #include <sightline/workbench/error.hpp>
+#include <sightline/workbench/held_scene.hpp>
 
 #include "workbench/oracle/embree_layer.hpp"
 #include "workbench/oracle/object_triangles.hpp"
@@ -88,13 +89,15 @@ struct EmbreeJudge::State {
                   std::vector<std::uint32_t>& transparent_pixels, std::vector<ObjectId>& passed) const;
 
   const Scene& scene;
+  HeldScene held;
   Faces faces;
   RTCDevice device = nullptr;
   std::vector<RTCScene> mesh_scenes;
   std::unique_ptr<EmbreeLayer> opaque, transparent;
 };
 
-EmbreeJudge::State::State(const Scene& shown, Faces seen_faces) : scene(shown), faces(seen_faces) {
+EmbreeJudge::State::State(const Scene& shown, Faces seen_faces)
+    : scene(shown), held(shown, "oracle of rays"), faces(seen_faces) {
   device = rtcNewDevice(nullptr);
   if (device == nullptr) throw Error("item buffer: Embree could not be started on this machine");
   mesh_scenes = build_mesh_scenes(device, scene);
@@ -120,7 +123,7 @@ EmbreeJudge::State::~State() {
 }
 
 EmbreeJudge::EmbreeJudge(const Scene& scene, Faces faces) {
-  or_throw(check(scene));
+  check(scene);
   state_ = std::make_unique<State>(scene, faces);
 }
 
@@ -164,6 +167,7 @@ void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std:
 
 ItemBuffer EmbreeJudge::render(const View& view) const {
   or_throw(check(view));
+  state_->held.require_same();
   ItemBuffer out;
   out.width = view.width, out.height = view.height;
   out.ids.assign(std::size_t{view.width} * view.height, kNoObject);
@@ -197,11 +201,7 @@ ItemBuffer EmbreeJudge::render(const View& view) const {
 }
 
 void EmbreeJudge::move(std::span<const ObjectId> objects) {
-  for (const ObjectId object : objects) {
-    if (object >= state_->scene.size()) {
-      throw Error("item buffer: moved object " + std::to_string(object) + " is not in the scene");
-    }
-  }
+  state_->held.require_sound(objects);
   state_->opaque->move(objects);
   state_->transparent->move(objects);
 }

@@ -23,7 +23,8 @@ public:
   EmbreeJudge(const EmbreeJudge&) = delete;
   EmbreeJudge& operator=(const EmbreeJudge&) = delete;
 
-  /// The view has passed check(). Same scene and view, same answer for any number of threads.
+  /// Throws Error for a view that does not pass check(). Same scene and view, same answer for any number of
+  /// threads.
   [[nodiscard]] ItemBuffer render(const View& view) const;
 
   /// Told after Scene::move_object of each of `objects`.

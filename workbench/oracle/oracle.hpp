@@ -44,8 +44,9 @@ public:
   Oracle(const Oracle&) = delete;
   Oracle& operator=(const Oracle&) = delete;
 
-  /// Who shows in each pixel when everything is drawn and nothing culled. The view has passed check(). Valid
-  /// until the next call.
+  /// Who shows in each pixel when everything is drawn and nothing culled. Valid until the next call. Throws
+  /// Error for a view that does not pass check(), and where objects or meshes were added to the scene since
+  /// the oracle was made, as update() does.
   virtual const ItemBuffer& look(const View& view) = 0;
   /// Holds an answer against the truth: the scene's, or where a method draws triangles of its own, that of
   /// those. Throws Error for an answer that no method may give: an object named twice or not in the scene, a

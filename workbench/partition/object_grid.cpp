@@ -12,11 +12,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kMostCells = 4096;
 
 // Which cell along one axis a centre falls into.
-struct Axis {
+struct CellAxis {
   float origin = 0, cell = 1;
   std::uint32_t cells = 1;
 
-  Axis(float low, float high, float wanted) : origin(low) {
+  CellAxis(float low, float high, float wanted) : origin(low) {
     const float count = std::clamp(std::ceil((high - low) / wanted), 1.0f, kMostCells);
     cells = static_cast<std::uint32_t>(count);
     cell = std::max((high - low) / count, std::numeric_limits<float>::min());
@@ -40,7 +40,7 @@ void ObjectGrid::build(const Boxes& b, float cell) {
     low_x = std::min(low_x, x), high_x = std::max(high_x, x);
     low_z = std::min(low_z, z), high_z = std::max(high_z, z);
   }
-  const Axis across(low_x, high_x, cell), along(low_z, high_z, cell);
+  const CellAxis across(low_x, high_x, cell), along(low_z, high_z, cell);
   columns_ = across.cells, rows_ = along.cells;
   const std::uint32_t cells = rows_ * columns_;
 

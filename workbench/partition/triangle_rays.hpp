@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 #include <sightline/workbench/scene.hpp>
 
 #include "library/rays/ray_hits.hpp"

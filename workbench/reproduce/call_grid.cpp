@@ -32,7 +32,7 @@ class Soup {
 public:
   Soup(device::Device& device, std::uint32_t triangles, const DrawCallOptions& options)
       : triangles_(triangles),
-        scene_(or_throw(generate_world(fmt::format("soup?triangles={}&edge=0.3", triangles)))),
+        scene_(generate_world(fmt::format("soup?triangles={}&edge=0.3", triangles))),
         flat_(methods::flatten(scene_)),
         renderer_(device, scene_),
         draws_(renderer_, geometry()),

@@ -10,7 +10,7 @@
 #include <sightline/workbench/progress.hpp>
 
 #include "workbench/camera/camera_path.hpp"
-#include "workbench/device/device.hpp"
+#include "workbench/device/frame_times.hpp"
 #include "workbench/measure/timing.hpp"
 #include "workbench/report/table.hpp"
 #include "workbench/reproduce/draw_call_levels.hpp"

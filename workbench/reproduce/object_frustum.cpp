@@ -54,7 +54,7 @@ struct Sums {
 }  // namespace
 
 Scene object_frustum_scene() {
-  return or_throw(generate_world("forest?trees=30000&size=1000"));
+  return generate_world("forest?trees=30000&size=1000");
 }
 
 ObjectFrustumReproduction reproduce_object_frustum(measure::Bench& bench, bool quick,

@@ -27,7 +27,7 @@ double ms_since(Clock::time_point start) {
 }
 
 Scene model_scene(int number) {
-  return or_throw(generate_world("strata?model=" + std::to_string(number)));
+  return generate_world("strata?model=" + std::to_string(number));
 }
 
 View view_of(const Scene& scene, float fov, const RayPvsOptions& options, const Vec3& forward) {
@@ -70,7 +70,7 @@ void draw(device::Renderer& renderer, Method& method, const View& view, double* 
 
 void draw_pictures(const Scene& scene, device::Device& device, const View& view, const std::string& stem) {
   device::Renderer renderer(device, scene);
-  const auto all = or_throw(create_method("none", scene)), pvs = or_throw(create_method("boca", scene));
+  const auto all = create_method("none", scene), pvs = create_method("boca", scene);
   draw(renderer, *all, view, nullptr);
   const device::Picture everything = renderer.picture();
   draw(renderer, *pvs, view, nullptr);
@@ -99,7 +99,7 @@ void judge_model(const Scene& scene, const View& view, const rays::RayHits& hits
   out.lost_objects = loss.lost.size();
   out.lost_pixels = loss.lost_pixels;
   for (const std::uint32_t pixels : truth.pixels) out.object_pixels += pixels;
-  const auto guided = or_throw(create_method("guided", scene));
+  const auto guided = create_method("guided", scene);
   Frame frame;
   cull(*guided, view, frame);
   const auto start = Clock::now();
@@ -173,7 +173,7 @@ RayPvsModel measure_ray_model(int number, device::Device& device, const RayPvsOp
 std::vector<RegionTime> measure_regions(int number, device::Device& device, const RayPvsOptions& options) {
   const Scene scene = model_scene(number);
   device::Renderer renderer(device, scene);
-  const auto all = or_throw(create_method("none", scene)), boca = or_throw(create_method("boca", scene));
+  const auto all = create_method("none", scene), boca = create_method("boca", scene);
   const View whole = view_of(scene, kFov, options, scene.viewpoints.back().forward);
   const rays::ViewRays rays(whole);
   std::vector<RegionTime> out;

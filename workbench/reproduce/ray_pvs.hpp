@@ -9,7 +9,7 @@
 
 #include <sightline/workbench/scene.hpp>
 
-#include "workbench/device/device.hpp"
+#include "workbench/device/frame_times.hpp"
 #include "workbench/report/table.hpp"
 #include "workbench/reproduce/ray_scenes.hpp"
 

@@ -30,8 +30,8 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
     cameras.push_back(camera);
 
   const oracle::EmbreeJudge judge(scene);
-  const auto guided = or_throw(create_method(fmt::format("guided?target={}", kGuidedTarget), scene));
-  const auto triangles = or_throw(create_method(fmt::format("triangle-pvs?rays={}", kRays), scene));
+  const auto guided = create_method(fmt::format("guided?target={}", kGuidedTarget), scene);
+  const auto triangles = create_method(fmt::format("triangle-pvs?rays={}", kRays), scene);
   RayScene out;
   out.scene = scene.name;
   Frame frame;

@@ -121,7 +121,7 @@ camera::CameraPath rising_path(const Scene& scene, std::size_t views) {
 }  // namespace
 
 Scene vertex_chunk_scene(const std::string& world, bool quick) {
-  return or_throw(generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3)));
+  return generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3));
 }
 
 Camera vertex_chunk_near(const Scene& scene) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "workbench/device/renderer.hpp"
+#include "workbench/device/frame_times.hpp"
 #include "workbench/measure/compare.hpp"
 #include "workbench/report/summary.hpp"
 

@@ -6,6 +6,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "library/world/chunk_map.hpp"
+#include "workbench/device/renderer.hpp"
 #include "workbench/device/scene_buffers.hpp"
 
 namespace sightline::reproduce {
@@ -69,7 +70,7 @@ std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Bench
   std::vector<std::uint32_t> colours(scene.size(), kCulled);
   for (const ObjectId object : subject.frame.visible) colours[object] = kKept;
   const View aside = or_throw(make_view(aside_of(scene), near.width, near.height));
-  measure::Subject everything{"none", or_throw(create_method("none", MethodSite{scene, bench.renderer()}))};
+  measure::Subject everything{"none", create_method("none", MethodSite{scene, bench.renderer()})};
   bench.run(everything, aside);
   const device::Picture lit = bench.renderer()->picture();
   const oracle::ItemBuffer items = bench.oracle().look(aside);

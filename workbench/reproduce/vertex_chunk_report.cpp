@@ -6,6 +6,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/device/renderer.hpp"
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/assets.hpp"
 #include "workbench/report/page.hpp"

@@ -18,7 +18,7 @@ Walker::Walker(device::Renderer& renderer, const std::string& specification)
   row.family = std::string(specified_name(specification));
   const std::size_t at = specification.find("height=");
   row.height = at == std::string::npos ? 0 : static_cast<std::uint32_t>(specification[at + 7] - '0');
-  method_ = or_throw(create_method(culls() ? specification : "simple-grid?height=1", renderer.scene()));
+  method_ = create_method(culls() ? specification : "simple-grid?height=1", renderer.scene());
   row.submission = geometry().submission;
   row.bytes = geometry().bytes;
   draws_ = std::make_unique<device::TriangleDraws>(renderer, geometry());

@@ -10,9 +10,9 @@ namespace sightline::scene {
 
 namespace {
 
-constexpr float kEyeHeight = 8.9f;  // as published
+constexpr float kForestEyeHeight = 8.9f;  // as published
 
-constexpr std::array kParameters{
+constexpr std::array kForestParameters{
     ParameterInfo{"trees", "how many", "30000", 1, 20000000, true},
     ParameterInfo{"size", "metres, the side of the square", "1000", 10, 1000000},
     ParameterInfo{"transparent", "share of trees with blended foliage", "0.2", 0, 1},
@@ -40,7 +40,7 @@ Shape broadleaf(std::uint32_t sides) {
   return tree;
 }
 
-Result<Scene> make_forest(const Parameters& parameters) {
+Scene make_forest(const Parameters& parameters) {
   Scene scene;
   const std::uint32_t sides = parameters.count("sides");
   const auto add = [&](const Shape& shape) {
@@ -60,14 +60,14 @@ Result<Scene> make_forest(const Parameters& parameters) {
     scene.add_object(species[kind], place(at, height, heading),
                      blended ? Surface::transparent : Surface::opaque);
   }
-  scene.viewpoints.push_back({"near", {0, kEyeHeight, 0}, {0, 0, -1}});
+  scene.viewpoints.push_back({"near", {0, kForestEyeHeight, 0}, {0, 0, -1}});
   scene.viewpoints.push_back({"far", {0, 0.5f * half, 2 * half}, {0, -0.4f, -1}});
   return scene;
 }
 
 }  // namespace
 
-const WorldInfo kForestWorld{"forest", "trees at random on a square (Le Hoang Minh et al. 2022)", kParameters,
-                             make_forest};
+const WorldInfo kForestWorld{"forest", "trees at random on a square (Le Hoang Minh et al. 2022)",
+                             kForestParameters, make_forest};
 
 }  // namespace sightline::scene

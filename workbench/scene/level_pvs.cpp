@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <sightline/frustum.hpp>
+#include <sightline/workbench/error.hpp>
 
 namespace sightline {
 
@@ -35,43 +36,41 @@ void LevelPvs::potentially_visible(const Vec3& eye, std::span<std::uint8_t> mask
   }
 }
 
-Check check(const LevelPvs& level, std::size_t object_count) {
-  const auto bad = [](const std::string& what) { return Failure{"level PVS: " + what}; };
-  if (level.leaves.empty()) return bad("it has no leaf");
+void check(const LevelPvs& level, std::size_t object_count) {
+  const auto refuse = [](const std::string& what) { throw Error("level PVS: " + what); };
+  if (level.leaves.empty()) refuse("it has no leaf");
   if (level.in_some_leaf.size() != object_count || level.in_world_model.size() != object_count) {
-    return bad("expected one flag an object");
+    refuse("expected one flag an object");
   }
   for (std::size_t i = 0; i < level.nodes.size(); ++i) {
     for (const std::int64_t child : {level.nodes[i].front, level.nodes[i].back}) {
       // Compilers write parents before children, so a larger index is also what rules out a circle.
       if (child >= 0 &&
           (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))) {
-        return bad("node " + std::to_string(i) + " has a child out of order or range");
+        refuse("node " + std::to_string(i) + " has a child out of order or range");
       }
       if (child < 0 && -(child + 1) >= static_cast<std::int64_t>(level.leaves.size())) {
-        return bad("node " + std::to_string(i) + " has a leaf out of range");
+        refuse("node " + std::to_string(i) + " has a leaf out of range");
       }
     }
   }
   for (std::size_t i = 0; i < level.leaves.size(); ++i) {
     const LevelPvs::Leaf& leaf = level.leaves[i];
     if (std::uint64_t{leaf.first_object} + leaf.object_count > level.leaf_objects.size()) {
-      return bad("leaf " + std::to_string(i) + " lists objects out of range");
+      refuse("leaf " + std::to_string(i) + " lists objects out of range");
     }
     if (!level.visibility.empty() && leaf.cluster >= static_cast<std::int64_t>(level.clusters)) {
-      return bad("leaf " + std::to_string(i) + " has a cluster out of range");
+      refuse("leaf " + std::to_string(i) + " has a cluster out of range");
     }
   }
   for (std::uint32_t object : level.leaf_objects) {
-    if (object >= object_count)
-      return bad("a leaf lists object " + std::to_string(object) + ", out of range");
+    if (object >= object_count) refuse("a leaf lists object " + std::to_string(object) + ", out of range");
   }
   if (!level.visibility.empty() &&
       (level.visibility.size() != std::uint64_t{level.clusters} * level.bytes_per_cluster ||
        std::uint64_t{level.bytes_per_cluster} * 8 < level.clusters)) {
-    return bad("the visibility matrix has the wrong size");
+    refuse("the visibility matrix has the wrong size");
   }
-  return {};
 }
 
 }  // namespace sightline

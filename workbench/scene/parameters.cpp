@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <sightline/workbench/error.hpp>
+
 namespace sightline {
 
 namespace {
@@ -44,20 +46,21 @@ std::string listed(std::span<const ParameterInfo> declared) {
   return names.empty() ? "no parameter" : names;
 }
 
-Check refuse(const ParameterInfo& info, std::string_view value) {
+/// What is wrong with the value; empty where nothing is.
+std::string complaint(const ParameterInfo& info, std::string_view value) {
   if (!info.choices.empty()) {
     if (is_choice(info.choices, value)) return {};
-    return Failure{"'" + std::string(info.name) + "' is '" + std::string(value) + "', expected one of " +
-                   std::string(info.choices)};
+    return "'" + std::string(info.name) + "' is '" + std::string(value) + "', expected one of " +
+           std::string(info.choices);
   }
   double number = 0;
   if (parse_number(value, number) && number >= info.min && number <= info.max &&
       (!info.integer || number == std::floor(number))) {
     return {};
   }
-  return Failure{"'" + std::string(info.name) + "' is '" + std::string(value) + "', expected " +
-                 (info.integer ? "a whole number" : "a number") + " from " + text_of(info.min) + " to " +
-                 text_of(info.max)};
+  return "'" + std::string(info.name) + "' is '" + std::string(value) + "', expected " +
+         (info.integer ? "a whole number" : "a number") + " from " + text_of(info.min) + " to " +
+         text_of(info.max);
 }
 
 }  // namespace
@@ -82,8 +85,8 @@ std::string_view specified_name(std::string_view specification) noexcept {
   return specification.substr(0, specification.find('?'));
 }
 
-Result<Parameters> parse_parameters(std::string_view what, std::string_view specification,
-                                    std::span<const ParameterInfo> declared) {
+Parameters parse_parameters(std::string_view what, std::string_view specification,
+                            std::span<const ParameterInfo> declared) {
   Parameters out;
   for (const ParameterInfo& info : declared) out.set(std::string(info.name), std::string(info.fallback));
   const std::size_t question = specification.find('?');
@@ -95,14 +98,14 @@ Result<Parameters> parse_parameters(std::string_view what, std::string_view spec
     rest.remove_prefix(std::min(rest.size(), pair.size() + 1));
     const std::size_t equals = pair.find('=');
     if (equals == std::string_view::npos) {
-      return Failure{subject + "'" + std::string(pair) + "' is not of the form key=value"};
+      throw Error(subject + "'" + std::string(pair) + "' is not of the form key=value");
     }
     const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
     const ParameterInfo* info = find(declared, key);
-    if (!info)
-      return Failure{subject + "it has no parameter '" + std::string(key) + "', expected " +
-                     listed(declared)};
-    if (Check bad = refuse(*info, value)) return Failure{subject + bad->message};
+    if (!info) {
+      throw Error(subject + "it has no parameter '" + std::string(key) + "', expected " + listed(declared));
+    }
+    if (const std::string wrong = complaint(*info, value); !wrong.empty()) throw Error(subject + wrong);
     out.set(std::string(key), std::string(value));
   }
   return out;

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include <sightline/workbench/error.hpp>
+#include <sightline/workbench/held_scene.hpp>
+
 #include "library/geometry/linear.hpp"
+#include "workbench/scene/vertex_normals.hpp"
 
 namespace sightline {
 
@@ -17,6 +21,16 @@ Sphere Scene::sphere(ObjectId object) const noexcept {
 
 std::uint32_t Scene::add_mesh(std::span<const Vec3> mesh_positions, std::span<const Vec3> mesh_normals,
                               std::span<const std::uint32_t> mesh_indices) {
+  if (!mesh_normals.empty() && mesh_normals.size() != mesh_positions.size()) {
+    throw Error("scene '" + name + "': mesh " + std::to_string(meshes.size()) + ": " +
+                std::to_string(mesh_normals.size()) + " normals for " +
+                std::to_string(mesh_positions.size()) + " positions, expected one each or none at all");
+  }
+  std::vector<Vec3> computed;
+  if (mesh_normals.empty()) {
+    computed = scene::vertex_normals(mesh_positions, mesh_indices);
+    mesh_normals = computed;
+  }
   Mesh added;
   added.first_index = static_cast<std::uint32_t>(indices.size());
   added.index_count = static_cast<std::uint32_t>(mesh_indices.size());
@@ -30,6 +44,10 @@ std::uint32_t Scene::add_mesh(std::span<const Vec3> mesh_positions, std::span<co
 }
 
 ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transform, Surface object_surface) {
+  if (mesh_index >= meshes.size()) {
+    throw Error("scene '" + name + "': object " + std::to_string(size()) + ": shows mesh " +
+                std::to_string(mesh_index) + ", but there are " + std::to_string(meshes.size()));
+  }
   const auto object = static_cast<ObjectId>(size());
   bounds.push_back({});
   radius.push_back(0);
@@ -41,6 +59,10 @@ ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transf
 }
 
 void Scene::move_object(ObjectId object, const Affine& moved) {
+  if (object >= size()) {
+    throw Error("scene '" + name + "': object " + std::to_string(object) + ": cannot move, there are " +
+                std::to_string(size()));
+  }
   transform[object] = moved;
   const Mesh& shown = meshes[mesh[object]];
   const std::span<const Vec3> vertices(positions.data() + shown.first_vertex, shown.vertex_count);
@@ -79,28 +101,33 @@ std::uint64_t triangle_count(const Scene& scene) noexcept {
 
 namespace {
 
-Failure object_failure(const Scene& scene, std::size_t object, const char* expected) {
-  return {"scene '" + scene.name + "': object " + std::to_string(object) + ": " + expected};
+[[noreturn]] void refuse_object(const Scene& scene, std::size_t object, const char* expected) {
+  throw Error("scene '" + scene.name + "': object " + std::to_string(object) + ": " + expected);
 }
 
-Check check_geometry(const Scene& s) {
+void check_geometry(const Scene& s) {
   const std::string scene = "scene '" + s.name + "': ";
-  if (s.normals.size() != s.positions.size()) return Failure{scene + "expected one normal a position"};
+  if (s.normals.size() != s.positions.size()) throw Error(scene + "expected one normal a position");
   for (std::size_t m = 0; m < s.meshes.size(); ++m) {
     const Mesh& mesh = s.meshes[m];
     const std::string name = scene + "mesh " + std::to_string(m);
     if (std::uint64_t{mesh.first_index} + mesh.index_count > s.indices.size() ||
         std::uint64_t{mesh.first_vertex} + mesh.vertex_count > s.positions.size()) {
-      return Failure{name + ": its range ends beyond the scene's arrays"};
+      throw Error(name + ": its range ends beyond the scene's arrays");
     }
-    if (mesh.index_count % 3 != 0) return Failure{name + ": expected three indices a triangle"};
-    if (mesh.vertex_count == 0) return Failure{name + ": has no vertex"};
+    if (mesh.index_count % 3 != 0) throw Error(name + ": expected three indices a triangle");
+    if (mesh.vertex_count == 0) throw Error(name + ": has no vertex");
+    for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+      if (!is_finite(s.positions[mesh.first_vertex + v])) {
+        throw Error(name + ": position " + std::to_string(v) + " is not finite");
+      }
+    }
     for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
-      if (s.indices[mesh.first_index + i] >= mesh.vertex_count)
-        return Failure{name + ": an index is out of range"};
+      if (s.indices[mesh.first_index + i] >= mesh.vertex_count) {
+        throw Error(name + ": an index is out of range");
+      }
     }
   }
-  return {};
 }
 
 }  // namespace
@@ -120,26 +147,47 @@ std::uint64_t fingerprint(const Scene& scene) noexcept {
   return hash;
 }
 
-Check check(const Scene& s) {
+void check(const Scene& s) {
   const std::size_t n = s.size();
-  if (n == 0) return Failure{"scene '" + s.name + "': it holds no object, expected at least one"};
-  if (n >= kNoObject) return Failure{"scene '" + s.name + "': too many objects for 32-bit ids"};
+  if (n == 0) throw Error("scene '" + s.name + "': it holds no object, expected at least one");
+  if (n >= kNoObject) throw Error("scene '" + s.name + "': too many objects for 32-bit ids");
   for (const auto* array : {&s.bounds.min_x, &s.bounds.min_y, &s.bounds.min_z, &s.bounds.max_x,
                             &s.bounds.max_y, &s.bounds.max_z, &s.radius}) {
-    if (array->size() != n) return Failure{"scene '" + s.name + "': object arrays differ in length"};
+    if (array->size() != n) throw Error("scene '" + s.name + "': object arrays differ in length");
   }
   if (s.transform.size() != n || s.surface.size() != n) {
-    return Failure{"scene '" + s.name + "': object arrays differ in length"};
+    throw Error("scene '" + s.name + "': object arrays differ in length");
   }
-  if (Check bad = check_geometry(s)) return bad;
+  check_geometry(s);
   for (std::size_t i = 0; i < n; ++i) {
-    if (!is_valid(s.bounds[i])) return object_failure(s, i, "bounds must be finite with min <= max");
-    if (!std::isfinite(s.radius[i]) || s.radius[i] < 0)
-      return object_failure(s, i, "radius must be finite and >= 0");
-    if (s.mesh[i] >= s.meshes.size()) return object_failure(s, i, "its mesh is out of range");
+    if (!is_valid(s.bounds[i])) refuse_object(s, i, "bounds must be finite with min <= max");
+    if (!std::isfinite(s.radius[i]) || s.radius[i] < 0) refuse_object(s, i, "radius must be finite and >= 0");
+    if (s.mesh[i] >= s.meshes.size()) refuse_object(s, i, "its mesh is out of range");
   }
-  if (s.level) return check(*s.level, n);
-  return {};
+  if (s.level) check(*s.level, n);
+}
+
+HeldScene::HeldScene(const Scene& scene, std::string holder)
+    : scene_(scene), holder_(std::move(holder)), objects_(scene.size()), meshes_(scene.meshes.size()) {}
+
+void HeldScene::require_same() const {
+  if (scene_.size() == objects_ && scene_.meshes.size() == meshes_) return;
+  const auto counts = [](std::size_t objects, std::size_t meshes) {
+    return std::to_string(objects) + " objects of " + std::to_string(meshes) + " meshes";
+  };
+  throw Error("scene '" + scene_.name + "': holds " + counts(scene_.size(), scene_.meshes.size()) +
+              ", but the " + holder_ + " was made for " + counts(objects_, meshes_) + ": make it anew");
+}
+
+void HeldScene::require_sound(std::span<const ObjectId> moved) const {
+  require_same();
+  for (const ObjectId object : moved) {
+    if (object >= objects_)
+      refuse_object(scene_, object, "is said to have moved, but there is no such object");
+    if (!is_valid(scene_.bounds[object])) {
+      refuse_object(scene_, object, "was moved to bounds that are not finite");
+    }
+  }
 }
 
 }  // namespace sightline

@@ -9,7 +9,7 @@ namespace sightline::scene {
 
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kSoupParameters{
     ParameterInfo{"triangles", "how many", "100000", 1, 50000000, true},
     ParameterInfo{"per-object", "triangles an object", "100", 1, 1000000, true},
     ParameterInfo{"size", "metres, the side of the cube", "200", 1, 100000},
@@ -28,7 +28,7 @@ Vec3 facing(const Vec3& a, const Vec3& b, const Vec3& c) {
   return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{0, 1, 0};
 }
 
-Result<Scene> make_soup(const Parameters& parameters) {
+Scene make_soup(const Parameters& parameters) {
   const std::uint32_t triangles = parameters.count("triangles"), per_object = parameters.count("per-object");
   const float half = 0.5f * static_cast<float>(parameters.number("size"));
   const float edge = static_cast<float>(parameters.number("edge"));
@@ -62,6 +62,6 @@ Result<Scene> make_soup(const Parameters& parameters) {
 
 }  // namespace
 
-const WorldInfo kSoupWorld{"soup", "random triangles in a cube (Serpa et al.)", kParameters, make_soup};
+const WorldInfo kSoupWorld{"soup", "random triangles in a cube (Serpa et al.)", kSoupParameters, make_soup};
 
 }  // namespace sightline::scene

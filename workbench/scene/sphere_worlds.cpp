@@ -45,7 +45,7 @@ void add_viewpoints(Scene& scene) {
   scene.viewpoints.push_back({"far", {x, 0.75f * width, z + 0.9f * width}, {0, -0.75f, -0.9f}});
 }
 
-Result<Scene> make_regular(const Parameters& parameters) {
+Scene make_regular(const Parameters& parameters) {
   const std::uint32_t columns = parameters.count("columns"), rows = parameters.count("rows");
   const float spacing = static_cast<float>(parameters.number("spacing"));
   Scene scene;
@@ -62,7 +62,7 @@ Result<Scene> make_regular(const Parameters& parameters) {
 }
 
 // Shapes of overlapping spheres, walls and mounds, with loners strewn between them.
-Result<Scene> make_irregular(const Parameters& parameters) {
+Scene make_irregular(const Parameters& parameters) {
   const std::uint32_t count = parameters.count("spheres");
   const float size = static_cast<float>(parameters.number("size")), half = 0.5f * size;
   Random random(parameters.count("seed"));

@@ -12,7 +12,7 @@ namespace sightline::scene {
 
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kStrataParameters{
     ParameterInfo{"model", "of the paper's five: 1,371, 2,684, 4,433, 6,744 or 17,773 meshes", "1", 1, 5,
                   true},
     ParameterInfo{"triangles", "about how many in all; 0: a hundredth of the paper's", "0", 0, 1e9, true},
@@ -171,7 +171,7 @@ void add_piece(Scene& scene, const Ground& ground, const Rectangle& r, std::uint
   scene.add_object(scene.add_mesh(piece.positions, piece.normals, piece.indices), place(middle, 1));
 }
 
-Result<Scene> make_strata(const Parameters& parameters) {
+Scene make_strata(const Parameters& parameters) {
   const Model& model = kModels[parameters.count("model") - 1];
   double triangles = parameters.number("triangles");
   if (triangles == 0) triangles = model.triangles / 100;
@@ -228,7 +228,7 @@ Result<Scene> make_strata(const Parameters& parameters) {
 
 }  // namespace
 
-const WorldInfo kStrataWorld{"strata", "layered, faulted and folded ground (Ye et al. 2023)", kParameters,
-                             make_strata};
+const WorldInfo kStrataWorld{"strata", "layered, faulted and folded ground (Ye et al. 2023)",
+                             kStrataParameters, make_strata};
 
 }  // namespace sightline::scene

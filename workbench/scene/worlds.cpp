@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include <sightline/workbench/error.hpp>
+
 namespace sightline {
 
 std::span<const WorldInfo> worlds() noexcept {
@@ -11,20 +13,18 @@ std::span<const WorldInfo> worlds() noexcept {
   return kWorlds;
 }
 
-Result<Scene> generate_world(std::string_view specification) {
+Scene generate_world(std::string_view specification) {
   const std::string_view name = specified_name(specification);
   std::string known;
   for (const WorldInfo& world : worlds()) {
     if (world.name == name) {
-      Result<Parameters> parameters = parse_parameters("world", specification, world.parameters);
-      if (!parameters) return parameters.failure();
-      Result<Scene> made = world.generate(*parameters);
-      if (made) made->name = "world:" + std::string(specification);
+      Scene made = world.generate(parse_parameters("world", specification, world.parameters));
+      made.name = "world:" + std::string(specification);
       return made;
     }
     known.append(known.empty() ? "" : ", ").append(world.name);
   }
-  return Failure{"world '" + std::string(name) + "': no such world, expected one of " + known};
+  throw Error("world '" + std::string(name) + "': no such world, expected one of " + known);
 }
 
 namespace scene {

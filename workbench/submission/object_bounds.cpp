@@ -1,6 +1,10 @@
 #include "workbench/submission/object_bounds.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <sightline/workbench/error.hpp>
 
 namespace sightline::submission {
 
@@ -36,24 +40,24 @@ Box ObjectBounds::box(std::size_t slot) const noexcept {
 
 std::size_t ObjectBounds::cull(const Frustum& frustum, std::size_t first, std::size_t count,
                                std::span<ObjectId> out) const noexcept {
-  std::size_t kept = 0;
-  if (volume_ == Volume::box) {
-    const BoxSpan all = span_of(boxes_);
-    kept = cull_boxes(frustum,
-                      {all.min_x + first, all.min_y + first, all.min_z + first, all.max_x + first,
-                       all.max_y + first, all.max_z + first, count},
-                      out);
-  } else {
-    kept = cull_spheres(
-        frustum, {x_.data() + first, y_.data() + first, z_.data() + first, r_.data() + first, count}, out);
-  }
+  const Result<std::size_t> culled =
+      volume_ == Volume::box ? cull_boxes(frustum, boxes_.view().part(first, count), out)
+                             : cull_spheres(frustum,
+                                            SphereView::arrays(x_.data() + first, y_.data() + first,
+                                                               z_.data() + first, r_.data() + first, count),
+                                            out);
+  const std::size_t kept = or_throw(culled);  // refused only where the caller gave too little room
   for (std::size_t i = 0; i < kept; ++i) out[i] = ids_[first + out[i]];
   return kept;
 }
 
 Box volume_extent(const Scene& scene) noexcept {
+  constexpr float kRounding = 8 * std::numeric_limits<float>::epsilon();
   Box all = extent(scene);
-  const float reach = scene.empty() ? 0 : *std::max_element(scene.radius.begin(), scene.radius.end());
+  const float largest = std::max({std::fabs(all.min.x), std::fabs(all.min.y), std::fabs(all.min.z),
+                                  std::fabs(all.max.x), std::fabs(all.max.y), std::fabs(all.max.z)});
+  const float radius = scene.empty() ? 0 : *std::max_element(scene.radius.begin(), scene.radius.end());
+  const float reach = radius + kRounding * (largest + radius);
   for (float* low : {&all.min.x, &all.min.y, &all.min.z}) *low -= reach;
   for (float* high : {&all.max.x, &all.max.y, &all.max.z}) *high += reach;
   return all;

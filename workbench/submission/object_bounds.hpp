@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <sightline/culling.hpp>
+#include <sightline/frustum.hpp>
 #include <sightline/workbench/parameters.hpp>
 #include <sightline/workbench/scene.hpp>
 
@@ -29,8 +29,8 @@ public:
   [[nodiscard]] Box box(std::size_t slot) const noexcept;
   [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return ids_; }
 
-  /// Tests slots [first, first + count) against the frustum; appends the ids that overlap. `out` must not
-  /// grow: it has room for all ids of the scene.
+  /// Tests slots [first, first + count) against the frustum; writes the ids that overlap, and returns how
+  /// many. `out` has room for count + kCullPadding.
   std::size_t cull(const Frustum& frustum, std::size_t first, std::size_t count,
                    std::span<ObjectId> out) const noexcept;
 
@@ -41,7 +41,8 @@ private:
   std::vector<float> x_, y_, z_, r_;  // Volume::sphere
 };
 
-/// The box that holds the scene's objects' volumes of either kind: what make_frustum wants as extent.
+/// The box that holds the scene's objects' volumes of either kind, and cells around them that are rounded
+/// outwards a little: what make_frustum wants as extent.
 Box volume_extent(const Scene& scene) noexcept;
 
 }  // namespace sightline::submission

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <sightline/result.hpp>
+#include <sightline/status.hpp>
 
 namespace sightline {
 
@@ -14,15 +14,24 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// The value of a result, or its failure thrown as an Error.
-template <class T>
-T or_throw(Result<T> result) {
-  if (!result) throw Error(result.failure().message);
-  return std::move(*result);
+/// What the library refused and why, with the element's number, or a file's byte, where one is to blame.
+inline std::string to_string(const Status& status) {
+  std::string sentence = status.message();
+  if (status.index() == Status::kNoIndex) return sentence;
+  return sentence + (status.code() == StatusCode::bad_file ? " (at byte " : " (number ") +
+         std::to_string(status.index()) + (status.code() == StatusCode::bad_file ? ")" : ", counted from 0)");
 }
 
-inline void or_throw(const Check& check) {
-  if (check) throw Error(check->message);
+/// What the library refused, thrown as an Error.
+inline void or_throw(const Status& status) {
+  if (!status) throw Error(to_string(status));
+}
+
+/// The value of a result, or what the library refused, thrown as an Error.
+template <class T>
+T or_throw(Result<T> result) {
+  or_throw(result.error());
+  return *std::move(result);
 }
 
 }  // namespace sightline

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <sightline/result.hpp>
 #include <sightline/types.hpp>
 
 namespace sightline {
@@ -42,8 +41,8 @@ struct LevelPvs {
   void potentially_visible(const Vec3& eye, std::span<std::uint8_t> mask) const noexcept;
 };
 
-/// Nothing if every child, range, cluster and object id is in range and the tree has no circle, so that the
-/// functions above are safe.
-Check check(const LevelPvs& level, std::size_t object_count);
+/// Throws Error unless every child, range, cluster and object id is in range and the tree has no circle, so
+/// that the functions above are safe.
+void check(const LevelPvs& level, std::size_t object_count);
 
 }  // namespace sightline

@@ -6,9 +6,9 @@
 #include <span>
 #include <string_view>
 
-#include <sightline/result.hpp>
 #include <sightline/view.hpp>
 #include <sightline/workbench/frame.hpp>
+#include <sightline/workbench/held_scene.hpp>
 #include <sightline/workbench/parameters.hpp>
 #include <sightline/workbench/scene.hpp>
 #include <sightline/workbench/triangle_draws.hpp>
@@ -30,29 +30,32 @@ std::string_view to_string(Guarantee guarantee) noexcept;
 
 /// One frame: the view to be culled, where the answer goes, and on a device what records the commands.
 struct FrameContext {
-  const View& view;                      ///< has passed check()
+  const View& view;
   Frame& output;                         ///< reused frame after frame
   device::Recorder* recorder = nullptr;  ///< null on the CPU: culled, not drawn
 };
 
 /// One culling method at work on one scene. Scene and renderer outlive the method.
+///
+/// It works on the objects that the scene held when it was made, wherever they move. Once objects or meshes
+/// are added to the scene or taken out, update() and record() throw Error, whatever the method: make it anew.
 class Method {
 public:
   virtual ~Method() = default;
-  Method() = default;
   Method(const Method&) = delete;
   Method& operator=(const Method&) = delete;
 
   /// With the parameters it was made with.
   [[nodiscard]] virtual Guarantee guarantee() const noexcept = 0;
   /// Told after Scene::move_object (and on a device Renderer::update) of each of `objects`, before the next
-  /// frame.
-  virtual void update(std::span<const ObjectId> objects) = 0;
-  /// Culls the view. On the CPU fills the output with what to draw and throws nothing; on a device records
-  /// culling and drawing in named passes, and what is left in the targets is the picture. Same view and
-  /// scene, and the same times told by report_frame_time(), same answer, in the same order. Allocates nothing
-  /// once output and method have grown to their sizes.
-  virtual void record(FrameContext& context) = 0;
+  /// frame. Throws Error, and changes nothing, for an object that is not in the scene or has no finite
+  /// bounds.
+  void update(std::span<const ObjectId> objects);
+  /// Culls the view. On the CPU fills the output with what to draw; on a device records culling and drawing
+  /// in named passes, and what is left in the targets is the picture. Same view and scene, and the same times
+  /// told by report_frame_time(), same answer, in the same order. Allocates nothing once output and method
+  /// have grown to their sizes. Throws Error for a view that does not pass check().
+  void record(FrameContext& context);
   /// Fills in what only the device knows once the last frame is finished: what it drew, ascending by id, and
   /// its counts. Not part of a frame, for checking. Does nothing where record() has said it all.
   virtual void read_back([[maybe_unused]] Frame& output) {}
@@ -63,6 +66,18 @@ public:
   /// objects; null where draws are ranges of the scene's own meshes. Valid until update() or the method's
   /// end.
   [[nodiscard]] virtual const TriangleGeometry* geometry() const noexcept { return nullptr; }
+
+protected:
+  explicit Method(const Scene& scene) : scene_(scene), held_(scene, "method") {}
+
+  const Scene& scene_;
+
+private:
+  /// update() and record(), once their arguments are known to be sound. On the CPU throws nothing.
+  virtual void do_update(std::span<const ObjectId> objects) = 0;
+  virtual void do_record(FrameContext& context) = 0;
+
+  HeldScene held_;
 };
 
 /// Culls on the CPU: record() without a device.
@@ -82,7 +97,7 @@ struct MethodSite {
 struct MethodForm {
   Guarantee guarantee = Guarantee::approximate;  ///< with default parameters
   std::span<const ParameterInfo> parameters;
-  Result<std::unique_ptr<Method>> (*create)(const MethodSite&, const Parameters&) = nullptr;
+  std::unique_ptr<Method> (*create)(const MethodSite&, const Parameters&) = nullptr;
   std::string_view needs = {};           ///< "" or what the scene or the device must have, in words
   bool (*fits)(const Scene&) = nullptr;  ///< whether the scene has it; null: any does
 
@@ -103,11 +118,11 @@ std::span<const MethodInfo> all_methods() noexcept;
 /// Finds by name; null where there is none.
 const MethodInfo* find_method(std::string_view name) noexcept;
 
-/// Makes a method from "NAME" or "NAME?key=value&…" in its form for the CPU; refuses unknown names, keys,
-/// values, an invalid scene, or one that lacks what the method needs.
-Result<std::unique_ptr<Method>> create_method(std::string_view specification, const Scene& scene);
+/// Makes a method from "NAME" or "NAME?key=value&…" in its form for the CPU. Throws Error for unknown names,
+/// keys, values, an invalid scene, or one that lacks what the method needs.
+std::unique_ptr<Method> create_method(std::string_view specification, const Scene& scene);
 /// The same at a site. On a device: the form for it where there is one, else the one for the CPU, drawn by
 /// the renderer. Throws Error where the device lacks something or its memory runs out.
-Result<std::unique_ptr<Method>> create_method(std::string_view specification, const MethodSite& site);
+std::unique_ptr<Method> create_method(std::string_view specification, const MethodSite& site);
 
 }  // namespace sightline

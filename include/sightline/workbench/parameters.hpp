@@ -8,8 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include <sightline/result.hpp>
-
 namespace sightline {
 
 /// A parameter's declaration. A number is bounded by [min, max]; a choice lists its words in `choices`,
@@ -38,8 +36,9 @@ private:
 /// The part before '?'.
 std::string_view specified_name(std::string_view specification) noexcept;
 
-/// Reads the part after '?' against the declarations. `what` names the thing in the failure's sentence.
-Result<Parameters> parse_parameters(std::string_view what, std::string_view specification,
-                                    std::span<const ParameterInfo> declared);
+/// Reads the part after '?' against the declarations. Throws Error for keys that are not declared and values
+/// that are not as they should be; `what` names the thing in its sentence.
+Parameters parse_parameters(std::string_view what, std::string_view specification,
+                            std::span<const ParameterInfo> declared);
 
 }  // namespace sightline

@@ -9,8 +9,8 @@
 
 #include <sightline/boxes.hpp>
 #include <sightline/pvs.hpp>
-#include <sightline/result.hpp>
 #include <sightline/types.hpp>
+#include <sightline/workbench/affine.hpp>
 #include <sightline/workbench/level_pvs.hpp>
 
 namespace sightline {
@@ -59,12 +59,16 @@ struct Scene {
     return meshes[mesh[object]].index_count / 3;
   }
 
-  /// Appends a mesh; `indices` count from 0 within it.
+  /// Appends a mesh; `indices` count from 0 within it. Without normals they are computed: at each vertex
+  /// those of the triangles around it, weighted by area. Throws Error for another number of normals than of
+  /// positions.
   std::uint32_t add_mesh(std::span<const Vec3> positions, std::span<const Vec3> normals,
                          std::span<const std::uint32_t> indices);
-  /// Appends an object and computes its bounds and radius from the mesh's vertices.
+  /// Appends an object and computes its bounds and radius from the mesh's vertices. Throws Error where there
+  /// is no such mesh.
   ObjectId add_object(std::uint32_t mesh, const Affine& transform, Surface surface = Surface::opaque);
-  /// Gives an object a new transform, and recomputes its bounds and radius.
+  /// Gives an object a new transform, and recomputes its bounds and radius. Throws Error where there is no
+  /// such object.
   void move_object(ObjectId object, const Affine& transform);
 };
 
@@ -76,8 +80,8 @@ std::uint64_t triangle_count(const Scene& scene) noexcept;
 /// A number that scenes of other objects or other bounds all but surely do not share (FNV-1a, 64 bits).
 std::uint64_t fingerprint(const Scene& scene) noexcept;
 
-/// Nothing if the scene can be worked with: arrays of matching length, indices in range, bounds finite and
-/// min <= max, radii finite. An empty scene is refused: there is nothing to decide.
-Check check(const Scene& scene);
+/// Throws Error unless the scene can be worked with: arrays of matching length, indices in range, bounds
+/// finite and min <= max, radii finite. An empty scene is refused: there is nothing to decide.
+void check(const Scene& scene);
 
 }  // namespace sightline

@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include <sightline/result.hpp>
 #include <sightline/workbench/parameters.hpp>
 #include <sightline/workbench/scene.hpp>
 
@@ -15,14 +14,14 @@ struct WorldInfo {
   std::string_view name;
   std::string_view summary;
   std::span<const ParameterInfo> parameters;
-  Result<Scene> (*generate)(const Parameters&);
+  Scene (*generate)(const Parameters&);
 };
 
 /// The worlds, in the order of the documentation.
 std::span<const WorldInfo> worlds() noexcept;
 
-/// Makes a world from "NAME" or "NAME?key=value&key=value"; refuses unknown names, keys and values out of
-/// range.
-Result<Scene> generate_world(std::string_view specification);
+/// Makes a world from "NAME" or "NAME?key=value&key=value". Throws Error for unknown names, keys and values
+/// out of range.
+Scene generate_world(std::string_view specification);
 
 }  // namespace sightline

@@ -6,13 +6,13 @@ namespace sightline::methods {
 
 Adaptive::Adaptive(const Scene& scene, const std::vector<DrawCallPlan>& plans, std::vector<Way> ways,
                    std::uint32_t first)
-    : ways_(std::move(ways)), trials_(static_cast<std::uint32_t>(ways_.size()), first) {
+    : CpuMethod(scene), ways_(std::move(ways)), trials_(static_cast<std::uint32_t>(ways_.size()), first) {
   for (const DrawCallPlan& plan : plans)
     candidates_.push_back({std::make_unique<DrawCallMethod>(scene, plan), 0});
   gather();
 }
 
-void Adaptive::update(std::span<const ObjectId> moved) {
+void Adaptive::do_update(std::span<const ObjectId> moved) {
   if (moved.empty()) return;
   for (Candidate& candidate : candidates_) candidate.method->update(moved);
   gather();

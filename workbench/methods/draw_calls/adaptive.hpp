@@ -23,7 +23,7 @@ public:
            std::uint32_t first);
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::exact; }
-  void update(std::span<const ObjectId> moved) override;
+  void do_update(std::span<const ObjectId> moved) override;
   void cull(const View& view, Frame& frame) noexcept override;
   void report_frame_time(double milliseconds) noexcept override { trials_.report_frame_time(milliseconds); }
   /// The triangles of all plans, one after the other; submission is that of the last frame's way.

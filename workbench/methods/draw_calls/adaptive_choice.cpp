@@ -15,7 +15,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kAdaptiveParameters{
     ParameterInfo{"call-ns", "what a draw call may cost, nanoseconds; decides what is tried first", "1000", 0,
                   1e9},
     ParameterInfo{"command-ns", "what a command of a multi-draw may cost, nanoseconds", "500", 0, 1e9},
@@ -159,7 +159,7 @@ std::vector<Adaptive::Way> ways_of(const std::vector<const Reckoning*>& chosen, 
   return ways;
 }
 
-Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+std::unique_ptr<Method> make_adaptive(const MethodSite& site, const Parameters& parameters) {
   const Scene& scene = site.scene;
   const Costs given{parameters.number("call-ns"), parameters.number("command-ns"),
                     parameters.number("triangle-ns")};
@@ -191,7 +191,7 @@ Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parame
   const auto first = std::ranges::find_if(
       ways, [&](const Adaptive::Way& way) { return way.plan == 0 && way.submission == wanted; });
   const auto at = static_cast<std::uint32_t>(first - ways.begin());
-  return std::unique_ptr<Method>(std::make_unique<Adaptive>(scene, plans_of(chosen), std::move(ways), at));
+  return std::make_unique<Adaptive>(scene, plans_of(chosen), std::move(ways), at);
 }
 
 }  // namespace
@@ -200,6 +200,6 @@ extern const MethodInfo kAdaptive{
     .name = "adaptive",
     .paper = "",
     .summary = "the structure, height and submission whose frames turn out quickest, told what they took",
-    .cpu = {Guarantee::exact, kParameters, make_method, kFlattenNeeds, can_flatten}};
+    .cpu = {Guarantee::exact, kAdaptiveParameters, make_adaptive, kFlattenNeeds, can_flatten}};
 
 }  // namespace sightline::methods

@@ -8,19 +8,19 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kClusterConeParameters{
     ParameterInfo{"size", "triangles a cluster, at most", "16", 4, 4096, true},
     ParameterInfo{"submission", "each cluster a call, all by one multi-draw, or neighbouring clusters merged",
                   "merged", 0, 0, false, "calls|multi-draw|merged"}};
 
-Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+std::unique_ptr<Method> make_cluster_cone(const MethodSite& site, const Parameters& parameters) {
   const Scene& scene = site.scene;
   DrawCallPlan plan;
   plan.clusters = true;
   plan.cluster_size = parameters.count("size");
   plan.facing = FacingRule::cone;
   plan.submission = submission_from(parameters);
-  return std::unique_ptr<Method>(std::make_unique<DrawCallMethod>(scene, plan));
+  return std::make_unique<DrawCallMethod>(scene, plan);
 }
 
 }  // namespace
@@ -29,6 +29,6 @@ extern const MethodInfo kClusterCone{
     .name = "cluster-cone",
     .paper = "",
     .summary = "clusters of triangles with bounds and normal cones, neighbours merged",
-    .cpu = {Guarantee::exact, kParameters, make_method, kFlattenNeeds, can_flatten}};
+    .cpu = {Guarantee::exact, kClusterConeParameters, make_cluster_cone, kFlattenNeeds, can_flatten}};
 
 }  // namespace sightline::methods

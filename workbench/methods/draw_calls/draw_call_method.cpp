@@ -22,7 +22,7 @@ std::string_view to_string(Submission submission) noexcept {
 
 namespace sightline::methods {
 
-DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : scene_(scene), plan_(plan) {
+DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : CpuMethod(scene), plan_(plan) {
   rebuild();
 }
 

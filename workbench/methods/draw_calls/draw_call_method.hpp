@@ -38,7 +38,7 @@ public:
   }
   /// What moves is drawn whole from then on where its box is in view, at the cost of its own corners. Builds
   /// everything anew once a quarter of the objects move, or after give_lists().
-  void update(std::span<const ObjectId> moved) override;
+  void do_update(std::span<const ObjectId> moved) override;
   void cull(const View& view, Frame& frame) noexcept override;
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
 
@@ -72,7 +72,6 @@ private:
   void merge() noexcept;
   void submit(Frame& frame) const noexcept;
 
-  const Scene& scene_;
   DrawCallPlan plan_;
   Box extent_;
   std::array<Layer, 2> layers_;

@@ -5,7 +5,7 @@
 
 namespace sightline::methods {
 
-void DrawCallMethod::update(std::span<const ObjectId> moved) {
+void DrawCallMethod::do_update(std::span<const ObjectId> moved) {
   if (moved.empty()) return;
   std::size_t fresh = 0;
   for (const ObjectId object : moved) fresh += !is_mover_[object];

@@ -23,7 +23,7 @@ constexpr std::array kPlainParameters{kHeight, kSubmission};
 constexpr std::array kZhangParameters{kHeight, kSubmission, kFacing};
 
 template <Structure S, Strategy V>
-Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parameters& parameters) {
+std::unique_ptr<Method> make_method(const MethodSite& site, const Parameters& parameters) {
   const Scene& scene = site.scene;
   DrawCallPlan plan;
   plan.structure = S;
@@ -32,7 +32,7 @@ Result<std::unique_ptr<Method>> make_method(const MethodSite& site, const Parame
   plan.submission = submission_from(parameters);
   if (V == Strategy::zhang)
     plan.facing = parameters.word("facing") == "cone" ? FacingRule::cone : FacingRule::printed;
-  return std::unique_ptr<Method>(std::make_unique<DrawCallMethod>(scene, plan));
+  return std::make_unique<DrawCallMethod>(scene, plan);
 }
 
 constexpr std::array<std::array<std::string_view, 3>, 3> kNames{

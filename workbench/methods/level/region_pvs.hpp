@@ -17,7 +17,7 @@ template <class Regions>
 class RegionPvs final : public CpuMethod {
 public:
   RegionPvs(const Scene& scene, const Parameters&)
-      : scene_(scene),
+      : CpuMethod(scene),
         regions_(scene),
         bounds_(submission::Volume::box),
         draw_list_(scene),
@@ -29,7 +29,7 @@ public:
   }
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::approximate; }
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     for (const ObjectId object : objects) bounds_.refresh(scene_, object);
     extent_ = extent(scene_);
   }
@@ -57,7 +57,6 @@ public:
   }
 
 private:
-  const Scene& scene_;
   Regions regions_;
   submission::ObjectBounds bounds_;
   submission::DrawList draw_list_;

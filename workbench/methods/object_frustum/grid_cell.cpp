@@ -8,15 +8,15 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{kCellParameter, submission::kBoundsParameter};
+constexpr std::array kGridCellParameters{kCellParameter, submission::kBoundsParameter};
 
 class GridCell final : public CpuMethod {
 public:
   GridCell(const Scene& scene, const Parameters& parameters)
-      : objects_(scene, parameters), draw_list_(scene) {}
+      : CpuMethod(scene), objects_(scene, parameters), draw_list_(scene) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
-  void update(std::span<const ObjectId> moved) override {
+  void do_update(std::span<const ObjectId> moved) override {
     if (!moved.empty()) objects_.rebuild();
   }
 
@@ -54,6 +54,6 @@ private:
 extern const MethodInfo kGridCell{.name = "grid-cell",
                                   .paper = "C: Le Hoang Minh et al. 2022",
                                   .summary = "whole cells of a ground grid against the frustum",
-                                  .cpu = on_cpu<GridCell>(Guarantee::conservative, kParameters)};
+                                  .cpu = on_cpu<GridCell>(Guarantee::conservative, kGridCellParameters)};
 
 }  // namespace sightline::methods

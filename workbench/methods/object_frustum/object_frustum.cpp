@@ -13,17 +13,17 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{kCellParameter, submission::kBoundsParameter};
+constexpr std::array kObjectFrustumParameters{kCellParameter, submission::kBoundsParameter};
 
 class ObjectFrustum final : public CpuMethod {
 public:
   ObjectFrustum(const Scene& scene, const Parameters& parameters)
-      : objects_(scene, parameters), draw_list_(scene) {
+      : CpuMethod(scene), objects_(scene, parameters), draw_list_(scene) {
     reserve_runs();
   }
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
-  void update(std::span<const ObjectId> moved) override {
+  void do_update(std::span<const ObjectId> moved) override {
     if (moved.empty()) return;
     objects_.rebuild();
     reserve_runs();
@@ -79,6 +79,6 @@ extern const MethodInfo kObjectFrustum{
     .name = "object-frustum",
     .paper = "C: Le Hoang Minh et al. 2022",
     .summary = "cells inside the frustum whole, objects of crossing cells one by one",
-    .cpu = on_cpu<ObjectFrustum>(Guarantee::conservative, kParameters)};
+    .cpu = on_cpu<ObjectFrustum>(Guarantee::conservative, kObjectFrustumParameters)};
 
 }  // namespace sightline::methods

@@ -6,7 +6,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kTest[] =
+constexpr std::uint32_t kHizTest[] =
 #include "shaders/hiz_test.comp.inc"
     ;
 constexpr std::uint32_t kPyramid[] =
@@ -27,10 +27,10 @@ class Hiz final : public TwoPhase {
 public:
   Hiz(device::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, submission::contribution_from(parameters)),
-        test_(renderer.device(), kTest, shader_constants(contribution_)),
+        test_(renderer.device(), kHizTest, shader_constants(contribution_)),
         reduce_(renderer.device(), kPyramid) {}
 
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
 private:
   void test(device::Recorder& frame) override {

@@ -19,9 +19,7 @@ constexpr std::uint32_t kLift[] =
 #include "shaders/hroc_lift.comp.inc"
     ;
 
-constexpr std::uint32_t kBoxVertices = 36;
-
-struct Push {
+struct HrocPush {
   vk::DeviceAddress nodes, children, parents, marks, seen, list, next_list, test, next_test;
   std::uint32_t interior, total;
 };
@@ -51,7 +49,7 @@ public:
     tests_ = words(4 * std::uint64_t{tree_.levels() + 1});
   }
 
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     tree_.refit(renderer_.scene(), objects, changed_);
     if (changed_.empty()) return;
     device::Device& device = renderer_.device();
@@ -88,12 +86,12 @@ private:
     for (std::size_t i = 1; i < first_commands_.size(); i += 4) first_commands_[i] = 1;
     frame.commands.updateBuffer<std::uint32_t>(tests_.handle(), 0, first_commands_);
     device::full_barrier(frame.commands);
-    Push push{nodes_.address(),    children_.address(),
-              parents_.address(),  marks_.address(),
-              seen_.address(),     0,
-              lists_[0].address(), 0,
-              test_address(0),     tree_.interior(),
-              tree_.total()};
+    HrocPush push{nodes_.address(),    children_.address(),
+                  parents_.address(),  marks_.address(),
+                  seen_.address(),     0,
+                  lists_[0].address(), 0,
+                  test_address(0),     tree_.interior(),
+                  tree_.total()};
     frame.dispatch(front_, push, tree_.total());
     for (std::uint32_t level = 0; level < tree_.levels(); ++level) {
       frame.begin_rendering({});

@@ -14,6 +14,7 @@
 #include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
+#include <sightline/workbench/error.hpp>
 #include <sightline/world.hpp>
 
 #include "workbench/methods/methods.hpp"
@@ -24,7 +25,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{
+constexpr std::array kMaskedParameters{
     ParameterInfo{"occluders", "at most so many objects occlude as meshes, the largest on the image", "512",
                   0, 100000, true},
     ParameterInfo{"pixels", "px², the least area of such an occluder's bounding sphere", "150", 0, 1e9},
@@ -33,23 +34,17 @@ constexpr std::array kParameters{
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
 };
 
-WorldBox wide(const Box& b) {
-  return {{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
-}
-
 class Masked final : public CpuMethod {
 public:
   Masked(const Scene& scene, const Parameters& parameters)
-      : scene_(scene),
+      : CpuMethod(scene),
         most_occluders_(parameters.count("occluders")),
         least_area_(static_cast<float>(parameters.number("pixels"))),
         least_sphere_(static_cast<float>(parameters.number("spheres"))),
         draw_list_(scene),
         handles_(scene.size()),
         moved_(scene.size(), 0) {
-    std::vector<WorldBox> boxes(scene.size());
-    for (ObjectId o = 0; o < scene.size(); ++o) boxes[o] = wide(scene.bounds[o]);
-    usable_ = !world_.insert(boxes, handles_);
+    usable_ = static_cast<bool>(world_.insert(scene.bounds.view(), handles_));
     seen_.resize(scene.size());
     // Objects that share few meshes are instances, whose triangles would be too many in one.
     const bool one_thing = 2 * scene.meshes.size() >= scene.size();
@@ -64,11 +59,10 @@ public:
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
 
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     bool first_time = false;
     for (const ObjectId o : objects) {
-      const WorldBox box = wide(scene_.bounds[o]);
-      usable_ = usable_ && !world_.move({&handles_[o], 1}, {&box, 1});
+      usable_ = usable_ && world_.move({&handles_[o], 1}, scene_.bounds.view().part(o, 1));
       first_time = first_time || !moved_[o];
       moved_[o] = 1;
     }
@@ -79,7 +73,7 @@ public:
     for (const ObjectId o : objects) {
       corners_.clear();
       append_corners(o);
-      usable_ = !occludees_.set(o, corners_) && usable_;
+      usable_ = occludees_.set(o, corners_) && usable_;
     }
     if (first_time) build_whole();
   }
@@ -92,21 +86,20 @@ public:
     const WorldView at{view, {}};
     CullResult result;
     // What is in view at all, from which occluders are picked.
-    if (!whole_) result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
-    const bool worth_it = whole_ || (result.error == CullError::none && result.count > 1);
+    bool culled = !whole_ && cull_world({.view = at}, frame, result);
+    const bool worth_it = whole_ || (culled && result.count > 1);
     // A world or view beyond what the tiles hold is culled by frustum alone, or not at all.
-    if (usable_ && worth_it && !buffer_.begin(at)) {
+    if (usable_ && worth_it && buffer_.begin(at)) {
       draw_occluders(view, std::span(frame.visible).first(result.count));
-      const OcclusionBuffer* buffer = &buffer_;
-      result = culler_.cull(world_, {&at, 1}, {.occlusion = {&buffer, 1}}, frame.visible);
+      culled = cull_world({.view = at, .occlusion = &buffer_}, frame, result);
       const auto left = std::span(frame.visible).first(result.count);
       const std::size_t kept = whole_ ? buffer_.keep_seen(occludees_, left) : keep_seen_spheres(left);
       result.culled_occlusion += left.size() - kept;
       result.count = kept;
     } else if (whole_) {
-      result = culler_.cull(world_, {&at, 1}, {}, frame.visible);
+      culled = cull_world({.view = at}, frame, result);
     }
-    if (!usable_ || result.error != CullError::none) {
+    if (!usable_ || !culled) {
       frame.visible.resize(scene_.size());
       for (ObjectId o = 0; o < scene_.size(); ++o) frame.visible[o] = o;
     } else {
@@ -132,6 +125,12 @@ private:
     bool cut;  // by the near plane
   };
 
+  bool cull_world(const CullView& view, Frame& frame, CullResult& result) noexcept {
+    const Result<CullResult> culled = culler_.cull(world_, view, frame.visible);
+    result = culled ? *culled : CullResult{};
+    return static_cast<bool>(culled);
+  }
+
   // Three corners a triangle, in world space.
   void append_corners(ObjectId o) {
     const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
@@ -145,7 +144,7 @@ private:
       append_corners(o);
       counts.push_back(static_cast<std::uint32_t>(scene_.triangles(o)));
     }
-    return !occludees_.assign(corners_, counts);
+    return static_cast<bool>(occludees_.assign(corners_, counts));
   }
 
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
@@ -156,7 +155,7 @@ private:
     }
     std::vector<std::uint32_t> indices(corners_.size());
     std::iota(indices.begin(), indices.end(), 0u);
-    whole_.emplace(corners_, indices);
+    whole_ = or_throw(OccluderMesh::make(corners_, indices));
   }
 
   // What the meshes of opaque objects are drawn as.
@@ -170,14 +169,15 @@ private:
       const Mesh& mesh = scene_.meshes[m];
       const auto positions = std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count);
       const auto indices = std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count);
-      occluders_[m].whole.emplace(positions, indices);
+      occluders_[m].whole = or_throw(OccluderMesh::make(positions, indices));
       occluders_[m].sphere = inner_sphere(positions, indices);
       if (!occluders_[m].sphere) occluders_[m].proxy = occluder_proxy(positions, indices);
     }
   }
 
   void draw_occluders(const View& view, std::span<const ObjectId> candidates) {
-    if (whole_) return buffer_.draw_mesh(*whole_, {});
+    // What is refused is not drawn, and hides nothing.
+    if (whole_) return static_cast<void>(buffer_.draw_mesh(*whole_));
     pick_occluders(view, candidates);
     draw_picked_spheres();
     draw_picked_meshes();
@@ -214,7 +214,7 @@ private:
       const auto o = static_cast<ObjectId>(key);
       drawn_spheres_.push_back(sphere_inside(scene_.transform[o], *occluders_[scene_.mesh[o]].sphere));
     }
-    buffer_.draw_spheres(drawn_spheres_);
+    static_cast<void>(buffer_.draw_spheres(std::span<const Sphere>(drawn_spheres_)));
   }
 
   void draw_picked_meshes() {
@@ -233,7 +233,8 @@ private:
       // What stands in for a mesh lies inside it, so of one that the near plane cuts it would still show a
       // front where the inside is seen: such a mesh is drawn as it is.
       const bool simply = occluder.proxy && !picked.cut;
-      buffer_.draw_mesh(simply ? *occluder.proxy : *occluder.whole, scene_.transform[picked.object]);
+      static_cast<void>(buffer_.draw_mesh(simply ? *occluder.proxy : *occluder.whole,
+                                          to_matrix(scene_.transform[picked.object])));
     }
   }
 
@@ -249,16 +250,16 @@ private:
         const Sphere sphere = scene_.sphere(visible[first + i]);
         x[i] = sphere.centre.x, y[i] = sphere.centre.y, z[i] = sphere.centre.z, radius[i] = sphere.radius;
       }
-      buffer_.may_see(SphereSpan{x.data(), y.data(), z.data(), radius.data(), count}, seen_);
+      const auto spheres = SphereView::arrays(x.data(), y.data(), z.data(), radius.data(), count);
+      const bool asked = static_cast<bool>(buffer_.may_see(spheres, seen_));
       for (std::size_t i = 0; i < count; ++i) {
         visible[kept] = visible[first + i];
-        kept += seen_[i];
+        kept += !asked || seen_[i];
       }
     }
     return kept;
   }
 
-  const Scene& scene_;
   std::uint32_t most_occluders_;
   float least_area_, least_sphere_;
   submission::DrawList draw_list_;
@@ -285,6 +286,6 @@ extern const MethodInfo kMasked{
     .name = "masked",
     .paper = "Hasselgren et al. 2016",
     .summary = "occluders into a hierarchical depth buffer on the CPU, then boxes against it",
-    .cpu = on_cpu<Masked>(Guarantee::conservative, kParameters)};
+    .cpu = on_cpu<Masked>(Guarantee::conservative, kMaskedParameters)};
 
 }  // namespace sightline::methods

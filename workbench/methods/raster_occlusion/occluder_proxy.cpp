@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <sightline/workbench/error.hpp>
+
 #include "workbench/scene/shapes.hpp"
 
 namespace sightline::methods {
@@ -19,7 +21,7 @@ constexpr std::size_t kManyTriangles = 160;
 constexpr std::size_t kMostWork = 20'000'000;  // vertices × triangles
 constexpr double kRound = 0.8;                 // inner radius / outer radius: a sphere stands for the mesh
 
-glm::dvec3 to_double(const Vec3& v) {
+glm::dvec3 in_double(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 Vec3 to_single(const glm::dvec3& v) {
@@ -42,7 +44,7 @@ JoinedMesh::JoinedMesh(std::span<const Vec3> vertices, std::span<const std::uint
     const Vec3& v = vertices[index];
     const auto [at, added] =
         joined.try_emplace({v.x, v.y, v.z}, static_cast<std::uint32_t>(positions.size()));
-    if (added) positions.push_back(to_double(v));
+    if (added) positions.push_back(in_double(v));
     return at->second;
   };
   for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
@@ -106,13 +108,13 @@ std::optional<OccluderMesh> occluder_proxy(std::span<const Vec3> positions,
   // The mesh's own outermost points in the directions of a coarse sphere, a little inwards.
   scene::Shape proxy = scene::sphere(1);
   for (Vec3& corner : proxy.positions) {
-    const glm::dvec3 direction = to_double(corner);
+    const glm::dvec3 direction = in_double(corner);
     const auto outermost =
         std::max_element(mesh.positions.begin(), mesh.positions.end(),
                          [&](const auto& a, const auto& b) { return dot(direction, a) < dot(direction, b); });
     corner = to_single(convex->middle + (*outermost - convex->middle) * (1 - 1e-4));
   }
-  return OccluderMesh(proxy.positions, proxy.indices);
+  return or_throw(OccluderMesh::make(proxy.positions, proxy.indices));
 }
 
 std::optional<Sphere> inner_sphere(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) {

@@ -4,7 +4,8 @@
 #include <optional>
 #include <span>
 
-#include <sightline/occlusion.hpp>
+#include <sightline/occluder.hpp>
+#include <sightline/workbench/affine.hpp>
 
 namespace sightline::methods {
 

@@ -59,11 +59,12 @@ void report_visible(const Renderer& renderer, std::span<const std::uint32_t> fla
 }
 
 MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
-    : renderer_(renderer),
+    : Method(renderer.scene()),
+      renderer_(renderer),
       contribution_(submission::contribution_from(parameters)),
       draws_(renderer.draws().make_buffers(renderer.device())) {}
 
-void MarkAndDraw::record(FrameContext& context) {
+void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);

@@ -18,6 +18,8 @@ Guarantee guarantee_of(const submission::Contribution& contribution) noexcept;
 /// The constants of shaders that include boxes.h.
 std::array<std::uint32_t, 2> shader_constants(const submission::Contribution& contribution) noexcept;
 
+/// Of a box's twelve triangles.
+inline constexpr std::uint32_t kBoxVertices = 36;
 /// Push constants of every pass that tests boxes by rasterising them.
 struct BoxPush {
   vk::DeviceAddress boxes, marks, list;
@@ -40,7 +42,7 @@ public:
   MarkAndDraw(device::Renderer& renderer, const Parameters& parameters);
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
-  void record(FrameContext& context) final;
+  void do_record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 
 protected:

@@ -10,7 +10,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kTest[] =
+constexpr std::uint32_t kResidentTest[] =
 #include "shaders/resident_test.comp.inc"
     ;
 constexpr std::uint32_t kFace[] =
@@ -33,7 +33,7 @@ constexpr std::uint32_t kPart = 32;                               ///< objects t
 constexpr std::uint32_t kParts = (world::ChunkMap::kCapacity + kPart - 1) / kPart;
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
-struct Push {
+struct ResidentPush {
   vk::DeviceAddress boxes, state, chunks_in, chunk_objects, questions, blocks, tiles, list, test;
   std::uint32_t stamp, parts_in, widest;
 };
@@ -54,15 +54,15 @@ struct FacesPush {
   std::uint32_t across_edge;
 };
 
-constexpr std::array kParameters{submission::kContributionParameter, submission::kThresholdParameter,
-                                 kRegionDepthParameter};
+constexpr std::array kResidentChunkParameters{submission::kContributionParameter,
+                                              submission::kThresholdParameter, kRegionDepthParameter};
 
 class ResidentChunk final : public TwoPhase {
 public:
   ResidentChunk(device::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, submission::contribution_from(parameters)),
         chunks_(renderer.scene(), parameters.count("depth")),
-        objects_(renderer.device(), kTest, shader_constants(contribution_)),
+        objects_(renderer.device(), kResidentTest, shader_constants(contribution_)),
         faces_(renderer.device(), {.vertex = kFace,
                                    .fragment = kSeenBox,
                                    .constants = shader_constants(contribution_),
@@ -76,7 +76,7 @@ public:
     send_changes();
   }
 
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     chunks_.update(renderer_.scene(), objects);
     send_changes();
   }
@@ -141,18 +141,18 @@ private:
     frame.commands.fillBuffer(blocks_.handle(), 0, std::uint64_t{4} * blocks, 0);
     frame.targets.depth.begin_reading(frame.commands);
     const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
-    const Push push{boxes,
-                    state_.address(),
-                    chunks_in_.address(),
-                    resident_.address(),
-                    questions_.address(),
-                    blocks_.address(),
-                    farthest_.address(),
-                    list_.address(),
-                    test_.address(),
-                    stamp_,
-                    count,
-                    frame.widest_dispatch()};
+    const ResidentPush push{boxes,
+                            state_.address(),
+                            chunks_in_.address(),
+                            resident_.address(),
+                            questions_.address(),
+                            blocks_.address(),
+                            farthest_.address(),
+                            list_.address(),
+                            test_.address(),
+                            stamp_,
+                            count,
+                            frame.widest_dispatch()};
     frame.dispatch(objects_, push, count * kPart, kPart);
     // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
     frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, blocks)});
@@ -206,6 +206,6 @@ extern const MethodInfo kResidentChunk{
     .name = "resident-chunk",
     .paper = "beyond A",
     .summary = "vertex chunks kept on the GPU, facing faces tested, nothing drawn twice but ties",
-    .device = on_device<ResidentChunk>(Guarantee::exact, kParameters)};
+    .device = on_device<ResidentChunk>(Guarantee::exact, kResidentChunkParameters)};
 
 }  // namespace sightline::methods

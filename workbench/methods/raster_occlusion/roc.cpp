@@ -6,8 +6,6 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kBoxVertices = 36;
-
 class Roc final : public MarkAndDraw {
 public:
   Roc(device::Renderer& renderer, const Parameters& parameters)
@@ -15,7 +13,7 @@ public:
         boxes_(make_box_pipeline(renderer.device(), contribution_)),
         marks_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "marks") {}
 
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
 private:
   void test(device::Recorder& frame) override {

@@ -48,7 +48,8 @@ constexpr vk::DeviceSize kEqualDepthGroups = 0, kScanGroups = 12, kFollowUpSize 
 }  // namespace
 
 TwoPhase::TwoPhase(Renderer& renderer, const submission::Contribution& contribution)
-    : renderer_(renderer),
+    : Method(renderer.scene()),
+      renderer_(renderer),
       contribution_(contribution),
       state_(upload(renderer.device(), std::vector<std::uint32_t>(renderer.scene().size()), "states")),
       new_tiles_(renderer.device(), kNewTiles, shader_constants(contribution)),
@@ -64,7 +65,7 @@ TwoPhase::TwoPhase(Renderer& renderer, const submission::Contribution& contribut
       again_(renderer.draws().make_buffers(renderer.device())),
       next_(renderer.draws().make_buffers(renderer.device())) {}
 
-void TwoPhase::record(FrameContext& context) {
+void TwoPhase::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
   begin_frame(frame);
   {

@@ -16,8 +16,8 @@ constexpr std::uint32_t kFrag[] =
 #include "shaders/mark.frag.inc"
     ;
 
-constexpr std::array kParameters{submission::kContributionParameter, submission::kThresholdParameter,
-                                 kRegionDepthParameter};
+constexpr std::array kVertexChunkParameters{submission::kContributionParameter,
+                                            submission::kThresholdParameter, kRegionDepthParameter};
 
 class VertexChunk final : public MarkAndDraw {
 public:
@@ -35,7 +35,7 @@ public:
         input_(renderer.device(), renderer.scene().size() * sizeof(world::ChunkVertex),
                device::Memory::upload, "the input buffer of vertex chunks") {}
 
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     chunks_.update(renderer_.scene(), objects);
     chunks_.map().acknowledge_changes();
   }
@@ -90,6 +90,6 @@ extern const MethodInfo kVertexChunk{
     .name = "vertex-chunk",
     .paper = "A: Lee & Shin 2023",
     .summary = "chunks culled on the CPU; one vertex an object becomes its box, tested by early z",
-    .device = {Guarantee::exact, kParameters, make_on_device<VertexChunk>, "geometryShader"}};
+    .device = {Guarantee::exact, kVertexChunkParameters, make_on_device<VertexChunk>, "geometryShader"}};
 
 }  // namespace sightline::methods

@@ -14,7 +14,7 @@ namespace {
 
 using submission::Contribution;
 
-constexpr std::array kParameters{
+constexpr std::array kVfcVcParameters{
     submission::kBoundsParameter,
     submission::kContributionParameter,
     submission::kThresholdParameter,
@@ -23,7 +23,7 @@ constexpr std::array kParameters{
 class VfcVc final : public CpuMethod {
 public:
   VfcVc(const Scene& scene, const Parameters& parameters)
-      : scene_(scene),
+      : CpuMethod(scene),
         contribution_(submission::contribution_from(parameters)),
         bounds_(submission::volume_from(parameters)),
         draw_list_(scene),
@@ -37,7 +37,7 @@ public:
     return contribution_.test == Contribution::Test::area ? Guarantee::approximate : Guarantee::conservative;
   }
 
-  void update(std::span<const ObjectId> objects) override {
+  void do_update(std::span<const ObjectId> objects) override {
     for (const ObjectId object : objects) bounds_.refresh(scene_, object);
     extent_ = submission::volume_extent(scene_);
   }
@@ -59,18 +59,17 @@ public:
   }
 
 private:
-  const Scene& scene_;
   Contribution contribution_;
   submission::ObjectBounds bounds_;
   submission::DrawList draw_list_;
   Box extent_;
 };
 
-constexpr std::uint32_t kShader[] =
+constexpr std::uint32_t kVfcVcShader[] =
 #include "shaders/vfc_vc.comp.inc"
     ;
 
-struct Push {
+struct VfcVcPush {
   vk::DeviceAddress boxes, marks, counters;
   std::uint32_t objects;
 };
@@ -78,25 +77,26 @@ struct Push {
 class VfcVcOnDevice final : public Method {
 public:
   VfcVcOnDevice(device::Renderer& renderer, const Parameters& parameters)
-      : renderer_(renderer),
+      : Method(renderer.scene()),
+        renderer_(renderer),
         contribution_(submission::contribution_from(parameters)),
-        test_(renderer.device(), kShader, shader_constants(contribution_)),
+        test_(renderer.device(), kVfcVcShader, shader_constants(contribution_)),
         marks_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "marks"),
         counters_(renderer.device(), 8, device::Memory::device, "counters"),
         draws_(renderer.draws().make_buffers(renderer.device())) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
-  void record(FrameContext& context) override {
+  void do_record(FrameContext& context) override {
     device::Recorder& frame = *context.recorder;
     const device::SceneBuffers& scene = renderer_.buffers();
     {
       const auto pass = frame.pass("frustum and contribution", device::PassKind::cull);
       frame.fill(counters_, 0, 8);
-      frame.dispatch(test_,
-                     Push{scene.box_data.address(), marks_.address(), counters_.address(), scene.objects},
-                     scene.objects);
+      frame.dispatch(
+          test_, VfcVcPush{scene.box_data.address(), marks_.address(), counters_.address(), scene.objects},
+          scene.objects);
       renderer_.draws().build(frame, marks_.address(), {}, renderer_.transparent_order(), draws_);
     }
     const auto pass = frame.pass("draw", device::PassKind::draw);
@@ -126,7 +126,7 @@ private:
 extern const MethodInfo kVfcVc{.name = "vfc-vc",
                                .paper = "A: Lee & Shin 2023",
                                .summary = "every object against the view frustum, then contribution",
-                               .cpu = on_cpu<VfcVc>(Guarantee::conservative, kParameters),
+                               .cpu = on_cpu<VfcVc>(Guarantee::conservative, kVfcVcParameters),
                                .device = on_device<VfcVcOnDevice>(Guarantee::exact, kOcclusionParameters)};
 
 }  // namespace sightline::methods

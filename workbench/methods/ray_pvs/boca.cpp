@@ -6,14 +6,14 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{kRaysParameter};
+constexpr std::array kBocaParameters{kRaysParameter};
 
 class Boca final : public RayMethod {
 public:
   Boca(const Scene& scene, const Parameters& parameters) : RayMethod(scene, parameters) {
     bvh_.build(scene.bounds);
   }
-  void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+  void do_update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
@@ -28,6 +28,6 @@ private:
 extern const MethodInfo kBoca{.name = "boca",
                               .paper = kRayPaper,
                               .summary = "100 x 100 rays down a bounding volume hierarchy",
-                              .cpu = on_cpu<Boca>(Guarantee::approximate, kParameters)};
+                              .cpu = on_cpu<Boca>(Guarantee::approximate, kBocaParameters)};
 
 }  // namespace sightline::methods

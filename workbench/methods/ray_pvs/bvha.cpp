@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kDistances[] =
 #include "shaders/bvha_distances.comp.inc"
     ;
-constexpr std::uint32_t kNearest[] =
+constexpr std::uint32_t kBvhaNearest[] =
 #include "shaders/bvha_nearest.comp.inc"
     ;
 
@@ -22,7 +22,7 @@ struct DistancesPush {
   vk::DeviceAddress rays, boxes, candidates, candidate_rays, distances;
   std::uint32_t count;
 };
-struct NearestPush {
+struct BvhaNearestPush {
   vk::DeviceAddress distances, first, hits, marks;
   std::uint32_t ray_count;
 };
@@ -32,7 +32,7 @@ public:
   Bvha(device::Device& device, const Scene& scene)
       : DeviceRays(device, scene),
         distances_(device, kDistances),
-        nearest_(device, kNearest),
+        nearest_(device, kBvhaNearest),
         boxes_(device, scene.size() * sizeof(Box), device::Memory::upload, "boxes") {
     bvh_.build(scene.bounds);
     send();
@@ -81,7 +81,7 @@ private:
                across, (groups + across - 1) / across);
     }
     dispatch(commands, nearest_,
-             NearestPush{found_.address(), first_.address(), hits_.address(), marks_.address(), rays},
+             BvhaNearestPush{found_.address(), first_.address(), hits_.address(), marks_.address(), rays},
              (rays + 255) / 256);
   }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kPairs[] =
 #include "shaders/iwcpa_pairs.comp.inc"
     ;
-constexpr std::uint32_t kNearest[] =
+constexpr std::uint32_t kIwcpaNearest[] =
 #include "shaders/iwcpa_nearest.comp.inc"
     ;
 
@@ -18,7 +18,7 @@ struct PairsPush {
   vk::DeviceAddress rays, boxes, nearest;
   std::uint32_t ray_count, first_box, box_end, strip;
 };
-struct NearestPush {
+struct IwcpaNearestPush {
   vk::DeviceAddress nearest, hits, marks;
   std::uint32_t ray_count, rows, is_first, is_last;
 };
@@ -35,7 +35,7 @@ public:
   Iwcpa(device::Device& device, const Scene& scene)
       : DeviceRays(device, scene),
         pairs_(device, kPairs),
-        nearest_(device, kNearest),
+        nearest_(device, kIwcpaNearest),
         boxes_(device, scene.size() * sizeof(Box), device::Memory::upload, "boxes") {
     update();
   }
@@ -64,8 +64,8 @@ private:
           PairsPush{ray_buffer_.address(), boxes_.address(), partial_.address(), rays, first, boxes, kStrip},
           (rays + across - 1) / across, strips);
       dispatch(commands, nearest_,
-               NearestPush{partial_.address(), hits_.address(), marks_.address(), rays, strips * kGroup,
-                           first == 0, boxes - first <= step},
+               IwcpaNearestPush{partial_.address(), hits_.address(), marks_.address(), rays, strips * kGroup,
+                                first == 0, boxes - first <= step},
                (rays + 255) / 256);
     }
   }

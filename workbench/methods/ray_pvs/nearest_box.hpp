@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include <sightline/ray.hpp>
+#include <sightline/rays.hpp>
 #include <sightline/workbench/scene.hpp>
 
 #include "library/rays/bvh.hpp"

@@ -7,15 +7,16 @@ namespace {
 class RayDeviceMethod final : public Method {
 public:
   RayDeviceMethod(device::Renderer& renderer, std::uint32_t side, std::unique_ptr<DeviceRays> rays)
-      : renderer_(renderer),
+      : Method(renderer.scene()),
+        renderer_(renderer),
         side_(side),
         rays_(std::move(rays)),
         draws_(renderer.draws().make_buffers(renderer.device())) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::approximate; }
-  void update(std::span<const ObjectId>) override { rays_->update(); }
+  void do_update(std::span<const ObjectId>) override { rays_->update(); }
 
-  void record(FrameContext& context) override {
+  void do_record(FrameContext& context) override {
     device::Recorder& frame = *context.recorder;
     grid_.make(frame.view, side_, side_);
     rays_->prepare(grid_);

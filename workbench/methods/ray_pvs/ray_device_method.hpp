@@ -17,7 +17,7 @@ std::unique_ptr<Method> make_ray_device_method(device::Renderer& renderer, const
                                                std::unique_ptr<DeviceRays> rays);
 
 template <auto make_rays>
-Result<std::unique_ptr<Method>> make_rays_on_device(const MethodSite& site, const Parameters& parameters) {
+std::unique_ptr<Method> make_rays_on_device(const MethodSite& site, const Parameters& parameters) {
   return make_ray_device_method(*site.renderer, parameters, make_rays(site.renderer->device(), site.scene));
 }
 

@@ -21,10 +21,10 @@ inline constexpr ParameterInfo kRaysParameter{"rays", "along each side of the vi
 class RayMethod : public CpuMethod {
 public:
   RayMethod(const Scene& scene, const Parameters& parameters)
-      : scene_(scene), side_(parameters.count(kRaysParameter.name)), draw_list_(scene) {}
+      : CpuMethod(scene), side_(parameters.count(kRaysParameter.name)), draw_list_(scene) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept final { return Guarantee::approximate; }
-  void update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override {}
 
   void cull(const View& view, Frame& frame) noexcept final {
     frame.clear();
@@ -41,7 +41,6 @@ public:
 
 protected:
   virtual void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept = 0;
-  const Scene& scene_;
 
 private:
   std::uint32_t side_;

@@ -9,18 +9,18 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kShader[] =
+constexpr std::uint32_t kSaaShader[] =
 #include "shaders/saa.comp.inc"
     ;
 
-struct Push {
+struct SaaPush {
   vk::DeviceAddress rays, nodes, hits, marks;
   std::uint32_t ray_count, node_count;
 };
 
 class Saa final : public DeviceRays {
 public:
-  Saa(device::Device& device, const Scene& scene) : DeviceRays(device, scene), pipeline_(device, kShader) {
+  Saa(device::Device& device, const Scene& scene) : DeviceRays(device, scene), pipeline_(device, kSaaShader) {
     bvh_.build(scene.bounds);
     nodes_ = device::Buffer(device, bvh_.nodes().size_bytes(), device::Memory::upload, "the flattened tree");
     send();
@@ -36,8 +36,8 @@ private:
   void record_passes(const vk::raii::CommandBuffer& commands) override {
     const auto rays = static_cast<std::uint32_t>(rays_);
     dispatch(commands, pipeline_,
-             Push{ray_buffer_.address(), nodes_.address(), hits_.address(), marks_.address(), rays,
-                  static_cast<std::uint32_t>(bvh_.nodes().size())},
+             SaaPush{ray_buffer_.address(), nodes_.address(), hits_.address(), marks_.address(), rays,
+                     static_cast<std::uint32_t>(bvh_.nodes().size())},
              (rays + 255) / 256);
   }
 

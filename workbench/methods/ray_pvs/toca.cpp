@@ -6,7 +6,7 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kParameters{kRaysParameter};
+constexpr std::array kTocaParameters{kRaysParameter};
 
 class Toca final : public RayMethod {
 public:
@@ -23,6 +23,6 @@ private:
 extern const MethodInfo kToca{.name = "toca",
                               .paper = kRayPaper,
                               .summary = "100 x 100 rays, each against every box",
-                              .cpu = on_cpu<Toca>(Guarantee::approximate, kParameters)};
+                              .cpu = on_cpu<Toca>(Guarantee::approximate, kTocaParameters)};
 
 }  // namespace sightline::methods

@@ -21,10 +21,10 @@ constexpr std::array kGuidedParameters{
 class TriangleMethod : public CpuMethod {
 public:
   explicit TriangleMethod(const Scene& scene)
-      : scene_(scene), rays_(scene), draw_list_(scene), seen_(scene.size()) {}
+      : CpuMethod(scene), rays_(scene), draw_list_(scene), seen_(scene.size()) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept final { return Guarantee::approximate; }
-  void update(std::span<const ObjectId>) final { rays_.update(); }
+  void do_update(std::span<const ObjectId>) final { rays_.update(); }
 
   void cull(const View& view, Frame& frame) noexcept final {
     frame.clear();
@@ -44,7 +44,6 @@ public:
 
 protected:
   virtual void cast(const View& view, rays::RayStats& stats) noexcept = 0;
-  const Scene& scene_;
   partition::TriangleRays rays_;
   partition::TriangleRays::Stack stack_;
   submission::DrawList draw_list_;

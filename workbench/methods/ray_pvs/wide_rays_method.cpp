@@ -9,7 +9,7 @@ namespace sightline::methods {
 namespace {
 
 constexpr ParameterInfo kThreads{"threads", "that cast; 0: one a core", "0", 0, 256, true};
-constexpr std::array kParameters{kRaysParameter, kThreads};
+constexpr std::array kWideRaysParameters{kRaysParameter, kThreads};
 
 class WideRays final : public RayMethod {
 public:
@@ -19,7 +19,7 @@ public:
         stacks_(jobs_.threads) {
     bvh_.build(scene.bounds);
   }
-  void update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+  void do_update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
@@ -37,6 +37,6 @@ extern const MethodInfo kWideRays{
     .name = "wide-rays",
     .paper = "",
     .summary = "the PVS of toca and boca by a wide SIMD tree and packets of rays, on all cores",
-    .cpu = on_cpu<WideRays>(Guarantee::approximate, kParameters)};
+    .cpu = on_cpu<WideRays>(Guarantee::approximate, kWideRaysParameters)};
 
 }  // namespace sightline::methods

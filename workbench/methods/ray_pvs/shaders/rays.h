@@ -1,4 +1,4 @@
-// What the ray shaders share: their arrays, and the slab test of include/sightline/ray.hpp, operation for
+// What the ray shaders share: their arrays, and the slab test of include/sightline/rays.hpp, operation for
 // operation, so that every hit is the CPU's to the bit. `precise` forbids fused multiply-adds.
 struct RayData {
   vec3 origin;

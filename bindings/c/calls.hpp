@@ -1,0 +1,83 @@
+// What the functions of the C API share: they take what C gives, call the C++ of the same name, and keep why
+// it refused.
+#pragma once
+
+#include <sightline/sightline.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <sightline/box_view.hpp>
+#include <sightline/jobs.hpp>
+#include <sightline/occluder.hpp>
+#include <sightline/occlusion.hpp>
+#include <sightline/status.hpp>
+#include <sightline/view.hpp>
+#include <sightline/world.hpp>
+
+struct sightline_world {
+  sightline::World world;
+};
+struct sightline_occlusion {
+  sightline::OcclusionBuffer buffer;
+};
+
+namespace sightline::c_api {
+
+/// Keeps a refusal for the thread, and returns its code either way.
+sightline_status keep(const Status& status) noexcept;
+
+/// Keeps that a pointer, a count or an option is not as it should be; `message` is a literal.
+inline sightline_status refuse(const char* message) noexcept {
+  return keep({StatusCode::bad_argument, message});
+}
+
+/// Whether there can be `count` elements at `first`, as far as a pointer tells.
+template <class T>
+bool can_hold(const T* first, std::size_t count) noexcept {
+  return count == 0 || (first && count <= static_cast<std::size_t>(-1) / 2 / sizeof(T));
+}
+
+/// Bytes of a struct's first version, whose last member was `last`. Later ones stand behind it.
+#define SIGHTLINE_FIRST_SIZE(type, last) (offsetof(type, last) + sizeof(type::last))
+
+/// Whether the library knows a struct of this size, whose first version had `first_size` bytes.
+template <class T>
+bool knows(std::uint32_t struct_size, std::size_t first_size) noexcept {
+  return struct_size >= first_size && struct_size <= sizeof(T);
+}
+
+/// Fills in what an older header's struct has; `taken` keeps its defaults for the rest.
+template <class T>
+bool take_struct(const void* given, std::size_t first_size, T& taken) noexcept {
+  std::uint32_t size = 0;
+  std::memcpy(&size, given, sizeof size);
+  if (!knows<T>(size, first_size)) return false;
+  std::memcpy(&taken, given, size);
+  return true;
+}
+
+// Of what the caller gave; refused where it is not what its function makes.
+Status take(const sightline_box_view& given, BoxView& boxes) noexcept;
+Status take(const sightline_sphere_view& given, SphereView& spheres) noexcept;
+Status take(const sightline_jobs& given, JobSystem& jobs) noexcept;
+/// The same of a view, which must be sound.
+Status take(const sightline_view& given, WorldView& view) noexcept;
+
+WorldView view_of(const sightline_view& view) noexcept;
+sightline_view view_of(const WorldView& view) noexcept;
+
+inline Box box_of(const float box[6]) noexcept {
+  return {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+}
+inline Sphere sphere_of(const float sphere[4]) noexcept {
+  return {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+}
+inline std::span<const Vec3> points_of(const float* points, std::size_t count) noexcept {
+  static_assert(sizeof(Vec3) == 3 * sizeof(float));
+  return {reinterpret_cast<const Vec3*>(points), count};
+}
+
+}  // namespace sightline::c_api

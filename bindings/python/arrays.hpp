@@ -1,0 +1,82 @@
+// NumPy arrays as the library's views: what fits is read and written where it lies, what does not is refused.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sightline/box_view.hpp>
+#include <sightline/status.hpp>
+#include <sightline/view.hpp>
+#include <sightline/world.hpp>
+
+namespace sightline::python {
+
+namespace py = pybind11;
+
+/// Raises sightline.Refused unless the call did what it says.
+void expect(const Status& status);
+[[noreturn]] void refuse(const std::string& sentence);
+
+template <class T>
+T expect(Result<T> result) {
+  if (!result) expect(result.error());
+  return *std::move(result);
+}
+
+/// Boxes in arrays, which live as long as this.
+struct Boxes {
+  BoxView view;
+  std::vector<py::object> arrays;
+};
+struct Spheres {
+  SphereView view;
+  std::vector<py::object> arrays;
+};
+
+/// BoxView of Python, or an array of shape (n, 2, 3) or (n, 6).
+Boxes boxes_of(const py::object& given);
+/// SphereView of Python, or an array of shape (n, 4).
+Spheres spheres_of(const py::object& given);
+
+/// Uint32 (n, 2), or of shape (n,) and two uint32 fields.
+Strided<const Handle> handles_of(const py::object& given);
+/// The same to write to.
+Strided<Handle> writable_handles_of(const py::object& given);
+/// Uint32 (n,); an empty column for None.
+Strided<const std::uint32_t> column_of(const py::object& given, const char* name);
+
+/// Contiguous copies of what is not read through strides: points (..., 3) float32, and numbers uint32 of any
+/// shape.
+std::vector<Vec3> points_of(const py::object& given, const char* name);
+std::vector<std::uint32_t> numbers_of(const py::object& given, const char* name);
+
+WorldPoint world_point_of(const py::object& given, const char* name);
+std::pair<float, float> two_numbers_of(const py::object& given, const char* name);
+Box box_of(const py::object& given, const char* name);
+/// (4, 4) numbers, [row, column].
+Mat4 matrix_of(const py::object& given, const char* name);
+py::array_t<float> array_of(const Mat4& matrix);
+py::array_t<float> array_of(const Box& box);
+
+/// The first `count` elements, which is all that was written of it.
+inline py::object first_of(const py::array& array, std::size_t count) {
+  return array[py::slice(0, static_cast<py::ssize_t>(count), 1)];
+}
+/// An array that numpy allocates, and the same as a span.
+template <class T>
+py::array_t<T> new_array(std::size_t count) {
+  return py::array_t<T>(static_cast<py::ssize_t>(count));
+}
+template <class T>
+std::span<T> span_of(py::array_t<T>& array) {
+  return {array.mutable_data(), static_cast<std::size_t>(array.size())};
+}
+
+}  // namespace sightline::python

@@ -1,0 +1,73 @@
+// The Python module, and how it refuses.
+#include <sightline/version.hpp>
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/objects.hpp"
+
+namespace sightline::python {
+
+namespace {
+
+PyObject* refused = nullptr;  // the exception's type
+
+const char* name_of(StatusCode code) {
+  constexpr const char* names[] = {"ok",       "bad_argument",     "bad_box",      "stale_handle",
+                                   "bad_view", "buffer_too_small", "stale_buffer", "bad_mesh",
+                                   "too_many", "bad_file"};
+  const auto number = static_cast<std::size_t>(code);
+  return number < std::size(names) ? names[number] : "unknown";
+}
+
+[[noreturn]] void raise(const std::string& sentence, StatusCode code, const py::object& index) {
+  const py::object error = py::reinterpret_borrow<py::object>(refused)(sentence);
+  error.attr("status") = name_of(code);
+  error.attr("index") = index;
+  PyErr_SetObject(refused, error.ptr());
+  throw py::error_already_set();
+}
+
+constexpr const char* kDoc =
+    "Visibility culling: a world of boxes that move, and what of it a camera may see.\n\n"
+    "Lengths are metres, the world is right-handed with y up, matrices are [row, column] and multiply "
+    "columns,\n"
+    "clip depth is 0 to 1 (either way round). Arrays of the named types are read where they lie, rows at "
+    "any\n"
+    "ascending stride: fields of structured arrays, slices, columns of tables. What is given is read while "
+    "the\n"
+    "call runs, not later. What a call refuses raises Refused, a ValueError, and changes nothing.\n\n"
+    "Objects may be used by several threads: a call waits where another changes the same object. Long calls\n"
+    "that only look at arrays let other threads of Python run; do not change those arrays meanwhile.";
+
+constexpr const char* kRefusedDoc =
+    "Why a call was refused, in one sentence. `status`: what kind of thing it was, 'bad_box' for example;\n"
+    "`index`: which element of the argument that the sentence names, or None.";
+
+}  // namespace
+
+void refuse(const std::string& sentence) {
+  raise(sentence, StatusCode::bad_argument, py::none());
+}
+
+void expect(const Status& status) {
+  if (status) return;
+  if (status.index() == Status::kNoIndex) raise(status.message(), status.code(), py::none());
+  raise(status.message() + (" (element " + std::to_string(status.index()) + ")"), status.code(),
+        py::int_(status.index()));
+}
+
+}  // namespace sightline::python
+
+PYBIND11_MODULE(sightline, m) {
+  using namespace sightline::python;
+  m.doc() = kDoc;
+  m.attr("__version__") = std::string(sightline::kVersion);
+  refused = PyErr_NewExceptionWithDoc("sightline.Refused", kRefusedDoc, PyExc_ValueError, nullptr);
+  if (!refused) throw py::error_already_set();
+  m.attr("Refused") = py::reinterpret_borrow<py::object>(refused);
+  add_views(m);
+  add_occlusion(m);
+  add_world(m);
+  add_frustum(m);
+  add_rays(m);
+  add_pvs(m);
+}

@@ -1,0 +1,62 @@
+// The library's objects as Python holds them, and the parts that the module is made of.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+
+#include <sightline/occlusion.hpp>
+#include <sightline/view.hpp>
+#include <sightline/world.hpp>
+
+namespace sightline::python {
+
+/// An object and who uses it: threads that do without the interpreter's lock must not meet at one that
+/// changes.
+template <class T>
+struct Guarded {
+  T value;
+  mutable std::shared_mutex mutex;
+};
+
+using Occlusion = Guarded<OcclusionBuffer>;
+
+/// Without the interpreter's lock while it lives: other threads of Python run on. No object's lock may be
+/// held when it ends, and nothing of Python may be used while one is.
+using Unlocked = pybind11::gil_scoped_release;
+
+/// What call(object) returns, alone with the object or beside others that look.
+template <class T, class Call>
+auto changing(Guarded<T>& object, const Call& call) {
+  const std::unique_lock lock(object.mutex);
+  return call(object.value);
+}
+template <class T, class Call>
+auto looking(const Guarded<T>& object, const Call& call) {
+  const std::shared_lock lock(object.mutex);
+  return call(object.value);
+}
+
+/// The same without the interpreter's lock.
+template <class T, class Call>
+auto changing_unlocked(Guarded<T>& object, const Call& call) {
+  const Unlocked unlocked;
+  return changing(object, call);
+}
+template <class T, class Call>
+auto looking_unlocked(const Guarded<T>& object, const Call& call) {
+  const Unlocked unlocked;
+  return looking(object, call);
+}
+
+// Each adds its classes and functions.
+void add_views(pybind11::module_& m);
+void add_world(pybind11::module_& m);
+void add_occlusion(pybind11::module_& m);
+void add_frustum(pybind11::module_& m);
+void add_rays(pybind11::module_& m);
+void add_pvs(pybind11::module_& m);
+
+}  // namespace sightline::python

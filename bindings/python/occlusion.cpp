@@ -1,0 +1,173 @@
+// Occluders, occludees, and the depth of one view.
+#include <sightline/occlusion.hpp>
+
+#include <algorithm>
+#include <optional>
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/objects.hpp"
+
+namespace sightline::python {
+
+namespace {
+
+using SharedTriangles = Guarded<OccludeeTriangles>;
+
+OccluderMesh make_mesh(const py::object& positions, const py::object& indices) {
+  const std::vector<Vec3> points = points_of(positions, "positions");
+  const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");
+  return expect([&] {
+    const Unlocked unlocked;
+    return OccluderMesh::make(points, corners);
+  }());
+}
+
+void assign(SharedTriangles& triangles, const py::object& corners, const py::object& per_object) {
+  const std::vector<Vec3> points = points_of(corners, "corners");
+  const std::vector<std::uint32_t> counts = numbers_of(per_object, "triangles_per_object");
+  expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.assign(points, counts); }));
+}
+
+void set(SharedTriangles& triangles, std::uint32_t object, const py::object& corners) {
+  const std::vector<Vec3> points = points_of(corners, "corners");
+  expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.set(object, points); }));
+}
+
+void begin(Occlusion& occlusion, const WorldView& view) {
+  expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.begin(view); }));
+}
+
+// Drawing checks the caller's arrays and then relies on them, so it keeps the interpreter's lock.
+void draw_boxes(Occlusion& occlusion, const py::object& boxes) {
+  const Boxes given = boxes_of(boxes);
+  expect(changing(occlusion, [&](OcclusionBuffer& b) { return b.draw_boxes(given.view); }));
+}
+
+void draw_spheres(Occlusion& occlusion, const py::object& spheres) {
+  const Spheres given = spheres_of(spheres);
+  expect(changing(occlusion, [&](OcclusionBuffer& b) { return b.draw_spheres(given.view); }));
+}
+
+void draw_mesh(Occlusion& occlusion, const OccluderMesh& mesh, const py::object& transform) {
+  const Mat4 matrix = transform.is_none() ? Mat4{} : matrix_of(transform, "transform");
+  expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.draw_mesh(mesh, matrix); }));
+}
+
+// bool (n,) of what the library writes as bytes.
+template <class View>
+py::object may_see(const Occlusion& occlusion, const View& things) {
+  py::array_t<std::uint8_t> visible = new_array<std::uint8_t>(things.size());
+  const std::span<std::uint8_t> out = span_of(visible);
+  expect(looking_unlocked(occlusion, [&](const OcclusionBuffer& b) { return b.may_see(things, out); }));
+  return visible.attr("view")("bool");
+}
+
+py::object may_see_boxes(const Occlusion& occlusion, const py::object& boxes) {
+  const Boxes given = boxes_of(boxes);
+  return may_see(occlusion, given.view);
+}
+py::object may_see_spheres(const Occlusion& occlusion, const py::object& spheres) {
+  const Spheres given = spheres_of(spheres);
+  return may_see(occlusion, given.view);
+}
+
+bool may_see_triangles(const Occlusion& occlusion, const py::object& corners) {
+  const std::vector<Vec3> points = points_of(corners, "corners");
+  return looking_unlocked(occlusion,
+                          [&](const OcclusionBuffer& b) { return b.may_see(std::span<const Vec3>(points)); });
+}
+
+py::object keep_seen(const Occlusion& occlusion, const SharedTriangles& triangles,
+                     const py::object& objects) {
+  const std::vector<std::uint32_t> given = numbers_of(objects, "objects");
+  py::array_t<std::uint32_t> kept = new_array<std::uint32_t>(given.size());
+  const std::span<std::uint32_t> out = span_of(kept);
+  std::copy(given.begin(), given.end(), out.begin());
+  const std::size_t count = looking_unlocked(occlusion, [&](const OcclusionBuffer& depths) {
+    return looking(triangles, [&](const OccludeeTriangles& t) { return depths.keep_seen(t, out); });
+  });
+  return first_of(kept, count);
+}
+
+py::array_t<float> read_nearness(const Occlusion& occlusion) {
+  const View view = looking(occlusion, [](const OcclusionBuffer& b) { return b.view().view; });
+  py::array_t<float> pixels({py::ssize_t{view.height}, py::ssize_t{view.width}});
+  const std::span<float> out = span_of(pixels);
+  expect(looking_unlocked(occlusion, [&](const OcclusionBuffer& b) { return b.read_nearness(out); }));
+  return pixels;
+}
+
+py::object begun_view(const Occlusion& occlusion) {
+  const auto view = looking(
+      occlusion, [](const OcclusionBuffer& b) { return b.begun() ? std::optional(b.view()) : std::nullopt; });
+  return view ? py::cast(*view) : py::none();
+}
+
+std::uint32_t triangles_of(const SharedTriangles& triangles, std::uint32_t object) {
+  return looking(triangles, [&](const OccludeeTriangles& t) { return t.triangles(object); });
+}
+std::uint32_t objects_of(const SharedTriangles& triangles) {
+  return looking(triangles, [](const OccludeeTriangles& t) { return t.objects(); });
+}
+
+void add_triangles(py::module_& m) {
+  py::class_<OccluderMesh>(m, "OccluderMesh",
+                           "Triangles that occlude, from both sides: what can be looked through, or is not\n"
+                           "drawn from one side, must not be among them.")
+      .def(py::init(&make_mesh),
+           "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat. Refused: positions that are\n"
+           "not finite, indices that are out of range or no multiple of three.",
+           py::arg("positions"), py::arg("indices"))
+      .def_property_readonly("triangles", &OccluderMesh::triangles);
+
+  py::class_<SharedTriangles>(m, "OccludeeTriangles",
+                              "The triangles of many objects, laid out to be asked for frame after frame.")
+      .def(py::init<>())
+      .def("assign", &assign,
+           "Takes all objects anew: of object o the next triangles_per_object[o] of the triangles whose\n"
+           "corners are float32 (..., 3), about the origin of the views that will ask.",
+           py::arg("corners"), py::arg("triangles_per_object"))
+      .def("set", &set, "Gives one object, which has moved, new corners, as many as before.",
+           py::arg("object"), py::arg("corners"))
+      .def("triangles", &triangles_of, "Of one object; 0 where there is no such object.", py::arg("object"))
+      .def("__len__", &objects_of);
+}
+
+}  // namespace
+
+void add_occlusion(py::module_& m) {
+  add_triangles(m);
+  py::class_<Occlusion, std::shared_ptr<Occlusion>>(
+      m, "Occlusion",
+      "One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone. "
+      "Boxes\n"
+      "are as World has them; spheres a SphereView or float32 (n, 4). Spheres, meshes and triangles are in\n"
+      "metres about the view's origin. Refused: drawing and reading before begin().")
+      .def(py::init<>())
+      .def("begin", &begin, "Empties it and takes the view, of at most 8192 pixels a side.", py::arg("view"))
+      .def_property_readonly("view", &begun_view, "The view it was begun with, or None.")
+      .def("draw_boxes", &draw_boxes,
+           "Draws solid boxes: every point inside one must be solid. Those that are not valid are left out.",
+           py::arg("boxes"))
+      .def("draw_spheres", &draw_spheres,
+           "Draws solid spheres. Those that are not valid or reach behind the near plane are left out.",
+           py::arg("spheres"))
+      .def("draw_mesh", &draw_mesh, "Draws a mesh moved by an affine matrix (4, 4), or where it stands.",
+           py::arg("mesh"), py::arg("transform") = py::none())
+      .def("may_see_boxes", &may_see_boxes,
+           "bool (n,): whether some pixel centre may see the box; False is certain. All True before begin().",
+           py::arg("boxes"))
+      .def("may_see_spheres", &may_see_spheres, "The same of spheres.", py::arg("spheres"))
+      .def("may_see_triangles", &may_see_triangles,
+           "Whether some pixel centre may see one of the triangles, whose corners are float32 (..., 3).",
+           py::arg("corners"))
+      .def("keep_seen", &keep_seen,
+           "Those of `objects`, uint32 (n,), of which a triangle may be seen, in order.",
+           py::arg("triangles"), py::arg("objects"))
+      .def("read_nearness", &read_nearness,
+           "float32 (height, width): 1 / (depth in metres) of the occluder at each pixel (perspective), "
+           "-depth\n"
+           "(orthographic), -inf where there is none; rows from the top.");
+}
+
+}  // namespace sightline::python

@@ -1,0 +1,249 @@
+// Worlds and their culling.
+#include <sightline/world.hpp>
+
+#include <algorithm>
+#include <memory>
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/objects.hpp"
+
+namespace sightline::python {
+
+namespace {
+
+using SharedWorld = Guarded<World>;
+using LockedCuller = Guarded<Culler>;
+using Reading = std::shared_lock<std::shared_mutex>;
+
+// Calls that check the caller's arrays and then rely on them keep the interpreter's lock.
+
+py::object insert(SharedWorld& world, const py::object& boxes, const py::object& handles,
+                  const py::object& layers, const py::object& values) {
+  const Boxes given = boxes_of(boxes);
+  py::object written = handles;
+  if (handles.is_none())
+    written = py::array_t<std::uint32_t>({static_cast<py::ssize_t>(given.view.size()), py::ssize_t{2}});
+  const Strided<Handle> out = writable_handles_of(written);
+  const ObjectColumns columns{column_of(layers, "layers"), column_of(values, "values")};
+  expect(changing(world, [&](World& w) { return w.insert(given.view, out, columns); }));
+  return written;
+}
+
+void move(SharedWorld& world, const py::object& handles, const py::object& boxes) {
+  const Boxes given = boxes_of(boxes);
+  const Strided<const Handle> which = handles_of(handles);
+  expect(changing(world, [&](World& w) { return w.move(which, given.view); }));
+}
+
+void remove(SharedWorld& world, const py::object& handles) {
+  const Strided<const Handle> which = handles_of(handles);
+  expect(changing(world, [&](World& w) { return w.remove(which); }));
+}
+
+void set_layers(SharedWorld& world, const py::object& handles, const py::object& layers) {
+  const Strided<const Handle> which = handles_of(handles);
+  const Strided<const std::uint32_t> given = column_of(layers, "layers");
+  expect(changing(world, [&](World& w) { return w.set_layers(which, given); }));
+}
+
+void set_values(SharedWorld& world, const py::object& handles, const py::object& values) {
+  const Strided<const Handle> which = handles_of(handles);
+  const Strided<const std::uint32_t> given = column_of(values, "values");
+  expect(changing(world, [&](World& w) { return w.set_values(which, given); }));
+}
+
+// Calls read(world, i, handle) for each handle; they may be stale.
+template <class Read>
+void read_each(const SharedWorld& world, const Strided<const Handle>& handles, Read read) {
+  if (!handles.sound()) refuse("handles: their stride is shorter than they are");
+  looking(world, [&](const World& w) {
+    for (std::size_t i = 0; i < handles.size(); ++i) read(w, i, handles[i]);
+  });
+}
+
+// One number an object.
+template <class T, class Read>
+py::array_t<T> numbers(const SharedWorld& world, const py::object& handles, Read read) {
+  const Strided<const Handle> given = handles_of(handles);
+  py::array_t<T> result = new_array<T>(given.size());
+  const std::span<T> out = span_of(result);
+  read_each(world, given, [&](const World& w, std::size_t i, Handle h) { out[i] = read(w, h); });
+  return result;
+}
+
+py::array_t<bool> contains(const SharedWorld& world, const py::object& handles) {
+  return numbers<bool>(world, handles, [](const World& w, Handle h) { return w.contains(h); });
+}
+py::array_t<std::uint32_t> layers(const SharedWorld& world, const py::object& handles) {
+  return numbers<std::uint32_t>(world, handles, [](const World& w, Handle h) { return w.layers(h); });
+}
+py::array_t<std::uint32_t> values(const SharedWorld& world, const py::object& handles) {
+  return numbers<std::uint32_t>(world, handles, [](const World& w, Handle h) { return w.value(h); });
+}
+
+py::array_t<double> boxes(const SharedWorld& world, const py::object& handles) {
+  const Strided<const Handle> given = handles_of(handles);
+  py::array_t<double> result({static_cast<py::ssize_t>(given.size()), py::ssize_t{2}, py::ssize_t{3}});
+  const std::span<double> out = span_of(result);
+  static_assert(sizeof(WorldBox) == 6 * sizeof(double));
+  read_each(world, given, [&](const World& w, std::size_t i, Handle h) {
+    const WorldBox box = w.box(h);
+    std::copy_n(&box.min.x, 6, &out[6 * i]);
+  });
+  return result;
+}
+
+py::array_t<std::uint32_t> handles(const SharedWorld& world, const py::object& ids) {
+  const std::vector<std::uint32_t> given = numbers_of(ids, "ids");
+  py::array_t<std::uint32_t> result({static_cast<py::ssize_t>(given.size()), py::ssize_t{2}});
+  const Strided<Handle> out = writable_handles_of(result);
+  looking(world, [&](const World& w) {
+    for (std::size_t i = 0; i < given.size(); ++i) out.set(i, w.handle(given[i]));
+  });
+  return result;
+}
+
+std::size_t size_of(const SharedWorld& world) {
+  return looking(world, [](const World& w) { return w.size(); });
+}
+std::size_t id_limit_of(const SharedWorld& world) {
+  return looking(world, [](const World& w) { return w.id_limit(); });
+}
+
+struct ViewOfWorld {
+  WorldView view;
+  std::uint32_t layers = kAllLayers;
+  float min_area = 0;
+  std::shared_ptr<Occlusion> occlusion;
+};
+
+ViewOfWorld view_of(const py::handle& given) {
+  if (py::isinstance<WorldView>(given)) return {given.cast<WorldView>(), kAllLayers, 0, nullptr};
+  if (!py::isinstance<ViewOfWorld>(given)) refuse("cull: expected a View, a CullView, or some of them");
+  return given.cast<ViewOfWorld>();
+}
+
+std::vector<ViewOfWorld> views_of(const py::object& given) {
+  std::vector<ViewOfWorld> views;
+  if (!py::isinstance<py::sequence>(given)) return {view_of(given)};
+  for (const py::handle view : py::reinterpret_borrow<py::sequence>(given)) views.push_back(view_of(view));
+  return views;
+}
+
+// Locks of all that a cull reads, each once and always in the same order.
+std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views) {
+  std::vector<std::shared_mutex*> mutexes;
+  for (const ViewOfWorld& v : views) {
+    if (v.occlusion) mutexes.push_back(&v.occlusion->mutex);
+  }
+  std::sort(mutexes.begin(), mutexes.end());
+  mutexes.erase(std::unique(mutexes.begin(), mutexes.end()), mutexes.end());
+  std::vector<Reading> locks;
+  for (std::shared_mutex* mutex : mutexes) locks.emplace_back(*mutex);
+  return locks;
+}
+
+// Room for what a world holds now.
+struct Output {
+  py::array_t<std::uint32_t> ids;
+  py::array_t<std::uint8_t> masks;
+
+  Output(const SharedWorld& world, const CullOptions& options, bool wants_masks) {
+    const std::size_t room = looking(world, [&](const World& w) { return cull_capacity(w, options); });
+    ids = new_array<std::uint32_t>(room), masks = new_array<std::uint8_t>(wants_masks ? room : 0);
+  }
+};
+
+py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object& views, bool masks,
+                bool values) {
+  const std::vector<ViewOfWorld> given = views_of(views);
+  std::vector<CullView> seen;
+  for (const ViewOfWorld& v : given)
+    seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area});
+  const CullOptions options{{}, values};
+  for (;;) {
+    Output output(world, options, masks);
+    const CullOutput out{span_of(output.ids), span_of(output.masks)};
+    const Result<CullResult> result = changing_unlocked(culler, [&](Culler& c) {
+      return looking(world, [&](const World& w) {
+        const std::vector<Reading> locks = lock_all(given);
+        return c.cull(w, seen, options, out);
+      });
+    });
+    // Another thread may have let the world grow meanwhile.
+    if (!result && result.error().code() == StatusCode::buffer_too_small) continue;
+    const std::size_t count = expect(result).count;
+    if (!masks) return first_of(output.ids, count);
+    return py::make_tuple(first_of(output.ids, count), first_of(output.masks, count));
+  }
+}
+
+}  // namespace
+
+void add_world(py::module_& m) {
+  m.attr("ALL_LAYERS") = kAllLayers;
+  m.attr("NO_OBJECT") = kNoObject;
+  m.attr("MAX_VIEWS") = kMaxViews;
+  const auto uint32 = py::dtype::of<std::uint32_t>();
+  m.attr("handle_dtype") =
+      py::dtype(py::list(py::make_tuple("index", "generation")), py::list(py::make_tuple(uint32, uint32)),
+                py::list(py::make_tuple(0, 4)), sizeof(Handle));
+
+  py::class_<SharedWorld>(
+      m, "World",
+      "Boxes that come, move and go within 1e11 m of 0, by stable handle. Handles are uint32 (n, 2), index "
+      "and\n"
+      "generation, or (n,) of two uint32 fields (handle_dtype); the index is the id that cull() returns.\n"
+      "Boxes are a BoxView or an array (n, 2, 3) of minimum and maximum, float32 or float64, in metres.\n"
+      "Refused, changing nothing: lengths that differ, boxes that are not min <= max, stale handles.")
+      .def(py::init<>())
+      .def("insert", &insert,
+           "Puts n boxes in and returns their handles: `handles` where it is given, into which they are\n"
+           "written, or a new array (n, 2). layers: uint32 (n,), a bit a layer, all unless given; values:\n"
+           "uint32 (n,), what cull(values=True) returns, the id unless given.",
+           py::arg("boxes"), py::arg("handles") = py::none(), py::arg("layers") = py::none(),
+           py::arg("values") = py::none())
+      .def("move", &move, "Gives each object a new box.", py::arg("handles"), py::arg("boxes"))
+      .def("remove", &remove, "Takes the objects out.", py::arg("handles"))
+      .def("set_layers", &set_layers, "Gives each object new layers, uint32 (n,).", py::arg("handles"),
+           py::arg("layers"))
+      .def("set_values", &set_values, "Gives each object a new value, uint32 (n,).", py::arg("handles"),
+           py::arg("values"))
+      .def("contains", &contains, "bool (n,): whether the object still stands.", py::arg("handles"))
+      .def("boxes", &boxes, "float64 (n, 2, 3): the boxes as they are kept; 0 for stale handles.",
+           py::arg("handles"))
+      .def("layers", &layers, "uint32 (n,); 0 for stale handles.", py::arg("handles"))
+      .def("values", &values, "uint32 (n,); NO_OBJECT for stale handles.", py::arg("handles"))
+      .def("handles", &handles, "uint32 (n, 2): the handles of the objects that have these ids, uint32 (n,).",
+           py::arg("ids"))
+      .def("__len__", &size_of)
+      .def_property_readonly("id_limit", &id_limit_of);
+
+  py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
+      .def(
+          py::init([](const WorldView& view, std::uint32_t layers, float min_area,
+                      std::shared_ptr<Occlusion> occlusion) {
+            return ViewOfWorld{view, layers, min_area, std::move(occlusion)};
+          }),
+          "layers: sees objects whose layers share a bit with these; min_area: drops what covers fewer px2,\n"
+          "approximately; occlusion: one that was begun with this same view, or None.",
+          py::arg("view"), py::arg("layers") = kAllLayers, py::arg("min_area") = 0.0f,
+          py::arg("occlusion") = std::shared_ptr<Occlusion>())
+      .def_readwrite("view", &ViewOfWorld::view)
+      .def_readwrite("layers", &ViewOfWorld::layers)
+      .def_readwrite("min_area", &ViewOfWorld::min_area)
+      .def_readwrite("occlusion", &ViewOfWorld::occlusion);
+
+  py::class_<LockedCuller>(m, "Culler", "Remembers from frame to frame what helps the next.")
+      .def(py::init<>())
+      .def(
+          "cull", &cull,
+          "The ids of what at least one of 1 to MAX_VIEWS views may see, uint32 (k,), in an order that\n"
+          "depends on the world's history alone; with masks=True also which views see each, uint8 (k,), bit\n"
+          "v for view v; with values=True the objects' values instead of their ids. views: a View, a\n"
+          "CullView, or a sequence of them. Refused: no or too many views, one that is no camera, an\n"
+          "occlusion that was not begun with its view.",
+          py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false);
+}
+
+}  // namespace sightline::python

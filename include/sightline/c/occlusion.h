@@ -1,0 +1,124 @@
+/** @file
+ * Occlusion on the CPU: occluders are drawn into a depth buffer, then things are tested against it. See
+ * <sightline/sightline.h> for what holds for all. */
+#ifndef SIGHTLINE_C_OCCLUSION_H
+#define SIGHTLINE_C_OCCLUSION_H
+
+#include <sightline/c/status.h>
+#include <sightline/c/view.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- occluders out of meshes --- */
+
+/** Triangles that occlude, from both sides: what can be looked through, or is not drawn from one side, must
+ * not be among them. Any number of threads may draw one mesh at once. */
+typedef struct sightline_occluder_mesh sightline_occluder_mesh;
+
+/** Three floats a position, three indices a triangle; triangles that join to fewer than three corners are
+ * left out. Errors: BAD_ARGUMENT; BAD_MESH for indices that are not a multiple of three or out of range (the
+ * index says which) and for positions that are not finite (which position); TOO_MANY. Cost: n log n, some 2
+ * us a triangle: build once. Allocates: about 300 bytes a triangle. */
+SIGHTLINE_API sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
+                                                              const uint32_t* indices, size_t index_count,
+                                                              sightline_occluder_mesh** mesh);
+SIGHTLINE_API void sightline_occluder_mesh_destroy(sightline_occluder_mesh* mesh);
+/** How many triangles are left; 0 for NULL. */
+SIGHTLINE_API size_t sightline_occluder_mesh_triangles(const sightline_occluder_mesh* mesh);
+
+/* --- triangles to ask for --- */
+
+/** The triangles of many objects, laid out to be asked for frame after frame. Objects are numbered 0 ...
+ * sightline_occludees_objects() - 1. Many threads may read while nobody changes it. */
+typedef struct sightline_occludees sightline_occludees;
+
+/** Without an object; never NULL. */
+SIGHTLINE_API sightline_occludees* sightline_occludees_create(void);
+SIGHTLINE_API void sightline_occludees_destroy(sightline_occludees* occludees);
+/** Takes all objects anew: of object o the next triangles_per_object[o] triangles of `corners`, three points
+ * of three floats each, about the origin of the views that will ask. `corner_count` is in points. Errors:
+ * BAD_ARGUMENT; BAD_MESH where it is not three times the sum; TOO_MANY. Cost: a copy. Allocates: 576 bytes
+ * for every 16 triangles begun of an object. */
+SIGHTLINE_API sightline_status sightline_occludees_assign(sightline_occludees* occludees,
+                                                          const float* corners, size_t corner_count,
+                                                          const uint32_t* triangles_per_object,
+                                                          size_t object_count);
+/** Gives one object, which has moved, new corners: three points for each of its triangles. Errors:
+ * BAD_ARGUMENT, also where there is no such object; BAD_MESH for another number of corners. Cost: a copy. */
+SIGHTLINE_API sightline_status sightline_occludees_set(sightline_occludees* occludees, uint32_t object,
+                                                       const float* corners, size_t corner_count);
+/** 0 for NULL. */
+SIGHTLINE_API uint32_t sightline_occludees_objects(const sightline_occludees* occludees);
+/** Triangles of an object; 0 for NULL and where there is no such object. */
+SIGHTLINE_API uint32_t sightline_occludees_triangles(const sightline_occludees* occludees, uint32_t object);
+
+/* --- the depth buffer: drawing is for one thread, asking for many at once while nobody draws --- */
+
+/** One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone. */
+typedef struct sightline_occlusion sightline_occlusion;
+
+/** Never NULL. Allocates: a little. */
+SIGHTLINE_API sightline_occlusion* sightline_occlusion_create(void);
+SIGHTLINE_API void sightline_occlusion_destroy(sightline_occlusion* occlusion);
+/** Empties it and takes the view, of at most 8192 pixels a side. Errors: BAD_ARGUMENT, BAD_VIEW. Cost: grows
+ * with the image's tiles of 8 x 8 pixels. Allocates: 4 bytes a pixel and 8 a tile, where the view is larger
+ * than any before. */
+SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion,
+                                                         const sightline_view* view);
+/** The view it was begun with. Errors: BAD_ARGUMENT; STALE_BUFFER before begin. */
+SIGHTLINE_API sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion,
+                                                        sightline_view* view);
+
+/** Draws solid boxes, rounded inwards; every point inside a box must be solid. Boxes that are not valid or
+ * have no inside are left out. Front to back is fastest. Errors: BAD_ARGUMENT; STALE_BUFFER before begin.
+ * Cost: linear, 20 ns a box and 1 ns a tile it covers. */
+SIGHTLINE_API sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
+                                                              const sightline_box_view* boxes);
+/** Draws solid spheres about the view's origin. Those that are not valid or reach behind the near plane are
+ * left out; leave out yourself those of things that do. Errors, Cost: the same. */
+SIGHTLINE_API sightline_status sightline_occlusion_draw_spheres(sightline_occlusion* occlusion,
+                                                                const sightline_sphere_view* spheres);
+/** Draws the mesh moved by `transform`, a column-major affine matrix, about the view's origin; NULL: where it
+ * stands. Errors: BAD_ARGUMENT, also for a transform that is not finite or whose last row is not 0, 0, 0, 1;
+ * STALE_BUFFER before begin. Cost: linear, 10 to 20 ns a triangle in view and 1 ns a tile. Allocates: until
+ * it has seen its largest mesh. */
+SIGHTLINE_API sightline_status sightline_occlusion_draw_mesh(sightline_occlusion* occlusion,
+                                                             const sightline_occluder_mesh* mesh,
+                                                             const float transform[16]);
+
+/** visible[i]: 1 where some pixel centre may see box i, 0 where surely none does; all 1 before begin.
+ * `capacity` is boxes->count or more. Errors: BAD_ARGUMENT, BUFFER_TOO_SMALL. Cost: linear, some 10 ns a box.
+ */
+SIGHTLINE_API sightline_status sightline_occlusion_may_see_boxes(const sightline_occlusion* occlusion,
+                                                                 const sightline_box_view* boxes,
+                                                                 uint8_t* visible, size_t capacity);
+/** The same for spheres about the view's origin. Of a thing whose box and sphere are both known, both must
+ * say so. Errors, Cost: the same. */
+SIGHTLINE_API sightline_status sightline_occlusion_may_see_spheres(const sightline_occlusion* occlusion,
+                                                                   const sightline_sphere_view* spheres,
+                                                                   uint8_t* visible, size_t capacity);
+/** Whether some pixel centre may see one of the triangles, three points of three floats each about the view's
+ * origin; `corner_count` is in points. Closer to the truth than a box, and dearer. Errors: BAD_ARGUMENT.
+ * Cost: linear until one is seen. */
+SIGHTLINE_API sightline_status sightline_occlusion_may_see_triangles(const sightline_occlusion* occlusion,
+                                                                     const float* corners,
+                                                                     size_t corner_count, int* visible);
+/** Keeps in front, in order, those of `objects` of which a triangle may be seen, and those that `occludees`
+ * has not; *kept says how many. What stands behind them is undefined. Errors: BAD_ARGUMENT. Cost: linear. */
+SIGHTLINE_API sightline_status sightline_occlusion_keep_seen(const sightline_occlusion* occlusion,
+                                                             const sightline_occludees* occludees,
+                                                             uint32_t* objects, size_t count, size_t* kept);
+
+/** Writes 1 / (depth along the view in metres) of the occluder at each pixel (perspective), -depth
+ * (orthographic), -infinity where there is none: row by row from the top, width x height of the view. Errors:
+ * BAD_ARGUMENT, BUFFER_TOO_SMALL; STALE_BUFFER before begin. Cost: linear. */
+SIGHTLINE_API sightline_status sightline_occlusion_read_nearness(const sightline_occlusion* occlusion,
+                                                                 float* pixels, size_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,189 @@
+/** @file
+ * A world of boxes that come, move and go, and the culling of it. See <sightline/sightline.h> for what holds
+ * for all. */
+#ifndef SIGHTLINE_C_WORLD_H
+#define SIGHTLINE_C_WORLD_H
+
+#include <sightline/c/occlusion.h>
+#include <sightline/c/status.h>
+#include <sightline/c/view.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** An id, index or value that is none. */
+#define SIGHTLINE_NO_OBJECT 0xffffffffu
+/** In all layers. */
+#define SIGHTLINE_ALL_LAYERS 0xffffffffu
+/** Views that one call culls together. */
+#define SIGHTLINE_MAX_VIEWS 8
+
+/* --- the world: read by many threads at once, each culling with a culler of its own, while none changes it;
+ * changing is for one --- */
+
+/** Boxes that each keep their place to half a millimetre anywhere within 1e11 m of 0. */
+typedef struct sightline_world sightline_world;
+
+/** What objects are given besides their boxes; each column has an element an object, or none at all. Made by
+ * sightline_object_columns_default(). */
+typedef struct sightline_object_columns {
+  uint32_t struct_size;    /**< bytes of this struct */
+  uint32_t reserved;       /**< 0 */
+  sightline_column layers; /**< a bit a layer; none: all. A view sees what shares a bit with its layers. */
+  sightline_column values; /**< numbers that sightline_cull() can write instead of ids; none: the id */
+} sightline_object_columns;
+
+/** No columns. */
+static inline sightline_object_columns sightline_object_columns_default(void) {
+  sightline_object_columns columns;
+  columns.struct_size = (uint32_t)sizeof columns, columns.reserved = 0;
+  columns.layers = columns.values = sightline_column_of(NULL, sizeof(uint32_t), 0);
+  return columns;
+}
+
+/** An empty world; never NULL. Allocates: its first tables. */
+SIGHTLINE_API sightline_world* sightline_world_create(void);
+/** Cost: linear. */
+SIGHTLINE_API void sightline_world_destroy(sightline_world* world);
+
+/** Puts boxes->count objects in and writes their handles. `columns` may be NULL; all have one length. Errors:
+ * BAD_ARGUMENT (pointers, strides, lengths), BAD_BOX (not min <= max within 1e11 m of 0), TOO_MANY (beyond
+ * 2^31 objects). Cost: linear, some 200 ns an object. Allocates: about 60 bytes an object. */
+SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box_view* boxes,
+                                                      const sightline_handles* handles,
+                                                      const sightline_object_columns* columns);
+/** Gives each object a new box; one that stands there twice keeps the last. Errors: BAD_ARGUMENT, BAD_BOX,
+ * STALE_HANDLE. Cost: linear, 50 to 200 ns an object. Allocates: where objects gather as never before. */
+SIGHTLINE_API sightline_status sightline_world_move(sightline_world* world, const sightline_handles* handles,
+                                                    const sightline_box_view* boxes);
+/** Takes the objects out. Errors: BAD_ARGUMENT; STALE_HANDLE, also for one that stands there twice. Cost:
+ * linear. Allocates: a list of free ids. */
+SIGHTLINE_API sightline_status sightline_world_remove(sightline_world* world,
+                                                      const sightline_handles* handles);
+/** Gives each object new layers. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates: 4 bytes an id,
+ * the first time. */
+SIGHTLINE_API sightline_status sightline_world_set_layers(sightline_world* world,
+                                                          const sightline_handles* handles,
+                                                          const sightline_column* layers);
+/** Gives each object a new value. Errors, Cost, Allocates: the same. */
+SIGHTLINE_API sightline_status sightline_world_set_values(sightline_world* world,
+                                                          const sightline_handles* handles,
+                                                          const sightline_column* values);
+
+/** Objects; 0 for NULL. */
+SIGHTLINE_API size_t sightline_world_size(const sightline_world* world);
+/** All ids lie below this; those of removed objects are given again. 0 for NULL. */
+SIGHTLINE_API size_t sightline_world_id_limit(const sightline_world* world);
+/** 1 or 0; 0 for NULL. */
+SIGHTLINE_API int sightline_world_contains(const sightline_world* world, sightline_handle handle);
+/** The handle of the object that has this id now; one of which no world contains where none has. */
+SIGHTLINE_API sightline_handle sightline_world_handle(const sightline_world* world, uint32_t id);
+/** The box as it is kept: it holds what was given, and is at most a millimetre larger.
+ * Errors: BAD_ARGUMENT, STALE_HANDLE. */
+SIGHTLINE_API sightline_status sightline_world_box(const sightline_world* world, sightline_handle handle,
+                                                   sightline_box* box);
+/** The object's layers. Errors: BAD_ARGUMENT, STALE_HANDLE. */
+SIGHTLINE_API sightline_status sightline_world_layers(const sightline_world* world, sightline_handle handle,
+                                                      uint32_t* layers);
+/** The object's value. Errors: BAD_ARGUMENT, STALE_HANDLE. */
+SIGHTLINE_API sightline_status sightline_world_value(const sightline_world* world, sightline_handle handle,
+                                                     uint32_t* value);
+
+/* --- culling --- */
+
+/** A camera, an eye, a shadow cascade: whatever sees the world. Made by sightline_cull_view_of(). */
+typedef struct sightline_cull_view {
+  uint32_t struct_size;                 /**< bytes of this struct */
+  uint32_t layers;                      /**< sees objects whose layers share a bit with these */
+  float min_area;                       /**< px2: drops what covers less, approximately; 0: nothing */
+  uint32_t reserved;                    /**< 0 */
+  const sightline_occlusion* occlusion; /**< begun with this same view, occluders drawn; or NULL */
+  sightline_view view;                  /**< what it sees, and the size of its image */
+} sightline_cull_view;
+
+/** A view that sees all layers, drops nothing small and has no occlusion; of zeros, which sightline_cull()
+ * refuses, for NULL. */
+static inline sightline_cull_view sightline_cull_view_of(const sightline_view* view) {
+  static const sightline_view none = {{0}, {0}, 0, 0, {0}};
+  sightline_cull_view result;
+  result.struct_size = (uint32_t)sizeof result;
+  result.layers = SIGHTLINE_ALL_LAYERS;
+  result.min_area = 0, result.reserved = 0;
+  result.occlusion = NULL;
+  result.view = view ? *view : none;
+  return result;
+}
+
+/** How a call culls; the same for all its views. Made by sightline_cull_options_default(). */
+typedef struct sightline_cull_options {
+  uint32_t struct_size;    /**< bytes of this struct */
+  uint32_t values_for_ids; /**< 1: writes the objects' values instead of their ids */
+  sightline_jobs jobs;     /**< the caller's threads */
+} sightline_cull_options;
+
+/** Ids, by the calling thread. */
+static inline sightline_cull_options sightline_cull_options_default(void) {
+  sightline_cull_options options;
+  options.struct_size = (uint32_t)sizeof options;
+  options.values_for_ids = 0;
+  options.jobs.run = NULL, options.jobs.user = NULL, options.jobs.threads = 0, options.jobs.reserved = 0;
+  return options;
+}
+
+/** Where a cull writes: arrays of `capacity` elements, sightline_cull_capacity() or more. What stands behind
+ * the count that comes back is undefined. Made by sightline_cull_output_of(). */
+typedef struct sightline_cull_output {
+  uint32_t struct_size; /**< bytes of this struct */
+  uint32_t reserved;    /**< 0 */
+  uint32_t* ids;        /**< the objects, or their values */
+  uint8_t* masks;       /**< bit v: view v may see the object; NULL: not wanted */
+  size_t capacity;      /**< elements of each */
+} sightline_cull_output;
+
+/** Arrays of `capacity` elements; `masks` may be NULL. */
+static inline sightline_cull_output sightline_cull_output_of(uint32_t* ids, uint8_t* masks, size_t capacity) {
+  sightline_cull_output output;
+  output.struct_size = (uint32_t)sizeof output, output.reserved = 0;
+  output.ids = ids, output.masks = masks, output.capacity = capacity;
+  return output;
+}
+
+/** What a cull did. */
+typedef struct sightline_cull_result {
+  size_t count;              /**< objects written */
+  uint64_t tested;           /**< objects tested one by one */
+  uint64_t nodes_visited;    /**< regions, groups and chunks looked at */
+  uint64_t culled_occlusion; /**< objects that only occlusion dropped, summed over the views */
+  uint64_t reserved[4];      /**< 0 */
+} sightline_cull_result;
+
+/** Elements that the arrays of a sightline_cull_output need: all objects, and what SIMD and jobs write
+ * beyond. `options` may be NULL. 0 for NULL and for options that sightline_cull() refuses. */
+SIGHTLINE_API size_t sightline_cull_capacity(const sightline_world* world,
+                                             const sightline_cull_options* options);
+
+/** Remembers from frame to frame what helps the next; for one thread at a time. */
+typedef struct sightline_culler sightline_culler;
+
+/** Never NULL. Allocates: its first tables. */
+SIGHTLINE_API sightline_culler* sightline_culler_create(void);
+SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
+
+/** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
+ * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
+ * is left out, but by `layers` and `min_area`. The views' struct_size is one. `options` may be NULL.
+ * Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost: grows with
+ * what is visible and with the boundary of the views, not with the world. Threads: only reads the world and
+ * the occlusions. Allocates: nothing once the culler has grown to the world's size. */
+SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
+                                              const sightline_cull_view* views, size_t view_count,
+                                              const sightline_cull_options* options,
+                                              const sightline_cull_output* output,
+                                              sightline_cull_result* result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

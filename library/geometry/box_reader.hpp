@@ -1,0 +1,85 @@
+// Boxes and spheres out of the caller's memory, in the layouts that the library works on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <sightline/box_view.hpp>
+#include <sightline/types.hpp>
+
+namespace sightline {
+
+namespace geometry {
+
+/// `count` boxes, one array a coordinate.
+struct BoxSpan {
+  const float *min_x = nullptr, *min_y = nullptr, *min_z = nullptr;
+  const float *max_x = nullptr, *max_y = nullptr, *max_z = nullptr;
+  std::size_t count = 0;
+};
+
+/// `count` spheres, one array a coordinate.
+struct SphereSpan {
+  const float *x = nullptr, *y = nullptr, *z = nullptr, *radius = nullptr;
+  std::size_t count = 0;
+};
+
+/// How many boxes or spheres are laid out at a time.
+inline constexpr std::size_t kBlock = 64;
+
+/// One array a coordinate, on the stack.
+struct BoxBlock {
+  alignas(64) std::array<std::array<float, kBlock>, 6> values;
+  [[nodiscard]] BoxSpan span(std::size_t count) const noexcept {
+    return {values[0].data(),
+            values[1].data(),
+            values[2].data(),
+            values[3].data(),
+            values[4].data(),
+            values[5].data(),
+            count};
+  }
+};
+struct SphereBlock {
+  alignas(64) std::array<std::array<float, kBlock>, 4> values;
+  [[nodiscard]] SphereSpan span(std::size_t count) const noexcept {
+    return {values[0].data(), values[1].data(), values[2].data(), values[3].data(), count};
+  }
+};
+
+/// min <= max on each axis and within ±kWorldReach; false for what is no number.
+inline bool is_valid(const WorldBox& b) noexcept {
+  const auto in_reach = [](double low, double high) {
+    return low >= -kWorldReach && high <= kWorldReach && low <= high;
+  };
+  return in_reach(b.min.x, b.max.x) && in_reach(b.min.y, b.max.y) && in_reach(b.min.z, b.max.z);
+}
+
+/// The box about an origin, rounded outwards.
+Box relative_box(const WorldBox& box, const WorldPoint& origin) noexcept;
+/// The same, rounded inwards.
+Box inner_box(const WorldBox& box, const WorldPoint& origin) noexcept;
+
+}  // namespace geometry
+
+/// All of sound views, and of indices below their sizes.
+struct BoxReader {
+  /// Boxes first … first + count - 1, rounded outwards or inwards.
+  static void read(const BoxView& view, std::size_t first, std::size_t count, WorldBox* out,
+                   bool outwards) noexcept;
+  /// Whether the boxes lie as one array a coordinate about `origin`, so that they can be read where they are.
+  static bool lies_in_arrays(const BoxView& view, const WorldPoint& origin, geometry::BoxSpan& out) noexcept;
+  static bool lies_in_arrays(const SphereView& view, geometry::SphereSpan& out) noexcept;
+  /// The same as structs, one after another.
+  static bool lies_as_structs(const BoxView& view, const WorldPoint& origin,
+                              std::span<const Box>& out) noexcept;
+  static bool lies_as_structs(const SphereView& view, std::span<const Sphere>& out) noexcept;
+  /// At most kBlock boxes about an origin, rounded outwards.
+  static geometry::BoxSpan lay_out(const BoxView& view, std::size_t first, std::size_t count,
+                                   const WorldPoint& origin, geometry::BoxBlock& out) noexcept;
+  static geometry::SphereSpan lay_out(const SphereView& view, std::size_t first, std::size_t count,
+                                      geometry::SphereBlock& out) noexcept;
+};
+
+}  // namespace sightline

@@ -1,0 +1,237 @@
+"""What is measured, topic by topic: each function gives the rows of one CSV. `quick` repeats less and leaves out what
+takes minutes."""
+import re
+import time
+
+from figures.programs import BUILD, compare, google_benchmark, number, run, sightline, tables
+from figures.results import Row, Wrong, compare_with, row_of
+
+LEVEL = "pak1-maps.pk3:maps/{}.bsp"
+
+
+def repeats(quick):
+    return {"repetitions": 3, "min_time": 0.01 if quick else 0.1}
+
+
+def world(quick):
+    """One world and its peers on the same million boxes; views at once; sectors far apart."""
+    only = r"-^(build|move_|insert_|far_sectors/move)"
+    if quick:
+        only = r"-^(build|move_|insert_|far_sectors/move|openscenegraph/d|.*/10000000)"
+    views = {name: "one_view" for name in
+             ("four_views_sharing_half", "four_views_in_two_pairs", "four_views_in_a_fan")}
+    return compare_with(google_benchmark("world", 3, 0.02 if quick else 0.1, only),
+                        lambda name: None if name in ("one_view", "far_sectors/cull") else views.get(name, "world/1000000"))
+
+
+def movers(quick):
+    """What moves: a world's boxes, the chunks of the raster methods, a scene's objects under each method."""
+    rows = google_benchmark("world", 3, 0.02, "^(build|move_|far_sectors/move)")
+    rows += google_benchmark("chunk_map", 3, 0.02)
+    anew = {"move_a_tenth": "build", "build_from_structs": "build", "move_all_from_structs": "move_all"}
+    compare_with(rows, lambda name: "rebuild" if name.startswith("move_objects") else anew.get(name))
+    scene = compare("world:irregular", "vfc-vc,grid-cell,object-frustum,masked,wide-rays", "irregular", moving=0.1,
+                    frames=2 if quick else 6)
+    return rows + [row for row in scene if row.case.endswith("/cull")]
+
+
+def frustum(quick):
+    """Flat arrays, and the paper on a grid of cells."""
+    rows = google_benchmark("frustum_cull", **repeats(quick))
+    sizes = [10**n for n in range(4, 8)]
+    compare_with(rows, {f"{mine}/{n}": f"{other}/{n}" for n in sizes
+                        for mine, other in (("FlatSimd", "BareRead"), ("ScalarLoop", "FlatSimd"))})
+    said = sightline("reproduce", "object-frustum", "--device=cpu", *(["--quick"] if quick else []))
+    runs, _, summary = tables(said)
+    paper = []
+    for line in summary:
+        low, high = re.search(r"\[([\d.]+)–([\d.]+)\]", line["cull ms [min–max]"]).groups()
+        kept = number(line["kept"])
+        judged = {"kept": kept, "lost": number(line["lost objects"]), "lost_pixels": number(line["lost pixels"]),
+                  "excess": number(line["excess"])}
+        paper.append(Row("forest", line["method"], "ms", number(line["cull ms [min–max]"]), float(low), float(high),
+                         len(runs) - 1, **judged))
+        paper.append(Row("forest-kept", line["method"], "objects", kept, repetitions=len(runs) - 1))
+    shares = [number(line["share tested"]) for line in runs if line["run"].isdigit()]
+    paper.append(row_of("forest-tested/object-frustum", "%", shares))
+    return rows + compare_with(paper, {"forest/grid-cell": "forest/object-frustum",
+                                       "forest-kept/grid-cell": "forest-kept/object-frustum"})
+
+
+def occlusion(quick):
+    """The depth buffer by itself."""
+    rows = google_benchmark("occlusion", only="^draw", rate="M triangles/s", **repeats(quick))
+    return rows + google_benchmark("occlusion", only="^query", rate="M boxes/s",
+                                   counters=(("excess_%", "%", 1),), **repeats(quick))
+
+
+def rays(quick):
+    """Rays at boxes beside Embree, the paper's five ways, and rays at triangles."""
+    rows = google_benchmark("ray_cast", **repeats(quick))
+    compare_with(rows, lambda name: name.replace(name.split("/")[0], "WideRays"))
+    if quick:
+        return rows
+    said = tables(sightline("reproduce", "ray-pvs", "--quick"))
+    times, lost, triangles = said[0], said[2], said[-1]
+    for line, loss in zip(times, lost):
+        model = f"strata-{line['model']}"
+        judged = {"kept": number(loss["in the PVS"]), "lost": number(loss["lost objects"]),
+                  "lost_pixels": number(loss["lost pixels"])}
+        five = [Row(model, method, "ms", number(line[f"{method} ms"]), repetitions=3, **judged)
+                for method in ("toca", "boca", "iwcpa", "bvha", "saa")]
+        rows += compare_with(five, lambda name: name.split("/")[0] + "/boca")
+        rows.append(Row(model, "lost-share", "%", number(loss["share"])))
+    for line in triangles:
+        scene = re.sub(r"^world:|\?model=", lambda m: "-" if m.group() == "?model=" else "", line["scene"])
+        scene = re.sub(r".*/(\w+)\.bsp$", r"\1", scene)
+        views = int(number(line["views"]))
+        rows.append(Row(scene, "guided", "ms", number(line["ms a view"]), repetitions=views,
+                        lost_pixels=number(line["guided: lost pixels"])))
+        rows.append(Row(scene, "guided-worst-share", "%", number(line["worst view"]), repetitions=views))
+        rows.append(Row(scene, "guided-rays", "rays", number(line["rays a view"]), repetitions=views))
+        rows.append(Row(scene, "triangle-pvs-lost-with-a-block", "objects",
+                        number(line["with a whole 13x7 block"]), repetitions=views))
+    return rows + [row_of("all/guided-worst-share", "%", [number(line["worst view"]) for line in triangles])]
+
+
+def verified(key, scene, views, *arguments):
+    """Rows of `sightline verify`: what was lost over so many random views."""
+    lines = tables(sightline("verify", scene, f"--views={views}", *arguments))[0]
+    return [Row(key, f"{line['method']}/verified", "views", views, repetitions=1, kept=number(line["kept"]),
+                lost=number(line["lost objects"]), lost_pixels=number(line["lost pixels"]),
+                excess=number(line["excess objs"])) for line in lines]
+
+
+# Along whole walks, where one object in fifty is visible.
+WALKS = ("czest2ctf", "czest3ctf", "ctf_inyard")
+RASTER = "vfc-vc,roc,hroc,vertex-chunk,resident-chunk,hiz,masked"
+
+
+def scenes(quick):
+    """Methods on scenes: culled on the CPU, drawn by lavapipe, judged by the oracle."""
+    rows = compare(LEVEL.format("oasago2"), "none,vfc-vc,grid-cell,object-frustum,masked,wide-rays,guided,level-pvs",
+                   "oasago2", frames=3 if quick else 12)
+    rows += compare("world:irregular", "none,vfc-vc,grid-cell,object-frustum,masked", "irregular",
+                    frames=2 if quick else 6)
+    compare_with(rows, lambda name: name.split("/")[0] + "/masked/cull" if name.endswith("/cull") else None)
+    for level in WALKS:
+        walk = compare(LEVEL.format(level), "vfc-vc,masked", level, device="any", size="320x180", limit=True,
+                       frames=6 if quick else 24)
+        rows += compare_with(walk, lambda name: level + "/masked/frame" if name.endswith("/frame") else None)
+    for name in ("regular", "irregular"):
+        view = compare(f"world:{name}?detail=2", RASTER, f"{name}-near", device="any", size="640x360", path="near",
+                       frames=1)
+        rows += compare_with(view, lambda name: re.sub("/[^/]*/", "/vertex-chunk/", name)
+                             if name.endswith(("/frame", "/cull-gpu", "/vertices")) else None)
+    views = 40 if quick else 300
+    for key, scene in (("oasago2", LEVEL.format("oasago2")), ("irregular", "world:irregular"),
+                       ("forest", "world:forest?trees=3000&size=300")):
+        rows += verified(key, scene, views)
+    return rows + verified("irregular-drawn", "world:irregular?detail=1", 5 if quick else 40, "--device=any",
+                           "--methods=roc,hroc,vertex-chunk,resident-chunk,hiz", "--moving=0.1")
+
+
+def draw_calls(quick):
+    """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, and what adaptive's
+    frames cost beside the quickest method's. Minutes long, so not in a quick run."""
+    if quick:
+        return []
+    said = sightline("reproduce", "draw-calls", "--quick")
+    rows = []
+    for level, part in re.findall(r"^\S*/(\w+)\.bsp: (.*?)(?=^\S*\.bsp: |\Z)", said, re.M | re.S):
+        calls = next(table for table in tables(part) if "drawcall-wise's" in table[0])
+        for line in calls:
+            structure, height = line["simple / drawcall-wise"].removesuffix(" (best)").split(", height ")
+            if height != "4":
+                continue
+            small = next(key for key in line if key.startswith("frame at"))
+            for what, column in (("calls", "ratio"), ("small-frame", small), ("frame", "frame"), ("record", "CPU")):
+                rows.append(Row(level, f"simple-to-wise/{structure}/{what}", "×", number(line[column])))
+            rows.append(Row(level, f"zhang-to-wise/{structure}/triangles", "×", number(line["triangles zhang / wise"])))
+        for what, pattern in (("adaptive-to-quickest/frame", r"takes ([\d.]+) × the frame time of the quickest"),
+                              ("adaptive/learning", r"in (\d+) frames; in the final"),
+                              ("cone-to-zhang-octree/triangles", r"cluster-cone submits ([\d.]+) ×")):
+            found = re.search(pattern, part)
+            if not found:
+                raise Wrong(f"reproduce draw-calls said nothing of {what} on {level}")
+            rows.append(Row(level, what, "frames" if what.endswith("learning") else "×", float(found.group(1))))
+    if not rows:
+        raise Wrong("reproduce draw-calls named no level")
+    return rows + extremes(rows)
+
+
+def extremes(rows):
+    """What holds on all levels: a row for each case, with the median, least and greatest over the levels, and one
+    over all structures."""
+    cases = {}
+    for row in rows:
+        cases.setdefault(row.case, []).append(row)
+        merged = re.sub(r"/(grid|octree|kd-tree)/", "/", row.case)
+        if merged != row.case:
+            cases.setdefault(merged, []).append(row)
+    return [row_of(f"all/{case}", some[0].unit, [row.median for row in some]) for case, some in cases.items()]
+
+
+def bake(quick):
+    """Visible sets of a level, baked and checked. Minutes long, so not in a quick run."""
+    if quick:
+        return []
+    file = BUILD / "measured.pvs"
+    file.unlink(missing_ok=True)
+    began = time.monotonic()
+    said = sightline("bake", LEVEL.format("oa_dm1"), f"--output={file}", "--check=1000")
+    seconds = time.monotonic() - began
+    size, share, raw = re.search(r"(\d+) bytes, ([\d.]+) of the open cells' raw bit matrix \((\d+) bytes\)",
+                                 said).groups()
+    views, pixels, percent = re.search(r"(\d+) random views .*: (\d+) of \d+ pixels lost \(([\d.]+) %\)",
+                                       said).groups()
+    file.unlink()
+    return [Row("oa_dm1", "bake-and-check", "s", seconds),
+            Row("oa_dm1", "raw", "bytes", float(raw)),
+            Row("oa_dm1", "file", "bytes", float(size), beside="oa_dm1/raw", ratio=float(share)),
+            Row("oa_dm1", "lost-share", "%", float(percent), repetitions=int(views), lost_pixels=float(pixels))]
+
+
+def large(quick):
+    """20 million triangles in cells: what they take to build, to hold, to cull, and to move one object of. A minute
+    long, so not in a quick run."""
+    return [] if quick else google_benchmark("draw_calls", 1, 0.5, "zhang-octree", counters=(
+        ("method_GiB", "GiB", 1), ("peak_GiB_with_scene", "GiB", 1)))
+
+
+_built = {}
+
+
+def built(quick):
+    """Structures over a million boxes, for two topics; measured once."""
+    if quick not in _built:
+        rows = google_benchmark("startup", 3, 0.02, "-^bullet" if quick else ".", counters=(("bytes_each", "bytes", 1),))
+        _built[quick] = compare_with(rows, {"bullet_dbvt": "world", "bullet_dbvt/bytes_each": "world/bytes_each",
+                                            "embree": "box_bvh"})
+    return _built[quick]
+
+
+def of_unit(rows, units):
+    return [row for row in rows if row.unit in units]
+
+
+def memory(quick):
+    """What structures over a million boxes hold."""
+    return of_unit(built(quick), ("bytes",))
+
+
+def startup(quick):
+    """Until the first frame: structures over a million boxes, the command, a level."""
+    rows = of_unit(built(quick), ("ns", "µs", "ms", "s"))
+    for name, call in (("command/version", ["--version"]), ("command/info-oasago2", ["info", LEVEL.format("oasago2")])):
+        seconds = []
+        for _ in range(5 if quick else 11):
+            began = time.perf_counter()
+            run(BUILD / "sightline", *call)
+            seconds.append(1000 * (time.perf_counter() - began))
+        rows.append(row_of(name, "ms", seconds))
+    return rows
+
+
+TOPICS = {"world": world, "movers": movers, "frustum": frustum, "occlusion": occlusion, "rays": rays,
+          "scenes": scenes, "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls}

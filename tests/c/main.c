@@ -1,0 +1,42 @@
+/* The C API in C: what it does, and every kind of refusal. */
+#include "expect.h"
+
+void expect_failure(sightline_status code, size_t index, int line) {
+  sightline_error failure;
+  sightline_last_failure(&failure);
+  if (failure.status == code && failure.index == index && failure.message == sightline_last_error() &&
+      failure.index == sightline_last_error_index() && strlen(failure.message) > 10)
+    return;
+  fprintf(stderr, "line %d: refused with status %d, index %zu, \"%s\"; expected status %d, index %zu\n", line,
+          (int)failure.status, failure.index, failure.message, (int)code, index);
+  exit(1);
+}
+
+sightline_view view_ahead(void) {
+  sightline_camera camera = sightline_camera_default();
+  sightline_view view;
+  camera.vertical_fov = 1;
+  EXPECT(sightline_camera_view(&camera, 64, 48, &view) == SIGHTLINE_OK);
+  return view;
+}
+
+void row_of_boxes(sightline_box* boxes, int count) {
+  for (int i = 0; i < count; ++i) {
+    const double z = -5.0 - 2.0 * i;
+    const sightline_box box = {{-0.5, -0.5, z - 0.5}, {0.5, 0.5, z + 0.5}};
+    boxes[i] = box;
+  }
+}
+
+int main(void) {
+  test_status();
+  test_views();
+  test_world();
+  test_cull();
+  test_occlusion();
+  test_frustum();
+  test_rays();
+  test_pvs();
+  puts("the C API holds");
+  return 0;
+}

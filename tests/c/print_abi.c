@@ -1,0 +1,55 @@
+/* Prints what programs and other languages rely on: sizes and the places of last members, and all numbers
+ * with a name. scripts/check-abi.sh holds it against tests/c/abi.txt. */
+#include <sightline/sightline.h>
+
+#include <stdio.h>
+
+#define STRUCT(type, last) \
+  printf("struct %s: %zu bytes, %s at %zu\n", #type, sizeof(type), #last, offsetof(type, last))
+#define VALUE(name) printf("value %s: %lld\n", #name, (long long)(name))
+
+int main(void) {
+  STRUCT(sightline_box, max);
+  STRUCT(sightline_box_view, origin);
+  STRUCT(sightline_camera, shift);
+  STRUCT(sightline_column, count);
+  STRUCT(sightline_cull_options, jobs);
+  STRUCT(sightline_cull_output, capacity);
+  STRUCT(sightline_cull_result, reserved);
+  STRUCT(sightline_cull_view, view);
+  STRUCT(sightline_error, message);
+  STRUCT(sightline_frustum, origin);
+  STRUCT(sightline_handle, generation);
+  STRUCT(sightline_handles, count);
+  STRUCT(sightline_jobs, reserved);
+  STRUCT(sightline_object_columns, values);
+  STRUCT(sightline_pvs_cells, visible_count);
+  STRUCT(sightline_ray, max_distance);
+  STRUCT(sightline_sphere_view, count);
+  STRUCT(sightline_view, origin);
+  VALUE(SIGHTLINE_OK);
+  VALUE(SIGHTLINE_BAD_ARGUMENT);
+  VALUE(SIGHTLINE_BAD_BOX);
+  VALUE(SIGHTLINE_STALE_HANDLE);
+  VALUE(SIGHTLINE_BAD_VIEW);
+  VALUE(SIGHTLINE_BUFFER_TOO_SMALL);
+  VALUE(SIGHTLINE_STALE_BUFFER);
+  VALUE(SIGHTLINE_BAD_MESH);
+  VALUE(SIGHTLINE_TOO_MANY);
+  VALUE(SIGHTLINE_BAD_FILE);
+  VALUE(SIGHTLINE_MIN_MAX_FLOAT);
+  VALUE(SIGHTLINE_MIN_MAX_DOUBLE);
+  VALUE(SIGHTLINE_CENTRE_HALF_FLOAT);
+  VALUE(SIGHTLINE_CENTRE_HALF_DOUBLE);
+  VALUE(SIGHTLINE_ARRAYS_FLOAT);
+  VALUE(SIGHTLINE_OUTSIDE);
+  VALUE(SIGHTLINE_CROSSING);
+  VALUE(SIGHTLINE_INSIDE);
+  VALUE(SIGHTLINE_NO_INDEX);
+  VALUE(SIGHTLINE_NO_OBJECT);
+  VALUE(SIGHTLINE_NO_CELL);
+  VALUE(SIGHTLINE_ALL_LAYERS);
+  VALUE(SIGHTLINE_MAX_VIEWS);
+  VALUE(SIGHTLINE_CULL_PADDING);
+  return 0;
+}

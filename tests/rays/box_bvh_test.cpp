@@ -1,0 +1,111 @@
+#include <sightline/rays.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "support/random_views.hpp"
+#include "support/run_threads.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+std::vector<Box> random_boxes(Random& random, std::size_t count) {
+  std::vector<Box> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(test::random_box(random, test::kAround));
+  return out;
+}
+
+// What testing every box says: the nearest, of equally near ones the lowest.
+std::pair<ObjectId, float> nearest(const std::vector<Box>& boxes, const Ray& ray) {
+  std::pair<ObjectId, float> out{kNoObject, -1};
+  for (ObjectId i = 0; i < boxes.size(); ++i) {
+    const float at = intersect(ray, boxes[i]);
+    if (at >= 0 && (out.first == kNoObject || at < out.second)) out = {i, at};
+  }
+  return out;
+}
+
+TEST(BoxBvh, MeetsWhatTestingEveryBoxMeets) {
+  Random random(1);
+  std::vector<Box> boxes = random_boxes(random, 400);
+  BoxBvh bvh;
+  ASSERT_TRUE(bvh.build(boxes));
+  for (int round = 0; round < 2; ++round) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < 3000; ++i) rays.push_back({random.inside(test::kAround), random.direction()});
+    rays[7].direction = {0, 0, 0}, rays[8].origin.x = std::nanf(""), rays[9].max_distance = -1;
+    std::vector<ObjectId> objects(rays.size()), again(rays.size());
+    std::vector<float> distances(rays.size());
+    ASSERT_TRUE(bvh.cast(rays, objects, distances));
+    ASSERT_TRUE(bvh.cast(rays, again, {}, {test::run_threads, nullptr, 4}));
+    EXPECT_EQ(objects, again);
+    int hits = 0;
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+      const bool sound = r < 7 || r > 9;
+      const auto expected = sound ? nearest(boxes, rays[r]) : std::pair<ObjectId, float>{kNoObject, -1};
+      ASSERT_EQ(objects[r], expected.first) << r;
+      ASSERT_EQ(distances[r], expected.second) << r;
+      hits += expected.first != kNoObject;
+    }
+    EXPECT_GT(hits, 1000);
+    boxes = random_boxes(random, 400);
+    ASSERT_TRUE(bvh.refit(boxes));
+  }
+}
+
+TEST(BoxBvh, FindsASetThatAViewSees) {
+  Random random(2);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 at = random.inside({{-100, -60, -300}, {100, 60, 200}});
+    boxes.push_back({{at.x - 3, at.y - 3, at.z - 3}, {at.x + 3, at.y + 3, at.z + 3}});
+  }
+  BoxBvh bvh;
+  ASSERT_TRUE(bvh.build(boxes));
+  const WorldView view{*make_view(Camera{.eye = {0, 0, 290}}, 320, 200), {}};
+  std::vector<ObjectId> visible(300), few(300);
+  const auto seen = bvh.visible_set(view, 160, 100, visible), less = bvh.visible_set(view, 8, 5, few);
+  ASSERT_TRUE(seen && less);
+  EXPECT_TRUE(std::is_sorted(visible.begin(), visible.begin() + static_cast<std::ptrdiff_t>(*seen)));
+  EXPECT_GT(*seen, *less);
+  EXPECT_LT(*seen, 300u);
+  EXPECT_GT(*less, 3u);
+}
+
+TEST(BoxBvh, RefusesWhatIsWrongAndStaysAsItWas) {
+  Random random(3);
+  std::vector<Box> boxes = random_boxes(random, 20);
+  BoxBvh bvh;
+  ASSERT_TRUE(bvh.build(boxes));
+  const Ray ray{{0, 0, 400}, {0, 0, -1}};
+  const std::array rays{ray, ray};
+  std::array<ObjectId, 2> before{}, after{};
+  ASSERT_TRUE(bvh.cast(rays, before));
+  EXPECT_EQ(bvh.refit(std::span(boxes).first(19)).code(), StatusCode::bad_argument);
+  boxes[11].min.y = std::nanf("");
+  EXPECT_EQ(bvh.refit(boxes).index(), 11u);
+  EXPECT_EQ(bvh.build(boxes).code(), StatusCode::bad_box);
+  const float* none = nullptr;
+  EXPECT_EQ(bvh.build(BoxView::min_max(none, 24, 5)).code(), StatusCode::bad_argument);
+  EXPECT_EQ(bvh.size(), 20u);
+  EXPECT_EQ(bvh.cast(rays, std::span(after).first(1)).code(), StatusCode::buffer_too_small);
+  std::array<float, 1> distance;
+  EXPECT_EQ(bvh.cast(rays, after, distance).code(), StatusCode::buffer_too_small);
+  EXPECT_EQ(bvh.cast(rays, after, {}, {test::run_threads, nullptr, 100}).code(), StatusCode::bad_argument);
+  ASSERT_TRUE(bvh.cast(rays, after));
+  EXPECT_EQ(before, after);
+  const WorldView view{*make_view(Camera{}, 64, 64), {}}, elsewhere{view.view, {1, 0, 0}};
+  std::vector<ObjectId> visible(20);
+  EXPECT_EQ(bvh.visible_set(view, 0, 5, visible).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(bvh.visible_set(view, 100000, 100000, visible).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(bvh.visible_set(elsewhere, 5, 5, visible).error().code(), StatusCode::bad_view);
+  EXPECT_EQ(bvh.visible_set(view, 5, 5, std::span(visible).first(9)).error().code(),
+            StatusCode::buffer_too_small);
+}
+
+}  // namespace
+}  // namespace sightline

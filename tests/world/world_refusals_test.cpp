@@ -1,0 +1,121 @@
+// What worlds and cullers refuse, changing nothing.
+#include <sightline/occlusion.hpp>
+#include <sightline/world.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "support/random_views.hpp"
+#include "support/run_threads.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+TEST(WorldRefusals, FindsStaleHandlesOut) {
+  World world;
+  std::array<Handle, 2> first, second;
+  const std::array<WorldBox, 2> boxes{WorldBox{{0, 0, 0}, {1, 1, 1}}, WorldBox{{2, 0, 0}, {3, 1, 1}}};
+  ASSERT_TRUE(world.insert(boxes, first));
+  ASSERT_TRUE(world.remove(first));
+  ASSERT_TRUE(world.insert(boxes, second));
+  EXPECT_TRUE(world.contains(second[0]));
+  EXPECT_FALSE(world.contains(first[0]));
+  const Status moved = world.move(first, boxes);
+  EXPECT_EQ(moved.code(), StatusCode::stale_handle);
+  EXPECT_EQ(moved.index(), 0u);
+  EXPECT_FALSE(world.remove(first));
+  EXPECT_FALSE(world.remove(std::array{second[0], second[0]}));
+  EXPECT_TRUE(world.contains(second[0]));  // nothing changed
+  EXPECT_EQ(world.size(), 2u);
+  EXPECT_TRUE(world.remove(second));
+}
+
+TEST(WorldRefusals, RefusesBadBoxesAndChangesNothing) {
+  World world;
+  std::array<Handle, 2> handles;
+  const double nan = std::nan("");
+  for (const WorldBox& bad : {WorldBox{{0, 0, 0}, {1, nan, 1}}, WorldBox{{2, 0, 0}, {1, 1, 1}},
+                              WorldBox{{-2e11, 0, 0}, {1, 1, 1}}, WorldBox{{0, 0, 0}, {INFINITY, 1, 1}}}) {
+    const std::array boxes{WorldBox{{0, 0, 0}, {1, 1, 1}}, bad};
+    const Status refused = world.insert(boxes, handles);
+    EXPECT_EQ(refused.code(), StatusCode::bad_box);
+    EXPECT_EQ(refused.index(), 1u);
+    EXPECT_EQ(world.size(), 0u);
+  }
+}
+
+TEST(WorldRefusals, RefusesBadCalls) {
+  World world;
+  Culler culler;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  std::vector<std::uint8_t> masks(visible.size());
+  Random random(1);
+  CullView view{.view = {test::random_view(random, {{-1, -1, -1}, {1, 1, 1}}), {}}};
+  const auto refusal = [&](std::span<const CullView> views, CullOutput output,
+                           const CullOptions& options = {}) {
+    return culler.cull(world, views, options, output).error().code();
+  };
+  const std::span one(&view, 1);
+  EXPECT_EQ(refusal({}, {visible}), StatusCode::bad_argument);
+  EXPECT_EQ(refusal(std::vector(kMaxViews + 1, view), {visible}), StatusCode::bad_argument);
+  EXPECT_EQ(refusal(one, {std::span(visible).first(1)}), StatusCode::buffer_too_small);
+  EXPECT_EQ(refusal(one, {visible, std::span(masks).first(1)}), StatusCode::buffer_too_small);
+  EXPECT_EQ(refusal(one, {visible}, {.jobs = {test::run_threads, nullptr, 65}}), StatusCode::bad_argument);
+  EXPECT_EQ(refusal(one, {visible}, {.jobs = {test::run_threads, nullptr, 0}}), StatusCode::bad_argument);
+  EXPECT_EQ(refusal(one, {visible, masks}), StatusCode::ok);
+  view.min_area = NAN;
+  EXPECT_EQ(refusal(one, {visible}), StatusCode::bad_argument);
+  view.min_area = 0;
+  view.view.origin.x = NAN;
+  EXPECT_EQ(refusal(one, {visible}), StatusCode::bad_view);
+  view.view = {};
+  view.view.view.eye_to_clip.m[5] = 0;
+  const std::array two{CullView{}, view};
+  EXPECT_EQ(refusal(two, {visible}), StatusCode::bad_view);
+  EXPECT_EQ(culler.cull(world, two, {}, {visible}).error().index(), 1u);
+}
+
+// A wall, and boxes of which it hides the half: with another view's buffer, or last frame's, it would hide
+// more.
+TEST(WorldRefusals, RefusesABufferOfAnotherView) {
+  World world;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 40; ++i) {
+    const auto x = static_cast<float>(i - 20);
+    boxes.push_back({{x, -1, -31}, {x + 0.5f, 1, -30}});
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(boxes, handles));
+  Camera camera;
+  const WorldView then{*make_view(camera, 320, 180), {}};
+  camera.eye.x = 25;
+  const WorldView now{*make_view(camera, 320, 180), {}};
+  OcclusionBuffer buffer;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  Culler culler;
+  const auto culled = [&](const WorldView& view) {
+    const CullView with{.view = view, .occlusion = &buffer};
+    return culler.cull(world, with, visible);
+  };
+  EXPECT_EQ(culled(then).error().code(), StatusCode::stale_buffer) << "never begun";
+  ASSERT_TRUE(buffer.begin(then));
+  ASSERT_TRUE(buffer.draw_boxes(std::array{Box{{-20, -5, -11}, {0, 5, -10}}}));
+  const auto mine = culled(then);
+  ASSERT_TRUE(mine);
+  EXPECT_LT(mine->count, 25u);
+  EXPECT_GT(mine->count, 10u);
+  EXPECT_EQ(culled(now).error().code(), StatusCode::stale_buffer);
+  WorldView elsewhere = then;
+  elsewhere.origin.z = 1;
+  EXPECT_EQ(culled(elsewhere).error().code(), StatusCode::stale_buffer);
+  EXPECT_FALSE(buffer.begin({.view = {}, .origin = {NAN, 0, 0}}));
+  EXPECT_TRUE(culled(then)) << "a refused begin() leaves the buffer as it was";
+}
+
+}  // namespace
+}  // namespace sightline
