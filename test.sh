@@ -9,6 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
 start=$(date +%s)
+stage() { echo "== $1 (after $(elapsed "$start"))"; }
 
 full=${1:-}
 case $full in
@@ -21,7 +22,7 @@ ensure_packages $test_packages
 command -v npm >/dev/null || ensure_packages npm
 [ -z "$full" ] || ensure_packages $full_packages
 
-echo "== structure, layout and clones (jscpd)"
+stage "structure, layout and clones (jscpd)"
 scripts/check-structure.sh
 tests/structure/planted_includes.sh
 scripts/check-face.py
@@ -30,38 +31,38 @@ scripts/check-format.sh
 scripts/check-clones.sh
 tests/structure/planted_clones.sh
 
-echo "== release build and tests"
+stage "release build and tests"
 cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null
 cmake --build --preset release
 ctest --preset release -j"$(nproc)"
 
-echo "== clang-tidy"
+stage "clang-tidy"
 scripts/check-tidy.sh build/release
 
-echo "== command line"
+stage "command line"
 scripts/check-command-line.sh build/release/sightline
 build/release/sightline methods --json build/methods.json >/dev/null
 scripts/check-method-pages.py build/methods.json
 tests/structure/add_a_method.sh build/release
 
-echo "== installed packages"
+stage "installed packages"
 scripts/check-package.sh build/release
 
-echo "== sanitizers"
+stage "sanitizers"
 cmake --preset asan >/dev/null
 cmake --build --preset asan
 # These are large rather than tricky: minutes under the sanitizers, and their small siblings run the same code.
 ctest --preset asan -j"$(nproc)" -E 'AMillionObjects|(VerifyWorld|Conformance).*forest'
 
-echo "== threads"
+stage "threads"
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target world_tests
 build/tsan/tests/world_tests --gtest_brief=1
 
-echo "== fuzzers"
+stage "fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan
 
-echo "== ports"
+stage "ports"
 if [ -z "$full" ]; then
   scripts/check-ports.sh build/release
 else
