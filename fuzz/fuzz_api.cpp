@@ -177,13 +177,19 @@ Status draw(Numbers& in, OcclusionBuffer& buffer) {
   return buffer.draw_mesh(*mesh, transform);
 }
 
+// The boxes as they stand about an origin: a single box is asked for about the view's.
+BoxView about(const Boxes& b, const WorldPoint& origin) {
+  return BoxView::arrays(b.min_x.data(), b.min_y.data(), b.min_z.data(), b.max_x.data(), b.max_y.data(),
+                         b.max_z.data(), b.size(), origin);
+}
+
 void ask(Numbers& in, const OcclusionBuffer& buffer, Scenery& from) {
   bool right = false;
   const BoxView boxes = view_of_boxes(in, from, right);
   const bool room = !in.rarely() || from.size() == 0;
   std::vector<std::uint8_t> seen(from.size() - (room ? 0 : 1), 9);
   if (done(buffer.may_see(boxes, seen))) require(std::ranges::all_of(seen, [](auto s) { return s <= 1; }));
-  const bool answered = done(buffer.may_see(from.boxes.view(), seen));
+  const bool answered = done(buffer.may_see(about(from.boxes, buffer.view().origin), seen));
   require(answered == room);
   for (std::size_t i = 0; answered && i < from.size(); ++i)
     require(buffer.may_see(from.boxes[i]) == (seen[i] == 1));
