@@ -51,8 +51,11 @@ scripts/check-package.sh build/release
 stage "sanitizers"
 cmake --preset asan >/dev/null
 cmake --build --preset asan
-# These are large rather than tricky: minutes under the sanitizers, and their small siblings run the same code.
-ctest --preset asan -j"$(nproc)" -E 'AMillionObjects|(VerifyWorld|Conformance).*forest'
+# The rest are large rather than tricky: minutes under the sanitizers, where smaller ones run the same code; --full runs
+# them there, too.
+large='AMillionObjects|(VerifyWorld|Conformance|Exactness).*(forest|irregular)|Conformance.*regular|RayScenes.LoseNo|'
+large+='FiveModels|DispatchesWider|OfOtherOptions|moving_on_the_cpu'
+ctest --preset asan -j"$(nproc)" -E "$large"
 
 stage "threads"
 cmake --preset tsan >/dev/null
@@ -66,7 +69,7 @@ stage "ports"
 if [ -z "$full" ]; then
   scripts/check-ports.sh build/release
 else
-  scripts/run-full.sh "$start"
+  scripts/run-full.sh "$start" "$large"
 fi
 
 echo "All tests passed in $(elapsed "$start")."

@@ -8,23 +8,23 @@ cd "$(dirname "$0")/.."
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
-# tidy FILE [-- FLAGS…]
+# A folder's sources as one, and all public headers as another: most of the time goes into what they include.
+grep -oE '"file": "[^"]*"' "$build/compile_commands.json" | cut -d'"' -f4 | grep -F "$PWD/library/" | sort -u |
+  while read -r source; do
+    folder=${source#"$PWD/library/"}
+    printf '#include "%s"\n' "$source" >>"$out/library_${folder%%/*}.cpp"
+  done
+(cd include && printf '#include <%s>\n' sightline/*.hpp sightline/workbench/*.hpp) >"$out/public_headers.cpp"
+
 tidy() {
-  clang-tidy-19 --quiet --config-file=.clang-tidy -p "$BUILD" --extra-arg=-Wno-unknown-warning-option --extra-arg=-DHWY_COMPILE_ONLY_STATIC \
-    "$@" >"$OUT/$(tr / _ <<<"$1").txt" 2>/dev/null
+  clang-tidy-19 --quiet --config-file=.clang-tidy --checks=-bugprone-suspicious-include \
+    --extra-arg=-Wno-unknown-warning-option "$1" \
+    -- -std=c++20 -Iinclude -I. -DHWY_SHARED_DEFINE -DHWY_COMPILE_ONLY_STATIC >"$1.txt" 2>/dev/null
 }
 export -f tidy
-export BUILD=$build OUT=$out
+ls -S "$out"/*.cpp | xargs -P "$(nproc)" -n 1 bash -c 'tidy "$1"' tidy && verdict=0 || verdict=1
 
-# All public headers as one source; the largest sources first, so that none is left for the end.
-(cd include && printf '#include <%s>\n' sightline/*.hpp sightline/workbench/*.hpp) >"$out/public_headers.cpp"
-{
-  echo "$out/public_headers.cpp -- -std=c++20 -Iinclude"
-  grep -oE '"file": "[^"]*"' "$build/compile_commands.json" | cut -d'"' -f4 | grep -F "$PWD/library/" | sort -u |
-    xargs ls -S
-} | xargs -P "$(nproc)" -L 1 bash -c 'tidy "$@"' tidy && verdict=0 || verdict=1
-
-# A finding in a header is told once, by whoever includes it.
+# A finding in a header is told once, by whichever folder includes it.
 cat "$out"/*.txt | grep -E ' (warning|error): ' | sed "s,^$PWD/,," | sort -u || [ $verdict = 0 ] ||
   echo "clang-tidy-19 itself failed"
 [ $verdict = 0 ] && echo "clang-tidy finds nothing"

@@ -94,13 +94,13 @@ HWY_INLINE void draw_discs(DepthTiles& tiles, const Discs& discs, float aspect, 
   }
 }
 
-// A vector of spheres about the eye.
-struct WideSpheres {
+// A vector of spheres about the eye, as they are drawn.
+struct DrawnSpheres {
   VPoints centre;
   VF radius;
 };
 
-HWY_INLINE WideSpheres spheres_of(const EyeProjection& e, std::span<const Sphere> spheres) {
+HWY_INLINE DrawnSpheres spheres_of(const EyeProjection& e, std::span<const Sphere> spheres) {
   const F f;
   alignas(64) std::array<std::array<float, 16>, 4> in;
   for (std::size_t i = 0; i < hn::Lanes(f); ++i) {
@@ -111,7 +111,7 @@ HWY_INLINE WideSpheres spheres_of(const EyeProjection& e, std::span<const Sphere
           hn::Load(f, in[3].data())};
 }
 
-HWY_INLINE void find_discs(const DepthTiles& tiles, const WideSpheres& s, const Scales& scales,
+HWY_INLINE void find_discs(const DepthTiles& tiles, const DrawnSpheres& s, const Scales& scales,
                            const Layer& layer, Discs& out) {
   const F f;
   const EyeProjection& e = tiles.projection;
@@ -147,7 +147,7 @@ void draw_all_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) {
   Discs discs;
   for (std::size_t first = 0; first < spheres.size(); first += lanes) {
     const std::size_t count = std::min(lanes, spheres.size() - first);
-    const WideSpheres some = spheres_of(tiles.projection, spheres.subspan(first, count));
+    const DrawnSpheres some = spheres_of(tiles.projection, spheres.subspan(first, count));
     for (const Layer& layer : kLayers) {
       find_discs(tiles, some, scales, layer, discs);
       draw_discs(tiles, discs, scales.aspect(), count, layer.offset > 0 ? kLeastLayered : kLeastDisc);
