@@ -24,7 +24,12 @@ void check_images(const Scene& s) {
 }
 
 void check_coordinates(const Scene& s) {
-  if (s.texture_coordinates.empty()) return;
+  if (s.texture_coordinates.empty()) {
+    const auto none = [](std::uint32_t image) { return image == kNoAlphaImage; };
+    if (std::ranges::all_of(s.alpha_image, none)) return;
+    throw Error("scene '" + s.name +
+                "': an object shows an alpha image, but there are no texture coordinates");
+  }
   if (s.texture_coordinates.size() != s.positions.size()) {
     throw Error("scene '" + s.name + "': expected one texture coordinate a position, or none at all");
   }

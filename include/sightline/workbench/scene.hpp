@@ -108,6 +108,8 @@ struct Scene {
   /// 0 where the scene's file lies so far out that floats could not tell its points apart.
   WorldPoint origin;
 
+  std::vector<std::string> ignored;  ///< what its file says that no part of this does, and what that means
+
   std::vector<Viewpoint> viewpoints;
   std::vector<Vec3> waypoints;           ///< places known to be free, that a walk may lead through
   std::optional<LevelPvs> level;         ///< the visibility another program computed, where the file has one
@@ -153,8 +155,8 @@ void set_raster_state(Scene& scene, RasterState state);
 std::uint64_t fingerprint(const Scene& scene) noexcept;
 
 /// Throws Error unless the scene can be worked with: arrays of matching length, indices in range, bounds
-/// finite and min <= max, radii and texture coordinates finite, alpha images of the size they say. An empty
-/// scene is refused: there is nothing to decide.
+/// finite and min <= max, radii and texture coordinates finite, alpha images of the size they say, texture
+/// coordinates wherever an object shows an image. An empty scene is refused: there is nothing to decide.
 void check(const Scene& scene);
 
 }  // namespace sightline
