@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 #include <zip.h>
 
 #include <sightline/workbench/io.hpp>
+
+#include "workbench/io/files.hpp"
 
 namespace sightline {
 
@@ -109,18 +112,20 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
 
 }  // namespace
 
-std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std::string& entry) {
+namespace {
+
+Archive open_archive(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw Error(path.string() + ": no such file");
   if (!std::filesystem::is_regular_file(path, ignored))
     throw Error(path.string() + ": not a regular file, expected a zip archive");
   int code = 0;
-  const Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
+  Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (!archive) throw Error(path.string() + ": not a readable zip archive: " + zip_reason(code));
-  return unpack(archive.get(), path.string(), entry);
+  return archive;
 }
 
-std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name, const std::string& entry) {
+Archive open_archive(Bytes bytes, const std::string& archive_name) {
   // libzip takes no bytes at all for an archive without entries.
   if (bytes.empty()) throw Error(archive_name + ": not a readable zip archive: it is empty");
   zip_error_t error;
@@ -133,7 +138,94 @@ std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name
     zip_error_fini(&error);
     throw Error(archive_name + ": not a readable zip archive: " + text);
   }
-  return unpack(archive.get(), archive_name, entry);
+  return archive;
+}
+
+std::string lowered(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// "scripts/NAME.shader", in lower case; not in a folder below.
+bool is_script(std::string_view name) noexcept {
+  constexpr std::string_view kFolder = "scripts/";
+  return name.starts_with(kFolder) && name.ends_with(".shader") &&
+         name.find('/', kFolder.size()) == std::string_view::npos;
+}
+
+std::vector<NamedText> scripts_of(zip_t* archive, const std::string& archive_name) {
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  constexpr zip_int64_t kMostEntries = zip_int64_t{1} << 20;
+  std::vector<NamedText> out;
+  std::size_t sum = 0;
+  for (zip_int64_t i = 0; i < std::min(zip_get_num_entries(archive, 0), kMostEntries); ++i) {
+    const char* name = zip_get_name(archive, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
+    if (name == nullptr || !is_script(lowered(name))) continue;
+    const std::vector<std::byte> bytes = unpack(archive, archive_name, name);
+    sum += bytes.size();
+    if (sum > kMostBytes) throw Error(archive_name + ": holds more than 64 MiB of shader scripts");
+    out.push_back({lowered(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
+  }
+  return out;
+}
+
+/// Files of the folder that end so, the first by name first; none where there is no such folder.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder, std::string_view ending) {
+  std::vector<std::filesystem::path> out;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (lowered(at->path().extension().string()) == ending) out.push_back(at->path());
+  }
+  std::ranges::sort(out, {},
+                    [](const std::filesystem::path& path) { return lowered(path.filename().string()); });
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std::string& entry) {
+  return unpack(open_archive(path).get(), path.string(), entry);
+}
+
+std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name, const std::string& entry) {
+  return unpack(open_archive(bytes, archive_name).get(), archive_name, entry);
+}
+
+std::vector<NamedText> unpack_scripts(const std::filesystem::path& path) {
+  return scripts_of(open_archive(path).get(), path.string());
+}
+
+std::vector<NamedText> unpack_scripts(Bytes bytes, const std::string& archive_name) {
+  return scripts_of(open_archive(bytes, archive_name).get(), archive_name);
+}
+
+std::vector<std::string> gather_scripts(const std::filesystem::path& folder,
+                                        std::vector<std::string>& unread) {
+  std::vector<std::string> texts;
+  std::set<std::string> known;
+  const auto take = [&](std::vector<NamedText> found) {
+    for (NamedText& script : found) {
+      if (known.insert(script.name).second) texts.push_back(std::move(script.text));
+    }
+  };
+  const std::vector<std::filesystem::path> archives = files_in(folder, ".pk3");
+  for (auto archive = archives.rbegin(); archive != archives.rend(); ++archive) {
+    try {
+      take(unpack_scripts(*archive));
+    } catch (const Error& error) {
+      unread.push_back(std::string(error.what()) + "; its shader scripts are left out");
+    }
+  }
+  for (const std::filesystem::path& path : files_in(folder / "scripts", ".shader")) {
+    try {
+      const std::vector<std::byte> bytes = read_file(path);
+      take({{"scripts/" + lowered(path.filename().string()),
+             {reinterpret_cast<const char*>(bytes.data()), bytes.size()}}});
+    } catch (const Error& error) {
+      unread.push_back(std::string(error.what()) + "; it is left out");
+    }
+  }
+  return texts;
 }
 
 }  // namespace io
@@ -141,7 +233,10 @@ std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name
 Scene read_pk3(std::span<const std::byte> archive, std::string_view entry, std::string name,
                const LoadOptions& options) {
   const std::string path(entry);
-  return read_bsp(io::unpack_entry(archive, name, path), name + ":" + path, options);
+  LoadOptions with_scripts = options;
+  for (io::NamedText& script : io::unpack_scripts(archive, name))
+    with_scripts.shader_scripts.push_back(std::move(script.text));
+  return read_bsp(io::unpack_entry(archive, name, path), name + ":" + path, with_scripts);
 }
 
 }  // namespace sightline

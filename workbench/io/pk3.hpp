@@ -17,4 +17,22 @@ namespace sightline::io {
 std::vector<std::byte> unpack_entry(const std::filesystem::path& archive, const std::string& entry);
 std::vector<std::byte> unpack_entry(Bytes archive, const std::string& archive_name, const std::string& entry);
 
+/// A file out of an archive.
+struct NamedText {
+  std::string name;  ///< in lower case
+  std::string text;
+};
+
+/// The shader scripts ("scripts/NAME.shader") of an archive, in its order; at most 64 MiB of them. Throws
+/// Error as unpack_entry does.
+std::vector<NamedText> unpack_scripts(const std::filesystem::path& archive);
+std::vector<NamedText> unpack_scripts(Bytes archive, const std::string& archive_name);
+
+/// The texts of all shader scripts that a game with this folder has, what counts first at the front: of the
+/// archives
+/// (.pk3) the last by name, then loose files in "scripts". Of scripts of one name only the first is there.
+/// Archives that cannot be read are left out and named in `unread`.
+std::vector<std::string> gather_scripts(const std::filesystem::path& folder,
+                                        std::vector<std::string>& unread);
+
 }  // namespace sightline::io
