@@ -9,6 +9,7 @@
 #include "sample_files.hpp"
 #include "workbench/io/pk3.hpp"
 #include "workbench/io/quake3_faces.hpp"
+#include "workbench/io/quake3_tga.hpp"
 
 namespace sightline {
 namespace {
@@ -152,6 +153,70 @@ TEST(Quake3Shaders, ScriptsBesideALevelAreFound) {
   std::filesystem::create_directory(folder / "maps");
   write(folder / "maps/sample.bsp", to_bsp(two_rooms()));
   EXPECT_EQ(load_scene((folder / "maps/sample.bsp").string()).surface[0], Surface::transparent);
+}
+
+/// A Targa of 2 x 2 texels, plain or of one run and one plain packet; alphas from the bottom row: 10, 10,
+/// 200, 255.
+Blob targa(bool packed) {
+  std::vector<int> bytes{0, 0, packed ? 10 : 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 32, 0x28};
+  if (packed) bytes.push_back(0x81);
+  for (const int alpha : {10, 10, 200, 255}) {
+    if (packed && alpha == 200) bytes.push_back(0x01);
+    if (packed && alpha == 10 && bytes.back() == 10) continue;
+    bytes.insert(bytes.end(), {1, 2, 3, alpha});
+  }
+  Blob out;
+  for (const int byte : bytes) out.push_back(std::byte(byte));
+  return out;
+}
+
+TEST(Quake3Shaders, CutOutsHaveTheAlphaOfTheFirstStagesImage) {
+  const AlphaImage as_stored{2, 2, {200, 255, 10, 10}};
+  EXPECT_EQ(read_tga_alpha(targa(false)), as_stored);
+  EXPECT_EQ(read_tga_alpha(targa(true)), as_stored);
+  LoadOptions options;
+  const auto image_of = [&](const std::string& stage, const Blob& tga) {
+    options.shader_scripts = {"textures/wall\n{\n{\n" + stage + "\n}\n}\n"};
+    options.game_file = [&](const std::string& name) { return name == "textures/leaf.tga" ? tga : Blob{}; };
+    return read_bsp(to_bsp(two_rooms()), "level", options);
+  };
+  Scene scene = image_of("map Textures\\Leaf.JPG\nalphaFunc GE128", targa(false));
+  EXPECT_EQ(scene.material(0), Material(Surface::cut_out, Sides::front, 0, 128));
+  EXPECT_EQ(scene.alpha_images, std::vector{as_stored});
+  EXPECT_EQ(scene.texture_coordinates.size(), scene.positions.size());
+  EXPECT_EQ(image_of("clampmap textures/leaf\nalphaFunc GT0", targa(true)).alpha_cutoff[0], 1);
+  scene = image_of("alphaFunc LT128\nmap textures/leaf.tga", targa(true));
+  EXPECT_EQ(scene.alpha_images, (std::vector{AlphaImage{2, 2, {55, 0, 245, 245}}}));
+  // No file, no alpha, a texture that moves, no cut-out: drawn whole.
+  for (const char* stage :
+       {"map textures/other.tga\nalphaFunc GE128", "map $lightmap\nalphaFunc GE128",
+        "map textures/leaf.tga\ntcMod scroll 1 0\nalphaFunc GE128", "map textures/leaf.tga"}) {
+    scene = image_of(stage, targa(false));
+    EXPECT_EQ(scene.alpha_image[0], kNoAlphaImage) << stage;
+    EXPECT_TRUE(scene.texture_coordinates.empty());
+    EXPECT_TRUE(scene.ignored.empty());
+  }
+  Blob cut = targa(true);
+  cut.resize(cut.size() - 3);
+  scene = image_of("map textures/leaf.tga\nalphaFunc GE128", cut);
+  EXPECT_EQ(scene.alpha_image[0], kNoAlphaImage);
+  EXPECT_THAT(scene.ignored, ElementsAre(testing::HasSubstr("image textures/leaf.tga is a Targa that ends")));
+}
+
+TEST(Quake3Shaders, BrokenTargasAreOneSentence) {
+  std::mt19937 random(9);
+  for (const bool packed : {false, true}) {
+    for (std::size_t length = 0; length < targa(packed).size(); ++length) {
+      Blob cut = targa(packed);
+      cut.resize(length);
+      EXPECT_NE(error_of([&] { (void)read_tga_alpha(cut); }), "") << length;
+    }
+    for (int round = 0; round < 5000; ++round) {
+      Blob changed = targa(packed);
+      changed[random() % changed.size()] = std::byte(random() & 0xff);
+      error_of([&] { (void)read_tga_alpha(changed); });
+    }
+  }
 }
 
 TEST(Quake3Shaders, TurnedFacesAreSeenFromBehind) {

@@ -31,18 +31,6 @@ std::filesystem::path find_archive(const std::filesystem::path& archive) {
               std::string(kOpenArenaData) + " (Debian package openarena-081-maps)");
 }
 
-/// A level with the scripts that the game's folder holds.
-Scene load_level(std::span<const std::byte> bytes, const std::string& name, const std::filesystem::path& game,
-                 const LoadOptions& options) {
-  LoadOptions with_scripts = options;
-  std::vector<std::string> unread;
-  for (std::string& script : io::gather_scripts(game, unread))
-    with_scripts.shader_scripts.push_back(std::move(script));
-  Scene scene = read_bsp(bytes, name, with_scripts);
-  scene.ignored.insert(scene.ignored.end(), unread.begin(), unread.end());
-  return scene;
-}
-
 /// The folder, or "." where the path has none.
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
@@ -54,6 +42,12 @@ std::filesystem::path game_of(const std::filesystem::path& level) {
   const std::filesystem::path folder =
       std::filesystem::absolute(folder_of(level), ignored).lexically_normal();
   return folder.filename() == "maps" ? folder.parent_path() : folder;
+}
+
+Scene load_level(io::Bytes bytes, const std::string& name, const std::filesystem::path& game,
+                 const LoadOptions& options) {
+  io::GameFiles files(game);
+  return io::read_level(bytes, name, files, options);
 }
 
 Scene load(std::string_view specification, const LoadOptions& options) {

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <sightline/workbench/io.hpp>
 
 #include "workbench/io/byte_reader.hpp"
 
@@ -17,22 +20,36 @@ namespace sightline::io {
 std::vector<std::byte> unpack_entry(const std::filesystem::path& archive, const std::string& entry);
 std::vector<std::byte> unpack_entry(Bytes archive, const std::string& archive_name, const std::string& entry);
 
-/// A file out of an archive.
-struct NamedText {
-  std::string name;  ///< in lower case
-  std::string text;
+/// The files of a game as id Tech 3 finds them: of files of one name in several archives that of the last
+/// archive by name, upper and lower case being one.
+class GameFiles {
+public:
+  /// All archives (.pk3) of a folder, and its loose shader scripts, which come last. Archives that cannot be
+  /// read are left out.
+  explicit GameFiles(const std::filesystem::path& folder);
+  /// One archive, which outlives this. Throws Error where it cannot be read.
+  GameFiles(Bytes archive, const std::string& archive_name);
+  ~GameFiles();
+  GameFiles(const GameFiles&) = delete;
+  GameFiles& operator=(const GameFiles&) = delete;
+
+  /// The texts of all shader scripts, "scripts/NAME.shader", what counts first at the front; at most 64 MiB.
+  std::vector<std::string> scripts();
+  /// A file out of the archives; empty where there is none of the name.
+  std::vector<std::byte> read(std::string_view name);
+  /// What was left out, a sentence each.
+  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
+
+private:
+  struct Source;
+  std::vector<std::byte> unpack(const std::string& name);
+
+  std::vector<std::unique_ptr<Source>> sources_;  ///< what counts first at the front
+  std::vector<std::filesystem::path> loose_scripts_;
+  std::vector<std::string> left_out_;
 };
 
-/// The shader scripts ("scripts/NAME.shader") of an archive, in its order; at most 64 MiB of them. Throws
-/// Error as unpack_entry does.
-std::vector<NamedText> unpack_scripts(const std::filesystem::path& archive);
-std::vector<NamedText> unpack_scripts(Bytes archive, const std::string& archive_name);
-
-/// The texts of all shader scripts that a game with this folder has, what counts first at the front: of the
-/// archives
-/// (.pk3) the last by name, then loose files in "scripts". Of scripts of one name only the first is there.
-/// Archives that cannot be read are left out and named in `unread`.
-std::vector<std::string> gather_scripts(const std::filesystem::path& folder,
-                                        std::vector<std::string>& unread);
+/// A level with its shader scripts and images out of the game's files.
+Scene read_level(Bytes level, const std::string& name, GameFiles& files, const LoadOptions& options);
 
 }  // namespace sightline::io

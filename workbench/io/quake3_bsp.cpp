@@ -8,6 +8,7 @@
 
 #include "workbench/io/quake3_entities.hpp"
 #include "workbench/io/quake3_faces.hpp"
+#include "workbench/io/quake3_images.hpp"
 #include "workbench/io/quake3_lumps.hpp"
 #include "workbench/io/quake3_shaders.hpp"
 
@@ -69,24 +70,30 @@ void read_faces(const Level& level, const LoadOptions& options, const ShaderScri
   const Records<FaceRecord> faces(level.lump(LumpId::faces), "faces");
   const Records<ShaderRecord> shaders(level.lump(LumpId::shaders), "shaders");
   FaceReader reader(level.lump(LumpId::vertices), level.lump(LumpId::mesh_vertices), options.patch_level);
+  LevelImages images(options.game_file, scene);
   std::vector<Vec3> positions, normals;
+  std::vector<TextureCoordinate> coordinates;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     try {
       const FaceRecord face = faces.at(static_cast<std::int64_t>(i));
       ShaderLook look = look_of(shaders.at(face.shader), scripts);
-      if (face.type == flare) look = {Surface::transparent, Cull::none};
+      if (face.type == flare) look = {.surface = Surface::transparent, .cull = Cull::none};
+      const std::uint32_t image = images.image_of(look);
       const FaceShape shape = reader.read(face, look.cull);
       positions.clear();
       normals.clear();
+      coordinates.clear();
       for (const Surfel& s : shape.vertices) {
         positions.push_back(s.position);
         normals.push_back(normalised(s.normal));
+        if (image != kNoAlphaImage) coordinates.push_back(s.texture);
       }
       if (scene.positions.size() + positions.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw Error("brings the level over 2^32 vertices");
       }
-      scene.add_object(scene.add_mesh(positions, normals, shape.indices), places[i],
-                       {look.surface, look.cull == Cull::none ? Sides::both : Sides::front});
+      const Sides sides = look.cull == Cull::none ? Sides::both : Sides::front;
+      scene.add_object(scene.add_mesh(positions, normals, shape.indices, coordinates), places[i],
+                       {look.surface, sides, image, look.alpha_cutoff});
     } catch (const Error& error) {
       throw Error(fmt::format("face {} {}", i, error.what()));
     }

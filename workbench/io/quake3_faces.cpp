@@ -1,5 +1,6 @@
 #include "workbench/io/quake3_faces.hpp"
 
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,7 @@ constexpr std::uint32_t kSolidContents = 0x1, kFogContents = 0x40, kTranslucentC
 constexpr std::uint32_t kSkySurface = 0x4, kNoDrawSurface = 0x80, kLightFilterSurface = 0x8000,
                         kAlphaShadowSurface = 0x10000;
 constexpr std::uint32_t kMaxPatchSide = 1023;
+constexpr float kMaxTexture = 1e6f;  // beyond it, and of what is no number, the first texel
 
 /// Quake 3 draws triangles from where they turn clockwise. The stored normals do not decide: some models'
 /// point into their triangles.
@@ -32,7 +34,7 @@ FaceShape flare_marker(const FaceRecord& face) {
   for (std::uint32_t corner = 0; corner < 6; ++corner) {
     const float reach = corner % 2 == 0 ? kReach : -kReach;
     const Vec3 axis = corner < 2 ? Vec3{reach, 0, 0} : corner < 4 ? Vec3{0, reach, 0} : Vec3{0, 0, reach};
-    shape.vertices.push_back({{c.x + axis.x, c.y + axis.y, c.z + axis.z}, axis});
+    shape.vertices.push_back({{c.x + axis.x, c.y + axis.y, c.z + axis.z}, axis, {}});
   }
   shape.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   return shape;
@@ -51,7 +53,8 @@ void spend(std::uint64_t& budget, std::int32_t count, const char* what) {
 
 ShaderLook look_of(const ShaderRecord& surface, const ShaderScripts& scripts) {
   const std::uint32_t flags = surface.surface_flags, contents = surface.content_flags;
-  const ShaderLook see_through{Surface::transparent, Cull::none}, holed{Surface::cut_out, Cull::none};
+  const ShaderLook see_through{.surface = Surface::transparent, .cull = Cull::none},
+      holed{.surface = Surface::cut_out, .cull = Cull::none};
   if ((contents & kFogContents) != 0 || (flags & kNoDrawSurface) != 0) return see_through;
   const std::string_view name(surface.name.data(), surface.name.size());
   if (const ShaderLook* look = scripts.find(name.substr(0, name.find('\0')))) return *look;
@@ -86,7 +89,7 @@ FaceShape FaceReader::read(const FaceRecord& face, Cull cull) {
     default:
       throw Error(fmt::format("has type {}, expected 1 … 4", face.type));
   }
-  if (shape.vertices.empty()) shape.vertices.push_back({point_of(face), to_axes(face.normal)});
+  if (shape.vertices.empty()) shape.vertices.push_back({point_of(face), to_axes(face.normal), {}});
   if (cull != Cull::fronts) turn_round(shape);
   return shape;
 }
@@ -100,6 +103,8 @@ std::vector<Surfel> FaceReader::surfels(const FaceRecord& face) {
     if (!is_finite(vertex.position))
       throw Error(fmt::format("has vertex {} at a position that is not finite", i));
     out[i] = {to_point(vertex.position), is_finite(vertex.normal) ? to_axes(vertex.normal) : Vec3{0, 1, 0}};
+    const float u = vertex.texture_and_light_map[0], v = vertex.texture_and_light_map[1];
+    if (std::abs(u) < kMaxTexture && std::abs(v) < kMaxTexture) out[i].texture = {u, v};
   }
   return out;
 }

@@ -21,6 +21,12 @@ std::string lowered(std::string_view text) {
   return out;
 }
 
+std::string without_extension(std::string name) {
+  const std::size_t slash = name.rfind('/'), dot = name.rfind('.');
+  if (dot != std::string::npos && (slash == std::string::npos || dot > slash)) name.resize(dot);
+  return name;
+}
+
 bool is(std::string_view token, std::string_view word) noexcept {
   return std::ranges::equal(token, word, {}, lower);
 }
@@ -93,6 +99,9 @@ private:
 struct Definition {
   int stages = 0;
   bool first_blends = false, first_is_tested = false;
+  bool texture_moves = false, inverted = false;
+  std::uint8_t cutoff = 128;
+  std::string image;
   bool sorted_late = false, not_drawn = false, faces_the_eye = false, is_sky = false;
   Cull cull = Cull::backs;
 
@@ -103,12 +112,20 @@ struct Definition {
     // What the first stage leaves open no later stage fills: those are drawn over it at the same depth.
     if (first_is_tested) {
       out.surface = Surface::cut_out;
+      out.alpha_cutoff = cutoff, out.inverted = inverted;
+      if (!texture_moves) out.image = image;
     } else if (not_drawn || first_blends || sorted_late) {
       out.surface = Surface::transparent;
     }
     return out;
   }
 };
+
+/// In lower case, without extension; empty for what is no file ("$lightmap").
+std::string image_name(std::string_view name) {
+  if (name.starts_with('$') || name.starts_with('*')) return {};
+  return without_extension(lowered(name));
+}
 
 /// "add", "filter", "blend", or two factors; GL_ONE GL_ZERO replaces what is there.
 bool blends(Words& words) {
@@ -150,9 +167,19 @@ void read_directive(std::string_view word, Words& words, Definition& shader) {
 }
 
 void read_stage_directive(std::string_view word, Words& words, Definition& shader) {
-  if (shader.stages == 1) {
-    if (is(word, "alphafunc")) shader.first_is_tested = true;
-    if (is(word, "blendfunc")) shader.first_blends = blends(words);
+  const auto on_line = [&] { return words.next_on_line().value_or(""); };
+  if (shader.stages != 1) {
+  } else if (is(word, "blendfunc")) {
+    shader.first_blends = blends(words);
+  } else if (is(word, "alphafunc")) {
+    const std::string_view test = on_line();
+    shader.first_is_tested = true;
+    shader.inverted = is(test, "lt128");
+    shader.cutoff = is(test, "gt0") ? 1 : 128;
+  } else if (is_one_of(word, {"map", "clampmap"})) {
+    shader.image = image_name(on_line());
+  } else if (is_one_of(word, {"animmap", "tcmod", "tcgen", "alphagen"})) {
+    shader.texture_moves = true;
   }
   while (words.next_on_line()) {
   }
@@ -195,15 +222,12 @@ bool ShaderScripts::add(std::string_view script) {
     // One that draws nothing and is no sky is not there for the game either: it takes the plain image.
     if (definition->is_drawn()) found.emplace_back(shader, definition->look());
   }
-  for (auto& [name, look] : found) looks_.try_emplace(std::move(name), look);
+  for (auto& [name, look] : found) looks_.try_emplace(std::move(name), std::move(look));
   return true;
 }
 
 const ShaderLook* ShaderScripts::find(std::string_view name) const {
-  std::string key = lowered(name);
-  const std::size_t slash = key.rfind('/'), dot = key.rfind('.');
-  if (dot != std::string::npos && (slash == std::string::npos || dot > slash)) key.resize(dot);
-  const auto found = looks_.find(key);
+  const auto found = looks_.find(without_extension(lowered(name)));
   return found == looks_.end() ? nullptr : &found->second;
 }
 

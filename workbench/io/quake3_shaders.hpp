@@ -18,6 +18,9 @@ enum class Cull : std::uint8_t { backs, fronts, none };
 struct ShaderLook {
   Surface surface = Surface::opaque;
   Cull cull = Cull::backs;
+  std::string image = {};           ///< a cut-out's, without extension; empty: drawn whole
+  std::uint8_t alpha_cutoff = 128;  ///< drawn where alpha >= this,
+  bool inverted = false;            ///< of 255 - alpha
 };
 
 /// All scripts of a game. The first definition of a name counts.

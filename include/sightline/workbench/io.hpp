@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ struct LoadOptions {
   /// The texts of the game's shader scripts; of two that name a surface the first counts. load_scene and
   /// read_pk3 put those they find behind these.
   std::vector<std::string> shader_scripts = {};
+  /// A file of the game by its name, such as "textures/a.tga": its bytes, none where there is no such file.
+  /// load_scene and read_pk3 look into the archives, unless one is given.
+  std::function<std::vector<std::byte>(const std::string& name)> game_file = {};
 };
 
 /// Loads a scene and checks it.
@@ -48,7 +52,9 @@ Scene load_scene(std::string_view specification, const LoadOptions& options = {}
 /// indices.
 /// - Shader scripts say what is cut out (alphaFunc in the first stage), what is transparent (a first stage
 /// that blends,
-///   or a late sort), and which sides are drawn (cull). Cut-outs are drawn whole: their images are not read.
+///   or a late sort), and which sides are drawn (cull). Cut-outs have the alpha of the first stage's image,
+///   .tga or .png, where the game has it, it can be read, and its texture does not move; else they are drawn
+///   whole.
 /// - Without a script the flags do: translucent contents are transparent; shadows by alpha, filtered light
 /// and
 ///   contents that are not solid may have holes, so they are cut out, drawn on both sides. Fog and the flag
