@@ -77,5 +77,5 @@ set(CPACK_DEBIAN_WORKBENCH_PACKAGE_NAME sightline)
 set(CPACK_DEBIAN_WORKBENCH_PACKAGE_SECTION graphics)
 # Who builds on the workbench needs what stands below it.
 set(CPACK_DEBIAN_WORKBENCH_PACKAGE_SUGGESTS
-    "libsightline-dev (= ${PROJECT_VERSION}), libfmt-dev, libembree-dev, libtbb-dev, libzip-dev, libopenmpi-dev, libmeshoptimizer-dev")
+    "libsightline-dev (= ${PROJECT_VERSION}), libfmt-dev, libembree-dev, libtbb-dev, libzip-dev, libpng-dev, libopenmpi-dev, libmeshoptimizer-dev")
 include(CPack)

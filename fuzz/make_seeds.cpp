@@ -1,4 +1,5 @@
-// make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf and fuzz_pvs with a few whole files each.
+// make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf, fuzz_image, fuzz_shaders and fuzz_pvs with
+// a few whole files each.
 #include <cstdio>
 #include <numeric>
 
@@ -7,13 +8,15 @@
 #include "library/pvs/cell_coding.hpp"
 #include "library/pvs/set_coding.hpp"
 #include "sample_files.hpp"
+#include "support/cards.hpp"
+#include "workbench/io/alpha_png.hpp"
 
 int main(int argc, char** argv) try {
   using namespace sightline;
   using namespace sightline::samples;
   if (argc != 2) return std::fputs("usage: fuzz_seeds FOLDER\n", stderr), 2;
   const std::filesystem::path folder = argv[1];
-  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_pvs"})
+  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_image", "fuzz_shaders", "fuzz_pvs"})
     std::filesystem::create_directories(folder / target);
 
   Level level = two_rooms();
@@ -25,6 +28,14 @@ int main(int argc, char** argv) try {
   write(folder / "fuzz_gltf/one_triangle.gltf", to_bytes(one_triangle()));
   write_glb(load_scene("world:forest?trees=3"), folder / "fuzz_gltf/forest.glb");
   write_glb(read_bsp(to_bsp(two_rooms()), "two rooms"), folder / "fuzz_gltf/two_rooms.glb");
+  write_glb(test::leaf_cards(), folder / "fuzz_gltf/leaf_cards.glb");
+  write_glb(test::grate_before_a_room(), folder / "fuzz_gltf/grate.glb");
+  write(folder / "fuzz_image/leaves.png", io::write_alpha(scene::leaves_pattern(16, 0.5f, 1)));
+  write(folder / "fuzz_image/grate.png", io::write_alpha(scene::grate_pattern(5, 2, 1)));
+  write(folder / "fuzz_shaders/two.shader",
+        to_bytes(std::string(
+            "textures/a\n{\ncull none\nsurfaceparm trans // seen\n{\nmap a.tga\nalphaFunc GE128\n}\n}\n\f"
+            "textures/b\n{\nsort additive\n/* blended */\n{\nmap \"b\"\nblendFunc GL_ONE GL_ZERO\n}\n}\n")));
   nlohmann::json sparse = one_triangle();
   sparse["accessors"][0]["sparse"] = {{"count", 1},
                                       {"indices", {{"bufferView", 1}, {"componentType", 5123}}},

@@ -49,6 +49,12 @@ expect 0 "object-frustum" "$sightline" methods --json methods.json
 expect 0 "--path" "$sightline" compare --help
 for command in methods verify reproduce generate info; do expect 0 "Usage" "$sightline" $command --help; done
 expect 0 "0." "$sightline" --version
+expect 0 " cut out" "$sightline" info world:foliage
+expect 0 "3 alpha images; 0 objects without one" "$sightline" info world:foliage
+expect 0 "objects     2000 (" "$sightline" info world:city?objects=2000
+expect 0 "bounds      (9999" "$sightline" info "$world&offset=10000000"
+expect 0 "300 objects" "$sightline" generate forest?trees=300\&size=100\&offset=10000000 -o far.glb
+expect 0 "origin      (10000000.00, 0.00, 10000000.00) m" "$sightline" info far.glb
 expect 0 "objects     300" "$sightline" info "$world"
 expect 0 "300 objects" "$sightline" generate forest?trees=300\&size=100 -o forest.glb
 expect 0 "objects     300" "$sightline" info forest.glb

@@ -1,10 +1,10 @@
 # Sourced by demo.sh and test.sh: makes sure that Debian's packages are there.
 
 run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev libmeshoptimizer-dev \
-libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
+libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libpng-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
 openarena-081-maps"
 
-test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libbenchmark-dev pybind11-dev python3-dev \
+test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libassimp-dev libbenchmark-dev pybind11-dev python3-dev \
 python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14 git patch g++-aarch64-linux-gnu qemu-user-static lld-19 libc++-19-dev-wasm32 \
 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc"
 # Node is often there from elsewhere, whose package stands in the way of Debian's.

@@ -80,6 +80,11 @@ int run_bake(const BakeOptions& options) {
              cells.size(), scene.size(), result.rays, result.resumed);
   fmt::print("{:.0f} bytes, {:.3f} of the open cells' raw bit matrix ({:.0f} bytes)\n", bytes, bytes / raw,
              raw);
+  if (const WorldPoint& o = scene.origin; o != WorldPoint{}) {
+    fmt::print(
+        "The file's cells, and the points that query takes, count from the scene's origin, {},{},{}.\n", o.x,
+        o.y, o.z);
+  }
   if (scene.level) print_level(scene, cells, options);
   if (options.check > 0) {
     const oracle::EmbreeJudge judge(scene);

@@ -54,6 +54,21 @@ TEST(PathFile, OnlyTheEyeIsRequired) {
   EXPECT_EQ(cameras[0].forward, Camera{}.forward);
 }
 
+TEST(PathFile, EyesArePointsOfTheWorld) {
+  const WorldPoint origin{1e7, 0, -2e7};
+  const std::vector<Camera> cameras =
+      parse_path("text", R"({"views": [{"eye": [10000000.5, 2, -20000000.25]}]})", origin);
+  EXPECT_EQ(cameras[0].eye, (Vec3{0.5f, 2, -0.25f}));
+  EXPECT_EQ(camera_json(cameras[0], origin)["eye"].dump(), "[10000000.5,2.0,-20000000.25]");
+  const TemporaryFolder folder;
+  save_path(folder / "path.json", cameras, origin);
+  EXPECT_EQ(load_path(folder / "path.json", origin)[0].eye, cameras[0].eye);
+  // And so does a scene's own path, whichever origin its file got.
+  const Scene scene = generate_world("regular?columns=4&rows=4&offset=10000000");
+  save_path(folder / "path.json", cameras, {1e7, 0, 1e7});
+  EXPECT_EQ(make_path(scene, (folder / "path.json").string(), 0).cameras[0].eye, cameras[0].eye);
+}
+
 TEST(PathFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal_of("{\"views\": ["), HasSubstr("views.json: not JSON from byte"));
   EXPECT_THAT(refusal_of(""), HasSubstr("not JSON"));

@@ -10,6 +10,7 @@
 #include <sightline/workbench/io.hpp>
 
 #include "sample_files.hpp"
+#include "support/cards.hpp"
 #include "workbench/io/gltf_transform.hpp"
 
 namespace sightline {
@@ -58,6 +59,47 @@ TEST(GlbWriter, WorldsComeBackTheSame) {
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
       << "no temporary file stays";
+}
+
+TEST(GlbWriter, MaterialsComeBackToTheBit) {
+  const TemporaryFolder folder;
+  std::vector<Scene> scenes = test::card_scenes();
+  scenes.push_back(load_scene("world:foliage?plants=50&hedges=20&grates=20&boxes=40"));
+  scenes.push_back(load_scene("world:city?objects=1000"));
+  for (const Scene& scene : scenes) {
+    SCOPED_TRACE(scene.name);
+    write_glb(scene, folder / "scene.glb");
+    const Scene again = load_scene((folder / "scene.glb").string());
+    expect_same(scene, again);
+    EXPECT_EQ(again.material_sides, scene.material_sides);
+    EXPECT_EQ(again.sides, scene.sides);
+    EXPECT_EQ(again.alpha_image, scene.alpha_image);
+    EXPECT_EQ(again.alpha_cutoff, scene.alpha_cutoff);
+    EXPECT_EQ(again.alpha_images, scene.alpha_images);
+    EXPECT_EQ(again.positions, scene.positions);
+    EXPECT_EQ(again.normals, scene.normals);
+    EXPECT_EQ(again.indices, scene.indices);
+    for (ObjectId o = 0; o < scene.size(); ++o) {
+      EXPECT_EQ(again.transform[o], scene.transform[o]) << o;
+      if (scene.alpha_image[o] == kNoAlphaImage) continue;
+      const Mesh& mesh = scene.meshes[scene.mesh[o]];
+      for (std::uint32_t v = mesh.first_vertex; v < mesh.first_vertex + mesh.vertex_count; ++v)
+        EXPECT_EQ(again.texture_coordinates[v], scene.texture_coordinates[v]) << v;
+    }
+  }
+}
+
+TEST(GlbWriter, FarWorldsComeBackToTheBit) {
+  const TemporaryFolder folder;
+  const Scene scene = load_scene("world:forest?trees=200&offset=10000000"),
+              near = load_scene("world:forest?trees=200");
+  EXPECT_EQ(scene.origin, (WorldPoint{1e7, 0, 1e7}));
+  write_glb(scene, folder / "far.glb");
+  const Scene again = load_scene((folder / "far.glb").string());
+  EXPECT_EQ(again.origin, scene.origin);
+  expect_same(near, again);
+  EXPECT_EQ(again.transform, near.transform);
+  EXPECT_NE(fingerprint(scene), fingerprint(near));
 }
 
 TEST(GlbWriter, LevelComesBackButForWhatHasNoTriangle) {

@@ -208,15 +208,6 @@ TEST(Gltf, GivenNormalsAreKept) {
   EXPECT_EQ(scene.normals, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
-TEST(Gltf, BlendIsTransparentMaskIsNot) {
-  json document = one_triangle();
-  document["materials"] = json::parse(R"([{"alphaMode": "BLEND"}, {"alphaMode": "MASK"}, {}])");
-  for (const int material : {0, 1, 2}) {
-    document["meshes"][0]["primitives"][0]["material"] = material;
-    EXPECT_EQ(read(document).surface[0], material == 0 ? Surface::transparent : Surface::opaque);
-  }
-}
-
 TEST(Gltf, CamerasAreViewpoints) {
   json document = one_triangle();
   document["cameras"] = json::parse(R"([
@@ -230,6 +221,40 @@ TEST(Gltf, CamerasAreViewpoints) {
   EXPECT_EQ(scene.viewpoints[0].name, "eye");
   EXPECT_EQ(scene.viewpoints[0].eye, (Vec3{1, 2, 3}));
   EXPECT_EQ(scene.viewpoints[0].forward, (Vec3{0, 0, -1}));
+}
+
+TEST(Gltf, FarAwayPositionsCountFromAnOriginNearby) {
+  json document = one_triangle();
+  // Half a metre is below what floats tell apart at 10,000 km.
+  document["nodes"] = json::parse(R"([{"translation": [1e7, 0, -2e7], "children": [1]},
+    {"translation": [0.5, 10, 0.25], "mesh": 0}, {"translation": [10000003, 1, -20000000], "camera": 0}])");
+  document["scenes"][0]["nodes"] = {0, 2};
+  document["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}])");
+  const Scene scene = read(document);
+  EXPECT_NEAR(scene.origin.x, 1e7, 200);
+  EXPECT_EQ(scene.origin.y, 0);
+  EXPECT_EQ(std::fmod(scene.origin.x, 256), 0);
+  const double x = scene.origin.x + scene.bounds[0].min.x, z = scene.origin.z + scene.bounds[0].min.z;
+  EXPECT_EQ(x, 1e7 + 0.5);
+  EXPECT_EQ(z, -2e7 + 0.25);
+  EXPECT_EQ(scene.bounds[0].max.x - scene.bounds[0].min.x, 1);
+  EXPECT_EQ(scene.origin.x + scene.viewpoints[0].eye.x, 10000003);
+  // A scene around 0 stays there, and so does one that is merely off its centre.
+  document["nodes"][0]["translation"] = {900, 0, 0};
+  document["nodes"][2]["translation"] = {0, 0, 0};
+  EXPECT_EQ(read(document).origin, WorldPoint{});
+}
+
+TEST(Gltf, SaysWhatItLeavesOut) {
+  json document = one_triangle();
+  EXPECT_TRUE(read(document).ignored.empty());
+  document["skins"] = json::parse(R"([{"joints": [0]}, {"joints": [0]}])");
+  document["animations"] = json::parse(R"([{"channels": [], "samplers": []}])");
+  document["meshes"][0]["primitives"][0]["targets"] = json::parse(R"([{"POSITION": 0}])");
+  EXPECT_THAT(read(document).ignored,
+              testing::ElementsAre(testing::StartsWith("2 skins: "),
+                                   testing::StartsWith("morph targets of 1 primitives: "),
+                                   testing::StartsWith("1 animations: ")));
 }
 
 TEST(Gltf, BuffersBesideTheFile) {

@@ -131,6 +131,20 @@ TEST(Quake3, SpawnPointsAreViewpointsAndItemsWaypoints) {
   EXPECT_EQ(scene.waypoints.size(), 3u);
 }
 
+TEST(Quake3, TheFarPlaneIsKept) {
+  Level level = two_rooms();
+  EXPECT_TRUE(std::isinf(read(level).level->far_plane));
+  const auto far_of = [&](const std::string& value) {
+    level.entities =
+        "{ \"classname\" \"light\" \"_farplanedist\" \"1\" }\n"
+        "{ \"classname\" \"worldspawn\" \"_farplanedist\" \"" +
+        value + "\" }";
+    return read(level).level->far_plane;
+  };
+  EXPECT_FLOAT_EQ(far_of("2048"), 2048 * kUnit);
+  for (const char* none : {"0", "-5", "far", "nan", ""}) EXPECT_TRUE(std::isinf(far_of(none))) << none;
+}
+
 TEST(Quake3, PlacesInSolidAreLeftOut) {
   Level level = two_rooms();
   level.leaves[1].cluster = -1;

@@ -58,7 +58,7 @@ Level two_rooms() {
                   {0, 0, {0, 0, 0}, {1, 1, 1}, 5, 1, 0, 0}};
   level.leaf_faces = {0, 3, 4, 1, 2, 5};
   level.models = {{{-128, -128, -128}, {128, 128, 128}, 0, 5, 0, 0}, {{0, 0, 0}, {1, 1, 1}, 5, 1, 0, 0}};
-  // 0 … 3: the wall, clockwise as seen from its front (from smaller x).
+  // 0 … 3: the wall, by its indices clockwise as seen from its front (from smaller x).
   const Float3 towards_room{-1, 0, 0};
   level.vertices = {vertex(128, -64, 0, towards_room), vertex(128, -64, 64, towards_room),
                     vertex(128, 64, 64, towards_room), vertex(128, 64, 0, towards_room)};
@@ -77,7 +77,7 @@ Level two_rooms() {
     level.vertices.push_back(vertex(x, 20, lift, {0, 0, 1}));
     level.vertices.push_back(vertex(x + 20, 0, lift, {0, 0, 1}));
   }
-  level.mesh_vertices = {0, 1, 2, 0, 2, 3, 0, 1, 2};
+  level.mesh_vertices = {0, 2, 1, 0, 3, 2, 0, 1, 2};
   level.faces = {face(polygon, 0, 4, 0, 6), face(patch, 4, 9, 0, 0),    face(triangles, 13, 3, 6, 3, 1),
                  face(flare, 0, 0, 0, 0),   face(polygon, 16, 1, 0, 0), face(polygon, 17, 3, 6, 3)};
   level.faces[1].patch_width = level.faces[1].patch_height = 3;

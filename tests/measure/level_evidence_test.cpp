@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include <sightline/workbench/error.hpp>
@@ -65,10 +66,28 @@ TEST_P(RealLevel, WalkStaysInOpenSpaceAndGoesSomewhere) {
 INSTANTIATE_TEST_SUITE_P(OpenArena, RealLevel, testing::Values("oasago2", "oa_dm1", "aggressor"),
                          [](const auto& test) { return std::string(test.param); });
 
+TEST(LevelEvidence, BeyondTheFarPlaneALevelSaysNothing) {
+  const char* const name = "pak1-maps.pk3:maps/ctf_compromise.bsp";
+  Scene scene = load_scene(name);
+  EXPECT_FLOAT_EQ(scene.level->far_plane, 2048 * 0.0254f);
+  const auto count = [&](const LevelEvidence& evidence, PvsException why) {
+    return evidence.objects[static_cast<std::size_t>(why)];
+  };
+  const oracle::EmbreeJudge judge(scene);
+  const LevelEvidence honoured = gather_level_evidence(scene, judge, 40, 48, 7);
+  scene.level->far_plane = std::numeric_limits<float>::infinity();
+  const LevelEvidence not_read = gather_level_evidence(scene, judge, 40, 48, 7);
+  EXPECT_GT(count(honoured, PvsException::beyond_far_plane), 0u);
+  EXPECT_EQ(count(not_read, PvsException::beyond_far_plane), 0u);
+  EXPECT_LT(count(honoured, PvsException::unexplained), count(not_read, PvsException::unexplained));
+  EXPECT_EQ(count(honoured, PvsException::unexplained), 0u);
+  EXPECT_EQ(honoured.objects_denied, not_read.objects_denied);
+}
+
 TEST(LevelEvidence, TableHasEveryReason) {
   LevelEvidence evidence;
   evidence.eyes = 7, evidence.objects_seen = 1000, evidence.objects_denied = 15,
-  evidence.objects = {1, 2, 3, 4, 5};
+  evidence.objects = {1, 2, 3, 4, 5, 6};
   const report::Table table = report::evidence_table(evidence);
   ASSERT_EQ(table.rows.size(), 1 + kPvsExceptions);
   EXPECT_EQ(table.rows[0][1], "985");

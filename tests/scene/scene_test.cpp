@@ -83,9 +83,81 @@ TEST(Scene, RefusesWhatDoesNotFitTogether) {
   EXPECT_TRUE(spoilt([](Scene& s) { s.positions[2].y = kNaN; }));
 }
 
+TEST(Scene, RefusesMaterialsThatDoNotFit) {
+  const auto refusal_of = [](auto&& spoil) {
+    Scene scene = triangle();
+    scene.add_alpha_image({2, 1, {0, 255}});
+    scene.alpha_image[0] = 0;
+    scene.texture_coordinates.resize(3);
+    EXPECT_NO_THROW(check(scene));
+    spoil(scene);
+    return test::refusal([&] { check(scene); });
+  };
+  for (const auto spoil :
+       {+[](Scene& s) { s.sides.clear(); }, +[](Scene& s) { s.material_sides.clear(); },
+        +[](Scene& s) { s.alpha_image.clear(); }, +[](Scene& s) { s.alpha_cutoff.clear(); }}) {
+    EXPECT_THAT(refusal_of(spoil), HasSubstr("length"));
+  }
+  EXPECT_THAT(refusal_of([](Scene& s) { s.alpha_image[0] = 1; }), HasSubstr("alpha image is out of range"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.alpha_images[0].height = 2; }), HasSubstr("alpha image 0"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.alpha_images[0] = {}; }), HasSubstr("alpha image 0"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.surface[0] = Surface{3}; }), HasSubstr("surface"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.sides[0] = Sides{2}; }), HasSubstr("sides"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.texture_coordinates.pop_back(); }),
+              HasSubstr("texture coordinate"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.texture_coordinates[2].v = kNaN; }), HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of([](Scene& s) { s.origin.y = 1e12; }), HasSubstr("origin"));
+}
+
+TEST(Scene, TheRasterStateComesAndGoes) {
+  Scene scene = triangle();
+  const std::uint64_t before = fingerprint(scene);
+  scene.add_object(0, {}, {Surface::opaque, Sides::front});
+  using enum Sides;
+  EXPECT_EQ(scene.sides, (std::vector{both, front}));
+  set_raster_state(scene, RasterState::front_faces);
+  EXPECT_EQ(scene.sides, (std::vector{front, front}));
+  scene.add_object(0, {}, Surface::transparent);
+  EXPECT_EQ(scene.sides, (std::vector{front, front, front}));
+  EXPECT_EQ(scene.material(2), Material(Surface::transparent));
+  set_raster_state(scene, RasterState::both_sides);
+  EXPECT_EQ(scene.sides, (std::vector{both, both, both}));
+  set_raster_state(scene, RasterState::materials);
+  EXPECT_EQ(scene.sides, (std::vector{both, front, both}));
+  EXPECT_EQ(scene.raster_state, RasterState::materials);
+  EXPECT_NO_THROW(check(scene));
+  // Another state is another scene to what was baked.
+  Scene one_sided = triangle();
+  EXPECT_EQ(fingerprint(one_sided), before);
+  set_raster_state(one_sided, RasterState::front_faces);
+  EXPECT_NE(fingerprint(one_sided), before);
+}
+
+TEST(Scene, MeshesWithAndWithoutTextureCoordinatesShareTheArray) {
+  Scene scene = triangle();
+  EXPECT_TRUE(scene.texture_coordinates.empty());
+  const std::vector<Vec3> positions(scene.positions), normals(scene.normals);
+  const std::uint32_t indices[]{0, 1, 2};
+  const TextureCoordinate coordinates[]{{0, 0}, {1, 0}, {0, -2}};
+  scene.add_mesh(positions, normals, indices, coordinates);
+  scene.add_mesh(positions, normals, indices);
+  ASSERT_EQ(scene.texture_coordinates.size(), 9u);
+  EXPECT_EQ(scene.texture_coordinates[0], TextureCoordinate{});
+  EXPECT_EQ(scene.texture_coordinates[5], (TextureCoordinate{0, -2}));
+  EXPECT_EQ(scene.texture_coordinates[8], TextureCoordinate{});
+  EXPECT_NO_THROW(check(scene));
+  const std::span<const TextureCoordinate> two(coordinates, 2);
+  EXPECT_THAT(test::refusal([&] { return scene.add_mesh(positions, normals, indices, two); }),
+              HasSubstr("2 texture coordinates for 3 positions"));
+}
+
 TEST(Scene, RefusesObjectsAndMeshesThatThereAreNot) {
   Scene scene = triangle();
   EXPECT_THAT(test::refusal([&] { return scene.add_object(1, {}); }), HasSubstr("mesh 1"));
+  EXPECT_THAT(test::refusal([&] {
+                return scene.add_object(0, {}, {Surface::cut_out, Sides::both, 0});
+              }),
+              HasSubstr("alpha image 0"));
   EXPECT_THAT(test::refusal([&] { scene.move_object(1, {}); }), HasSubstr("object 1"));
   const Vec3 positions[]{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, normals[]{{0, 0, 1}, {0, 0, 1}};
   const std::uint32_t indices[]{0, 1, 2};

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "support/refusal.hpp"
@@ -15,6 +16,7 @@ std::string small(std::string_view name) {
   if (name == "irregular") return "irregular?spheres=300";
   if (name == "forest") return "forest?trees=300";
   if (name == "soup") return "soup?triangles=2000";
+  if (name == "city") return "city?objects=1000";
   return std::string(name);
 }
 
@@ -39,6 +41,55 @@ TEST(Worlds, HaveThePublishedSizes) {
   EXPECT_EQ(generate_world("forest").size(), 30000u);
   EXPECT_EQ(triangle_count(generate_world("soup?triangles=12345")), 12345u);
   EXPECT_EQ(generate_world("regular?detail=2").triangles(0), 320u);
+}
+
+TEST(Worlds, FoliageIsOfEveryKind) {
+  const Scene scene = generate_world("foliage");
+  EXPECT_GT(scene.size(), 800u);
+  EXPECT_LT(scene.size(), 1000u);
+  for (const Surface surface : {Surface::opaque, Surface::cut_out}) {
+    for (const Sides sides : {Sides::both, Sides::front}) {
+      std::size_t count = 0;
+      for (ObjectId o = 0; o < scene.size(); ++o)
+        count += scene.surface[o] == surface && scene.sides[o] == sides;
+      EXPECT_GT(count, 50u);
+    }
+  }
+  ASSERT_EQ(scene.alpha_images.size(), 3u);
+  for (const AlphaImage& image : scene.alpha_images) {
+    const auto open = std::ranges::count_if(image.alpha, [](std::uint8_t alpha) { return alpha < 128; });
+    EXPECT_GT(open, static_cast<std::ptrdiff_t>(image.alpha.size() / 8));
+    EXPECT_LT(open, static_cast<std::ptrdiff_t>(image.alpha.size() * 3 / 4));
+  }
+}
+
+TEST(Worlds, ACityHasAsManyObjectsAsAskedFor) {
+  for (const std::uint32_t objects : {100u, 101u, 999u, 2000u, 12345u}) {
+    const Scene scene = generate_world("city?objects=" + std::to_string(objects));
+    EXPECT_EQ(scene.size(), objects);
+    EXPECT_EQ(scene.meshes.size(), 16u) << "its parts are instances";
+  }
+  const Scene city = generate_world("city");
+  EXPECT_EQ(city.size(), 10000u);
+  const Box all = extent(city);
+  EXPECT_NEAR(all.max.x, 450, 5);
+  // Nobody looks from within a tower.
+  for (const Viewpoint& view : city.viewpoints) {
+    for (ObjectId o = 0; o < city.size(); ++o) {
+      const Box box = city.bounds[o];
+      const bool within = city.mesh[o] == 1 && view.eye.x > box.min.x && view.eye.x < box.max.x &&
+                          view.eye.y < box.max.y && view.eye.z > box.min.z && view.eye.z < box.max.z;
+      EXPECT_FALSE(within) << view.name;
+    }
+  }
+}
+
+TEST(Worlds, AnOffsetMovesTheOriginAlone) {
+  const Scene near = generate_world("regular?columns=3&rows=3"),
+              far = generate_world("regular?columns=3&rows=3&offset=-1e7");
+  EXPECT_EQ(near.origin, WorldPoint{});
+  EXPECT_EQ(far.origin, (WorldPoint{-1e7, 0, -1e7}));
+  EXPECT_EQ(near.transform, far.transform);
 }
 
 TEST(Worlds, StrataHaveThePublishedMeshCountsAndStandCentred) {

@@ -88,6 +88,15 @@ std::vector<std::int32_t> clusters_in(const LevelPvs& level, const Box& box) {
   return clusters;
 }
 
+/// Metres between two boxes, as the crow flies.
+float between(const Box& a, const Box& b) {
+  const auto gap = [](float a_min, float a_max, float b_min, float b_max) {
+    return std::max({0.0f, b_min - a_max, a_min - b_max});
+  };
+  return std::hypot(gap(a.min.x, a.max.x, b.min.x, b.max.x), gap(a.min.y, a.max.y, b.min.y, b.max.y),
+                    gap(a.min.z, a.max.z, b.min.z, b.max.z));
+}
+
 }  // namespace
 
 std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs& cells) {
@@ -112,7 +121,9 @@ std::vector<CellComparison> compare_with_level(const Scene& scene, const CellPvs
     row.cell = cell;
     for (ObjectId o = 0; o < all.size(); ++o) {
       row.baked += baked[o], row.level += all[o];
-      if (baked[o] && !all[o]) row.only_baked.push_back(o);
+      // What lies farther away than the level is drawn the level says nothing of.
+      const bool judged = all[o] || between(cells.cell_bounds(cell), scene.bounds[o]) <= level.far_plane;
+      if (baked[o] && !all[o] && judged) row.only_baked.push_back(o);
       if (all[o] && !baked[o]) row.only_level.push_back(o);
     }
     rows.push_back(std::move(row));

@@ -29,8 +29,8 @@ BakeLoss check_bake(const Scene& scene, const CellPvs& cells, const oracle::Embr
 /// One open cell: what was baked, and what the level's own sets say for the clusters in the cell.
 struct CellComparison {
   std::uint32_t cell = 0;
-  std::size_t baked = 0, level = 0;  ///< objects
-  std::vector<ObjectId> only_baked, only_level;
+  std::size_t baked = 0, level = 0;              ///< objects
+  std::vector<ObjectId> only_baked, only_level;  ///< nothing only baked beyond LevelPvs::far_plane
 };
 
 /// One row an open cell. The scene has a level.

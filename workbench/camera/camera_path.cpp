@@ -217,7 +217,7 @@ CameraPath make_path(const Scene& scene, const std::string& name_or_file, std::s
     if (!std::filesystem::exists(name_or_file, ignored)) {
       throw Error("path '" + name_or_file + "': expected near, far, rising, walk or the name of a path file");
     }
-    path.cameras = load_path(name_or_file);
+    path.cameras = load_path(name_or_file, scene.origin);
     if (frames != 0 && path.cameras.size() > frames) path.cameras.resize(frames);
   }
   return path;

@@ -11,6 +11,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/io/text_file.hpp"
+#include "workbench/scene/far_origin.hpp"
 
 namespace sightline::camera {
 namespace {
@@ -40,6 +41,12 @@ double shortest_degrees(float radians) {
   return degrees;
 }
 
+/// The eye in the world. What was added to 0 keeps its float's few digits.
+Json world_json(const Vec3& v, const WorldPoint& origin) {
+  const auto coordinate = [](float of, double from) { return from == 0 ? shortest(of) : from + of; };
+  return Json::array({coordinate(v.x, origin.x), coordinate(v.y, origin.y), coordinate(v.z, origin.z)});
+}
+
 /// Reads the members of one view, naming view and member where one is wrong.
 class ViewReader {
 public:
@@ -63,6 +70,17 @@ public:
     if (!has(name)) return;
     if (!view_[name].is_boolean()) wrong(name, "true or false");
     out = view_[name].get<bool>();
+  }
+  /// Three numbers, in doubles until they count from the origin.
+  void point(const char* name, const WorldPoint& origin, Vec3& out) const {
+    std::array<double, 3> v{};
+    const Json& list = view_[name];
+    if (!list.is_array() || list.size() != v.size()) wrong(name, "an array of 3 numbers");
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!list[i].is_number()) wrong(name, "a number");
+      v[i] = list[i].get<double>();
+    }
+    out = scene::to_scene(origin, {v[0], v[1], v[2]});
   }
   template <std::size_t N>
   void numbers(const char* name, const std::array<float*, N>& out) const {
@@ -92,11 +110,11 @@ private:
   const Json& view_;
 };
 
-Camera read_camera(const std::string& where, const Json& view) {
+Camera read_camera(const std::string& where, const Json& view, const WorldPoint& origin) {
   const ViewReader read(where, view);
   Camera camera;
   if (!read.has("eye")) read.wrong("eye", "it to be there, an array of 3 numbers");
-  read.numbers<3>("eye", {&camera.eye.x, &camera.eye.y, &camera.eye.z});
+  read.point("eye", origin, camera.eye);
   read.numbers<3>("forward", {&camera.forward.x, &camera.forward.y, &camera.forward.z});
   read.numbers<3>("up", {&camera.up.x, &camera.up.y, &camera.up.z});
   read.numbers<2>("shift", {&camera.shift_x, &camera.shift_y});
@@ -116,9 +134,9 @@ Camera read_camera(const std::string& where, const Json& view) {
 
 }  // namespace
 
-Json camera_json(const Camera& camera) {
+Json camera_json(const Camera& camera, const WorldPoint& origin) {
   Json view;
-  view["eye"] = vector_json(camera.eye);
+  view["eye"] = world_json(camera.eye, origin);
   view["forward"] = vector_json(camera.forward);
   view["up"] = vector_json(camera.up);
   view["fov_degrees"] = shortest_degrees(camera.vertical_fov);
@@ -134,7 +152,7 @@ Json camera_json(const Camera& camera) {
   return view;
 }
 
-std::vector<Camera> parse_path(const std::string& source, const std::string& text) {
+std::vector<Camera> parse_path(const std::string& source, const std::string& text, const WorldPoint& origin) {
   Json document;
   try {
     document = Json::parse(text);
@@ -152,19 +170,19 @@ std::vector<Camera> parse_path(const std::string& source, const std::string& tex
   }
   std::vector<Camera> cameras;
   for (const Json& view : views) {
-    cameras.push_back(read_camera(fmt::format("{}: view {}", source, cameras.size()), view));
+    cameras.push_back(read_camera(fmt::format("{}: view {}", source, cameras.size()), view, origin));
   }
   return cameras;
 }
 
-std::vector<Camera> load_path(const std::filesystem::path& file) {
-  return parse_path(file.string(), io::read_file(file, kMaxBytes));
+std::vector<Camera> load_path(const std::filesystem::path& file, const WorldPoint& origin) {
+  return parse_path(file.string(), io::read_file(file, kMaxBytes), origin);
 }
 
-void save_path(const std::filesystem::path& file, std::span<const Camera> cameras) {
+void save_path(const std::filesystem::path& file, std::span<const Camera> cameras, const WorldPoint& origin) {
   Json document;
   document["views"] = Json::array();
-  for (const Camera& camera : cameras) document["views"].push_back(camera_json(camera));
+  for (const Camera& camera : cameras) document["views"].push_back(camera_json(camera, origin));
   io::write_file(file, document.dump(1) + "\n");
 }
 

@@ -197,7 +197,7 @@ std::uint32_t Accessor::integer(std::uint64_t i) const noexcept {
   return at == nullptr ? 0 : read_index(at, component_size_);
 }
 
-Document::Document(Bytes bytes, const std::filesystem::path& folder) {
+Document::Document(Bytes bytes, const std::filesystem::path& folder) : folder_(folder) {
   const Container container = open_container(bytes);
   root_ = parse(container.json);
   if (!root_.is_object()) throw Error("is JSON, but not an object");
@@ -209,25 +209,34 @@ Document::Document(Bytes bytes, const std::filesystem::path& folder) {
   const Json::array_t& buffers = array_of(root_, "buffers");
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     try {
-      buffers_.push_back(buffer(buffers[i], i, container.binary, folder));
+      buffers_.push_back(buffer(buffers[i], i, container.binary));
     } catch (const Error& error) {
       throw Error(fmt::format("buffer {} {}", i, error.what()));
     }
   }
 }
 
-Bytes Document::buffer(const Json& description, std::size_t index, Bytes binary_chunk,
-                       const std::filesystem::path& folder) {
+Bytes Document::load(const std::string& uri) {
+  const auto [place, added] = loaded_.try_emplace(uri);
+  if (added) place->second = load_uri(uri, folder_);
+  return place->second;
+}
+
+Bytes Document::image(std::uint64_t index) {
+  const Json& description = at("images", index);
+  if (find(description, "uri") != nullptr) return load(text_of(description, "uri"));
+  std::uint64_t stride = 0;
+  return buffer_view(whole_of(description, "bufferView"), stride);
+}
+
+Bytes Document::buffer(const Json& description, std::size_t index, Bytes binary_chunk) {
   const std::uint64_t length = whole_of(description, "byteLength");
   Bytes held;
   if (find(description, "uri") == nullptr) {
     if (index != 0) throw Error("has no URI, expected that of the first buffer of a GLB file alone");
     held = binary_chunk;
   } else {
-    const std::string uri = text_of(description, "uri");
-    auto [place, added] = loaded_.try_emplace(uri);
-    if (added) place->second = load_uri(uri, folder);
-    held = place->second;
+    held = load(text_of(description, "uri"));
   }
   if (length > held.size())
     throw Error(fmt::format("says it is {} bytes long, but has {}", length, held.size()));

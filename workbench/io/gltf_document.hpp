@@ -70,7 +70,7 @@ private:
 
 class Document {
 public:
-  /// `bytes` outlive the document. External buffers come from `folder`; empty: there are none.
+  /// `bytes` outlive the document. External buffers and images come from `folder`; empty: there are none.
   Document(Bytes bytes, const std::filesystem::path& folder);
 
   [[nodiscard]] const Json& root() const noexcept { return root_; }
@@ -78,18 +78,21 @@ public:
   [[nodiscard]] const Json& at(const char* kind, std::uint64_t index) const;
   /// Checked once, then kept.
   const Accessor& accessor(std::uint64_t index);
+  /// The bytes of element `index` of 'images', whatever they are.
+  [[nodiscard]] Bytes image(std::uint64_t index);
   /// Bytes of all buffers together.
   [[nodiscard]] std::uint64_t buffer_bytes() const noexcept;
 
 private:
-  Bytes buffer(const Json& description, std::size_t index, Bytes binary_chunk,
-               const std::filesystem::path& folder);
+  Bytes buffer(const Json& description, std::size_t index, Bytes binary_chunk);
+  Bytes load(const std::string& uri);
   [[nodiscard]] Bytes buffer_view(std::uint64_t index, std::uint64_t& stride) const;
   [[nodiscard]] Accessor make_accessor(const Json& description) const;
   void read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out) const;
 
   Json root_;
-  std::map<std::string, std::vector<std::byte>, std::less<>> loaded_;  ///< buffers by URI
+  std::filesystem::path folder_;
+  std::map<std::string, std::vector<std::byte>, std::less<>> loaded_;  ///< buffers and images by URI
   std::vector<Bytes> buffers_;
   std::map<std::uint64_t, Accessor> accessors_;
 };

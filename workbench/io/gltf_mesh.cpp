@@ -41,76 +41,8 @@ Vec3 read_vec3(const Accessor& accessor, std::uint64_t i) {
   return {accessor.component(i, 0), accessor.component(i, 1), accessor.component(i, 2)};
 }
 
-void require_vec3(const Accessor& accessor, const char* what) {
-  if (accessor.type() != "VEC3") {
-    throw Error(fmt::format("has {} of type {}, expected VEC3", what, accessor.type()));
-  }
-}
-
-}  // namespace
-
-MeshReader::MeshReader(Document& document, std::uint64_t file_bytes, Scene& scene)
-    : document_(document), scene_(scene), budget_(64 * (file_bytes + document.buffer_bytes()) + 65536) {}
-
-std::uint32_t MeshReader::mesh_of(const Json& primitive) {
-  const std::uint64_t mode = whole_of(primitive, "mode", triangles);
-  if (mode > fan) throw Error(fmt::format("has mode {}, expected 0 … 6", mode));
-  if (mode < triangles) return kNoMesh;
-  const Json* attributes = find(primitive, "attributes");
-  if (attributes == nullptr || find(*attributes, "POSITION") == nullptr) return kNoMesh;
-  const Key key{mode, whole_of(primitive, "indices", kNone), whole_of(*attributes, "POSITION"),
-                whole_of(*attributes, "NORMAL", kNone)};
-  const auto [place, added] = made_.try_emplace(key, kNoMesh);
-  if (added) place->second = make(key);
-  return place->second;
-}
-
-std::uint32_t MeshReader::make(const Key& key) {
-  const auto& [mode, indices_at, positions_at, normals_at] = key;
-  const Accessor& source = document_.accessor(positions_at);
-  require_vec3(source, "positions");
-  const Accessor* order = indices_at == kNone ? nullptr : &document_.accessor(indices_at);
-  if (order != nullptr && (order->type() != "SCALAR" || !order->is_unsigned_integer())) {
-    throw Error("has indices that are not unsigned integers");
-  }
-  const Accessor* given = normals_at == kNone ? nullptr : &document_.accessor(normals_at);
-  if (given != nullptr) {
-    require_vec3(*given, "normals");
-    if (given->count() != source.count()) {
-      throw Error(fmt::format("has {} normals for {} positions", given->count(), source.count()));
-    }
-  }
-  const std::uint64_t corner_count = order == nullptr ? source.count() : order->count();
-  // A strip's vertex is a corner of three triangles; accessors without data behind them cost a file nothing.
-  if (corner_count > budget_ / 4)
-    throw Error("unfolds the file to more vertices than its size can stand for");
-  budget_ -= 4 * corner_count;
-
-  std::vector<std::uint32_t> corners(corner_count);
-  for (std::uint64_t i = 0; i < corner_count; ++i) {
-    corners[i] = order == nullptr ? static_cast<std::uint32_t>(i) : order->integer(i);
-    if (corners[i] >= source.count()) {
-      throw Error(
-          fmt::format("has index {}, expected one below its {} positions", corners[i], source.count()));
-    }
-  }
-  corners = as_triangles(std::move(corners), mode);
-  if (corners.empty()) return kNoMesh;
-
-  // Only the vertices that are used: exporters let many primitives index one long list.
-  std::vector<std::uint32_t> used = corners;
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  if (used.size() != source.count()) {
-    for (std::uint32_t& corner : corners) {
-      corner = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), corner) - used.begin());
-    }
-  }
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (scene_.positions.size() + used.size() > kMost || scene_.indices.size() + corners.size() > kMost) {
-    throw Error("brings the scene over 2^32 vertices or indices");
-  }
-  std::vector<Vec3> positions, normals(used.size());
+std::vector<Vec3> read_positions(const Accessor& source, std::span<const std::uint32_t> used) {
+  std::vector<Vec3> positions;
   positions.reserve(used.size());
   for (const std::uint32_t vertex : used) {
     const Vec3 p = read_vec3(source, vertex);
@@ -119,7 +51,13 @@ std::uint32_t MeshReader::make(const Key& key) {
     }
     positions.push_back(p);
   }
-  std::vector<Vec3> computed;
+  return positions;
+}
+
+/// Those given, of unit length; computed where there are none.
+std::vector<Vec3> read_normals(const Accessor* given, std::span<const std::uint32_t> used,
+                               std::span<const Vec3> positions, std::span<const std::uint32_t> corners) {
+  std::vector<Vec3> normals(used.size()), computed;
   for (std::size_t i = 0; i < used.size(); ++i) {
     const Vec3 stored = given == nullptr ? Vec3{} : read_vec3(*given, used[i]);
     std::array<double, 3> n{stored.x, stored.y, stored.z};
@@ -133,7 +71,140 @@ std::uint32_t MeshReader::make(const Key& key) {
       normals[i] = computed[i];
     }
   }
-  return scene_.add_mesh(positions, normals, corners);
+  return normals;
+}
+
+std::vector<TextureCoordinate> read_coordinates(const Accessor* given, std::span<const std::uint32_t> used,
+                                                const Look& look, bool moved) {
+  std::vector<TextureCoordinate> coordinates;
+  if (given == nullptr) return coordinates;
+  coordinates.reserve(used.size());
+  for (const std::uint32_t vertex : used) {
+    TextureCoordinate at{given->component(vertex, 0), given->component(vertex, 1)};
+    if (moved) {
+      const auto along = [&](std::size_t first) {
+        return static_cast<float>(look.move[first] * at.u + look.move[first + 1] * at.v +
+                                  look.move[first + 2]);
+      };
+      at = {along(0), along(3)};
+    }
+    if (!std::isfinite(at.u) || !std::isfinite(at.v)) {
+      throw Error(fmt::format("has texture coordinate {} that is not finite", vertex));
+    }
+    coordinates.push_back(at);
+  }
+  return coordinates;
+}
+
+/// The accessor of the texture coordinates that the material's texture lies on; kNone where there is none.
+std::uint64_t coordinate_accessor(const Json& attributes, const Look& look) {
+  return whole_of(attributes, fmt::format("TEXCOORD_{}", look.coordinate_set).c_str(), kNone);
+}
+
+}  // namespace
+
+MeshReader::MeshReader(Document& document, const MaterialReader& materials, std::uint64_t file_bytes,
+                       Scene& scene)
+    : document_(document),
+      materials_(materials),
+      scene_(scene),
+      budget_(64 * (file_bytes + document.buffer_bytes()) + 65536) {
+  for (const Json& mesh : array_of(document.root(), "meshes")) {
+    for (const Json& primitive : array_of(mesh, "primitives")) {
+      const Json* attributes = find(primitive, "attributes");
+      if (attributes == nullptr) continue;
+      const Look& look = materials.look_of(primitive);
+      if (look.material.alpha_image != kNoAlphaImage)
+        images_lie_on_.insert(coordinate_accessor(*attributes, look));
+    }
+  }
+}
+
+/// Primitives without an image take along what one with an image needs, so that the two share a mesh.
+std::uint64_t MeshReader::coordinates_of(const Json& attributes, const Look& look) const {
+  const std::uint64_t accessor = coordinate_accessor(attributes, look);
+  return images_lie_on_.contains(accessor) ? accessor : kNone;
+}
+
+std::uint32_t MeshReader::mesh_of(const Json& primitive) {
+  const std::uint64_t mode = whole_of(primitive, "mode", triangles);
+  if (mode > fan) throw Error(fmt::format("has mode {}, expected 0 … 6", mode));
+  if (mode < triangles) return kNoMesh;
+  const Json* attributes = find(primitive, "attributes");
+  if (attributes == nullptr || find(*attributes, "POSITION") == nullptr) return kNoMesh;
+  const Look& look = materials_.look_of(primitive);
+  const Key key{mode,
+                whole_of(primitive, "indices", kNone),
+                whole_of(*attributes, "POSITION"),
+                whole_of(*attributes, "NORMAL", kNone),
+                coordinates_of(*attributes, look),
+                look.moved_by};
+  const auto [place, added] = made_.try_emplace(key, kNoMesh);
+  if (added) place->second = make(key, look);
+  return place->second;
+}
+
+const Accessor* MeshReader::vertex_data(std::uint64_t index, const char* what, const char* type,
+                                        std::uint64_t count) {
+  if (index == kNone) return nullptr;
+  const Accessor& accessor = document_.accessor(index);
+  if (accessor.type() != type) {
+    throw Error(fmt::format("has {} of type {}, expected {}", what, accessor.type(), type));
+  }
+  if (accessor.count() != count) {
+    throw Error(fmt::format("has {} {} for {} positions", accessor.count(), what, count));
+  }
+  return &accessor;
+}
+
+MeshReader::Corners MeshReader::corners_of(const Key& key, std::uint64_t vertices) {
+  const Accessor* order = key.indices == kNone ? nullptr : &document_.accessor(key.indices);
+  if (order != nullptr && (order->type() != "SCALAR" || !order->is_unsigned_integer())) {
+    throw Error("has indices that are not unsigned integers");
+  }
+  const std::uint64_t corner_count = order == nullptr ? vertices : order->count();
+  // A strip's vertex is a corner of three triangles; accessors without data behind them cost a file nothing.
+  if (corner_count > budget_ / 4)
+    throw Error("unfolds the file to more vertices than its size can stand for");
+  budget_ -= 4 * corner_count;
+
+  Corners out;
+  std::vector<std::uint32_t> corners(corner_count);
+  for (std::uint64_t i = 0; i < corner_count; ++i) {
+    corners[i] = order == nullptr ? static_cast<std::uint32_t>(i) : order->integer(i);
+    if (corners[i] >= vertices) {
+      throw Error(fmt::format("has index {}, expected one below its {} positions", corners[i], vertices));
+    }
+  }
+  out.corners = as_triangles(std::move(corners), key.mode);
+
+  // Only the vertices that are used: exporters let many primitives index one long list.
+  out.used = out.corners;
+  std::sort(out.used.begin(), out.used.end());
+  out.used.erase(std::unique(out.used.begin(), out.used.end()), out.used.end());
+  if (out.used.size() != vertices) {
+    for (std::uint32_t& corner : out.corners) {
+      corner = static_cast<std::uint32_t>(std::lower_bound(out.used.begin(), out.used.end(), corner) -
+                                          out.used.begin());
+    }
+  }
+  return out;
+}
+
+std::uint32_t MeshReader::make(const Key& key, const Look& look) {
+  const Accessor& source = document_.accessor(key.positions);
+  vertex_data(key.positions, "positions", "VEC3", source.count());
+  const Accessor* normals = vertex_data(key.normals, "normals", "VEC3", source.count());
+  const Accessor* coordinates = vertex_data(key.coordinates, "texture coordinates", "VEC2", source.count());
+  const auto [corners, used] = corners_of(key, source.count());
+  if (corners.empty()) return kNoMesh;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (scene_.positions.size() + used.size() > kMost || scene_.indices.size() + corners.size() > kMost) {
+    throw Error("brings the scene over 2^32 vertices or indices");
+  }
+  const std::vector<Vec3> positions = read_positions(source, used);
+  return scene_.add_mesh(positions, read_normals(normals, used, positions, corners), corners,
+                         read_coordinates(coordinates, used, look, key.moved_by != kNone));
 }
 
 }  // namespace sightline::io::gltf

@@ -7,6 +7,13 @@
 
 namespace sightline::io::gltf {
 
+Parts rounded(Parts parts) noexcept {
+  for (auto& v : parts.translation) v = static_cast<float>(v);
+  for (auto& v : parts.rotation) v = static_cast<float>(v);
+  for (auto& v : parts.scale) v = static_cast<float>(v);
+  return parts;
+}
+
 Transform compose(const Parts& parts) noexcept {
   const auto& [x, y, z, w] = parts.rotation;
   const glm::dquat rotation = glm::normalize(glm::dquat(w, x, y, z));
@@ -27,10 +34,7 @@ bool decompose(const Affine& affine, Parts& parts) noexcept {
   parts.translation = {rows[0].w, rows[1].w, rows[2].w};
   parts.rotation = {turn.x, turn.y, turn.z, turn.w};
   parts.scale = {scale.x, scale.y, scale.z};
-  Parts rounded = parts;
-  for (auto& v : rounded.rotation) v = static_cast<float>(v);
-  for (auto& v : rounded.scale) v = static_cast<float>(v);
-  const glm::dmat3 again(compose(rounded));
+  const glm::dmat3 again(compose(rounded(parts)));
   for (int c = 0; c < 3; ++c) {
     if (!glm::all(glm::lessThanEqual(glm::abs(again[c] - linear[c]), glm::dvec3(1e-6 * largest))))
       return false;

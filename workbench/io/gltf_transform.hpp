@@ -17,6 +17,13 @@ struct Parts {
   std::array<double, 3> scale{1, 1, 1};
 };
 
+/// As floats have them.
+Parts rounded(Parts parts) noexcept;
+
+/// Attributes of instances that write_glb adds where the parts alone would not give the same bits: the rows
+/// of each transform.
+inline constexpr std::array<const char*, 3> kRowAttributes{"_ROW_X", "_ROW_Y", "_ROW_Z"};
+
 /// translation · rotation · scale; a quaternion of any length but zero (which turns nothing).
 Transform compose(const Parts& parts) noexcept;
 

@@ -31,6 +31,25 @@ std::filesystem::path find_archive(const std::filesystem::path& archive) {
               std::string(kOpenArenaData) + " (Debian package openarena-081-maps)");
 }
 
+/// The folder, or "." where the path has none.
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+/// Levels lie in "maps" of the game's folder; one that does not is taken to lie in the folder itself.
+std::filesystem::path game_of(const std::filesystem::path& level) {
+  std::error_code ignored;
+  const std::filesystem::path folder =
+      std::filesystem::absolute(folder_of(level), ignored).lexically_normal();
+  return folder.filename() == "maps" ? folder.parent_path() : folder;
+}
+
+Scene load_level(io::Bytes bytes, const std::string& name, const std::filesystem::path& game,
+                 const LoadOptions& options) {
+  io::GameFiles files(game);
+  return io::read_level(bytes, name, files, options);
+}
+
 Scene load(std::string_view specification, const LoadOptions& options) {
   constexpr std::string_view kWorld = "world:", kArchive = ".pk3:";
   const std::string text(specification);
@@ -41,14 +60,13 @@ Scene load(std::string_view specification, const LoadOptions& options) {
   if (text.starts_with(kWorld)) return generate_world(specification.substr(kWorld.size()));
   if (const std::size_t at = text.find(kArchive); at != std::string::npos) {
     const std::filesystem::path archive = find_archive(text.substr(0, at + kArchive.size() - 1));
-    return read_bsp(io::unpack_entry(archive, text.substr(at + kArchive.size())), text, options);
+    return load_level(io::unpack_entry(archive, text.substr(at + kArchive.size())), text, folder_of(archive),
+                      options);
   }
   const std::filesystem::path path(text);
   const std::string ending = path.extension().string();
-  if (ending == ".bsp") return read_bsp(io::read_file(path), text, options);
-  if (ending == ".glb" || ending == ".gltf") {
-    return read_gltf(io::read_file(path), text, path.has_parent_path() ? path.parent_path() : ".");
-  }
+  if (ending == ".bsp") return load_level(io::read_file(path), text, game_of(path), options);
+  if (ending == ".glb" || ending == ".gltf") return read_gltf(io::read_file(path), text, folder_of(path));
   if (ending == ".pk3") throw Error(text + ": names an archive, expected archive.pk3:maps/name.bsp");
   throw Error(
       text +

@@ -1,8 +1,10 @@
 #include "workbench/io/pk3.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,21 +12,23 @@
 
 #include <sightline/workbench/io.hpp>
 
+#include "workbench/io/files.hpp"
+
 namespace sightline {
 
 namespace io {
+
+struct DiscardZip {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+  void operator()(zip_file_t* file) const { zip_fclose(file); }
+};
+using Archive = std::unique_ptr<zip_t, DiscardZip>;
 
 namespace {
 
 constexpr std::uint64_t kMaxEntrySize = std::uint64_t{256} << 20;
 // Deflate cannot do better than 1032 : 1.
 constexpr std::uint64_t kMaxRatio = 1032;
-
-struct Discard {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-  void operator()(zip_file_t* file) const { zip_fclose(file); }
-};
-using Archive = std::unique_ptr<zip_t, Discard>;
 
 std::string zip_reason(int code) {
   zip_error_t error;
@@ -89,7 +93,7 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
     throw Error(fmt::format("{}: says that {} bytes unpack to {}, which deflate cannot do", name,
                             stat.comp_size, stat.size));
   }
-  const std::unique_ptr<zip_file_t, Discard> file(zip_fopen_index(archive, stat.index, 0));
+  const std::unique_ptr<zip_file_t, DiscardZip> file(zip_fopen_index(archive, stat.index, 0));
   if (!file) throw Error(fmt::format("{}: cannot be unpacked: {}", name, zip_strerror(archive)));
   std::vector<std::byte> bytes(stat.size);
   std::size_t got = 0;
@@ -109,18 +113,20 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
 
 }  // namespace
 
-std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std::string& entry) {
+namespace {
+
+Archive open_archive(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw Error(path.string() + ": no such file");
   if (!std::filesystem::is_regular_file(path, ignored))
     throw Error(path.string() + ": not a regular file, expected a zip archive");
   int code = 0;
-  const Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
+  Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (!archive) throw Error(path.string() + ": not a readable zip archive: " + zip_reason(code));
-  return unpack(archive.get(), path.string(), entry);
+  return archive;
 }
 
-std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name, const std::string& entry) {
+Archive open_archive(Bytes bytes, const std::string& archive_name) {
   // libzip takes no bytes at all for an archive without entries.
   if (bytes.empty()) throw Error(archive_name + ": not a readable zip archive: it is empty");
   zip_error_t error;
@@ -133,7 +139,123 @@ std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name
     zip_error_fini(&error);
     throw Error(archive_name + ": not a readable zip archive: " + text);
   }
-  return unpack(archive.get(), archive_name, entry);
+  return archive;
+}
+
+std::string lowered(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// "scripts/NAME.shader", in lower case; not in a folder below.
+bool is_script(std::string_view name) noexcept {
+  constexpr std::string_view kFolder = "scripts/";
+  return name.starts_with(kFolder) && name.ends_with(".shader") &&
+         name.find('/', kFolder.size()) == std::string_view::npos;
+}
+
+/// Files of the folder that end so, the first by name first; none where there is no such folder.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder, std::string_view ending) {
+  std::vector<std::filesystem::path> out;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (lowered(at->path().extension().string()) == ending) out.push_back(at->path());
+  }
+  std::ranges::sort(out, {},
+                    [](const std::filesystem::path& path) { return lowered(path.filename().string()); });
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::byte> unpack_entry(const std::filesystem::path& path, const std::string& entry) {
+  return unpack(open_archive(path).get(), path.string(), entry);
+}
+
+std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name, const std::string& entry) {
+  return unpack(open_archive(bytes, archive_name).get(), archive_name, entry);
+}
+
+struct GameFiles::Source {
+  Source(Archive opened, std::string called) : archive(std::move(opened)), name(std::move(called)) {
+    constexpr zip_int64_t kMostEntries = zip_int64_t{1} << 20;
+    for (zip_int64_t i = 0; i < std::min(zip_get_num_entries(archive.get(), 0), kMostEntries); ++i) {
+      const char* entry = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
+      if (entry == nullptr || !entries.try_emplace(lowered(entry), entry).second) continue;
+      if (is_script(lowered(entry))) scripts.push_back(lowered(entry));
+    }
+  }
+
+  Archive archive;
+  std::string name;
+  std::map<std::string, std::string, std::less<>> entries;  ///< by their names in lower case
+  std::vector<std::string> scripts;                         ///< in the archive's order
+};
+
+GameFiles::GameFiles(const std::filesystem::path& folder)
+    : loose_scripts_(files_in(folder / "scripts", ".shader")) {
+  std::vector<std::filesystem::path> archives = files_in(folder, ".pk3");
+  std::ranges::reverse(archives);
+  for (const std::filesystem::path& path : archives) {
+    try {
+      sources_.push_back(std::make_unique<Source>(open_archive(path), path.string()));
+    } catch (const Error& error) {
+      left_out_.push_back(std::string(error.what()) + "; it is left out");
+    }
+  }
+}
+
+GameFiles::GameFiles(Bytes archive, const std::string& archive_name) {
+  sources_.push_back(std::make_unique<Source>(open_archive(archive, archive_name), archive_name));
+}
+
+GameFiles::~GameFiles() = default;
+
+std::vector<std::byte> GameFiles::unpack(const std::string& name) {
+  for (const std::unique_ptr<Source>& source : sources_) {
+    const auto found = source->entries.find(name);
+    if (found != source->entries.end()) return io::unpack(source->archive.get(), source->name, found->second);
+  }
+  return {};
+}
+
+std::vector<std::byte> GameFiles::read(std::string_view name) {
+  return unpack(lowered(std::string(name)));
+}
+
+std::vector<std::string> GameFiles::scripts() {
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  std::vector<std::string> texts;
+  std::set<std::string> known;
+  std::size_t sum = 0;
+  const auto take = [&](const std::string& name, const auto& load) {
+    if (!known.insert(name).second) return;
+    try {
+      const std::vector<std::byte> bytes = load();
+      if (sum + bytes.size() > kMostBytes) throw Error(name + ": brings all shader scripts over 64 MiB");
+      sum += bytes.size();
+      texts.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    } catch (const Error& error) {
+      left_out_.push_back(std::string(error.what()) + "; it is left out");
+    }
+  };
+  for (const std::unique_ptr<Source>& source : sources_) {
+    for (const std::string& script : source->scripts) take(script, [&] { return unpack(script); });
+  }
+  for (const std::filesystem::path& path : loose_scripts_) {
+    take("scripts/" + lowered(path.filename().string()), [&] { return read_file(path); });
+  }
+  return texts;
+}
+
+/// A level with what else of the game it needs.
+Scene read_level(Bytes level, const std::string& name, GameFiles& files, const LoadOptions& options) {
+  LoadOptions of_game = options;
+  for (std::string& script : files.scripts()) of_game.shader_scripts.push_back(std::move(script));
+  if (!of_game.game_file) of_game.game_file = [&](const std::string& file) { return files.read(file); };
+  Scene scene = read_bsp(level, name, of_game);
+  scene.ignored.insert(scene.ignored.end(), files.left_out().begin(), files.left_out().end());
+  return scene;
 }
 
 }  // namespace io
@@ -141,7 +263,8 @@ std::vector<std::byte> unpack_entry(Bytes bytes, const std::string& archive_name
 Scene read_pk3(std::span<const std::byte> archive, std::string_view entry, std::string name,
                const LoadOptions& options) {
   const std::string path(entry);
-  return read_bsp(io::unpack_entry(archive, name, path), name + ":" + path, options);
+  io::GameFiles files(archive, name);
+  return io::read_level(io::unpack_entry(archive, name, path), name + ":" + path, files, options);
 }
 
 }  // namespace sightline

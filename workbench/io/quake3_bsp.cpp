@@ -7,8 +7,10 @@
 #include <sightline/workbench/io.hpp>
 
 #include "workbench/io/quake3_entities.hpp"
-#include "workbench/io/quake3_format.hpp"
-#include "workbench/io/quake3_patch.hpp"
+#include "workbench/io/quake3_faces.hpp"
+#include "workbench/io/quake3_images.hpp"
+#include "workbench/io/quake3_lumps.hpp"
+#include "workbench/io/quake3_shaders.hpp"
 
 namespace sightline {
 
@@ -16,185 +18,7 @@ namespace io::quake3 {
 
 namespace {
 
-constexpr std::uint32_t kFogContents = 0x40, kTranslucentContents = 0x20000000;
-constexpr std::uint32_t kNoDrawSurface = 0x80;
-constexpr std::uint32_t kMaxPatchSide = 1023;
 constexpr std::uint32_t kMaxPatchLevel = 32;
-
-class Level {
-public:
-  explicit Level(Bytes bytes) : bytes_(bytes) {
-    if (bytes.size() < kHeaderSize) {
-      throw Error(fmt::format("is {} bytes long, expected a header of {} bytes", bytes.size(), kHeaderSize));
-    }
-    if (std::memcmp(bytes.data(), "IBSP", 4) != 0)
-      throw Error("does not begin with 'IBSP', expected a Quake 3 level");
-    const auto version = read_at<std::uint32_t>(bytes, 4);
-    if (version != 46) throw Error(fmt::format("has IBSP version {}, expected 46 (Quake 3)", version));
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(LumpId::count); ++i) {
-      const auto offset = read_at<std::uint32_t>(bytes, 8 + 8 * i),
-                 length = read_at<std::uint32_t>(bytes, 12 + 8 * i);
-      if (!fits(offset, length, bytes.size())) {
-        throw Error(fmt::format("has lump {} at bytes {} … +{}, but the file ends at {}", i, offset, length,
-                                bytes.size()));
-      }
-    }
-  }
-
-  [[nodiscard]] Bytes lump(LumpId id) const {
-    const std::size_t at = 8 + 8 * static_cast<std::size_t>(id);
-    return bytes_.subspan(read_at<std::uint32_t>(bytes_, at), read_at<std::uint32_t>(bytes_, at + 4));
-  }
-
-private:
-  static constexpr std::size_t kHeaderSize = 8 + 8 * static_cast<std::size_t>(LumpId::count);
-  Bytes bytes_;
-};
-
-/// A face's geometry before it becomes a mesh.
-struct Shape {
-  std::vector<Surfel> vertices;
-  std::vector<std::uint32_t> indices;
-};
-
-/// Unit length; up where there is no direction.
-Vec3 normalised(const Vec3& v) {
-  const double length = std::sqrt(double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z);
-  if (!(length > 1e-12) || !std::isfinite(length)) return {0, 1, 0};
-  return {static_cast<float>(v.x / length), static_cast<float>(v.y / length),
-          static_cast<float>(v.z / length)};
-}
-
-/// Turns all triangles round if most of their area faces away from the stored normals. Quake 3 winds
-/// clockwise; a face is wound in one sense throughout, so it is decided once for all its triangles.
-void wind_counter_clockwise(Shape& shape) {
-  double agreement = 0;
-  for (std::size_t i = 0; i + 2 < shape.indices.size(); i += 3) {
-    const Surfel &a = shape.vertices[shape.indices[i]], &b = shape.vertices[shape.indices[i + 1]],
-                 &c = shape.vertices[shape.indices[i + 2]];
-    const auto minus = [](const Vec3& p, const Vec3& q) {
-      return std::array<double, 3>{double{p.x} - q.x, double{p.y} - q.y, double{p.z} - q.z};
-    };
-    const auto u = minus(b.position, a.position), v = minus(c.position, a.position);
-    const std::array<double, 3> sum{double{a.normal.x} + b.normal.x + c.normal.x,
-                                    double{a.normal.y} + b.normal.y + c.normal.y,
-                                    double{a.normal.z} + b.normal.z + c.normal.z};
-    agreement += (u[1] * v[2] - u[2] * v[1]) * sum[0] + (u[2] * v[0] - u[0] * v[2]) * sum[1] +
-                 (u[0] * v[1] - u[1] * v[0]) * sum[2];
-  }
-  if (agreement > 0) return;
-  for (std::size_t i = 0; i + 2 < shape.indices.size(); i += 3)
-    std::swap(shape.indices[i + 1], shape.indices[i + 2]);
-}
-
-class FaceReader {
-public:
-  FaceReader(const Level& level, std::uint32_t patch_level)
-      : vertices_(level.lump(LumpId::vertices), "vertices"),
-        mesh_vertices_(level.lump(LumpId::mesh_vertices), "mesh vertices"),
-        patch_level_(patch_level),
-        // In real levels each vertex belongs to one face, and faces of one form share their indices, fewer
-        // than three a vertex. The slack is for compilers we have not met; without the limit a small file
-        // could claim its vertices once for each of 100,000 faces.
-        vertex_budget_(2 * std::uint64_t{vertices_.size()} + 1024),
-        index_budget_(16 * std::uint64_t{vertices_.size()} + 1024) {}
-
-  Shape read(const FaceRecord& face) {
-    Shape shape;
-    switch (face.type) {
-      case polygon:
-      case triangles:
-        shape = read_triangles(face);
-        break;
-      case patch:
-        shape = read_patch(face);
-        break;
-      case flare:
-        return flare_marker(face);
-      default:
-        throw Error(fmt::format("has type {}, expected 1 … 4", face.type));
-    }
-    if (shape.vertices.empty()) shape.vertices.push_back({point_of(face), to_axes(face.normal)});
-    wind_counter_clockwise(shape);
-    return shape;
-  }
-
-private:
-  [[nodiscard]] std::vector<Surfel> surfels(const FaceRecord& face) {
-    vertices_.require(face.first_vertex, face.vertex_count);
-    spend(vertex_budget_, face.vertex_count, "vertices");
-    std::vector<Surfel> out(static_cast<std::size_t>(face.vertex_count));
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const VertexRecord vertex = vertices_.at(face.first_vertex + static_cast<std::int64_t>(i));
-      if (!is_finite(vertex.position))
-        throw Error(fmt::format("has vertex {} at a position that is not finite", i));
-      out[i] = {to_point(vertex.position), is_finite(vertex.normal) ? to_axes(vertex.normal) : Vec3{0, 1, 0}};
-    }
-    return out;
-  }
-
-  [[nodiscard]] Shape read_triangles(const FaceRecord& face) {
-    Shape shape{surfels(face), {}};
-    mesh_vertices_.require(face.first_mesh_vertex, face.mesh_vertex_count);
-    spend(index_budget_, face.mesh_vertex_count, "mesh vertices");
-    const std::int32_t whole = face.mesh_vertex_count / 3 * 3;
-    shape.indices.reserve(static_cast<std::size_t>(whole));
-    for (std::int32_t i = 0; i < whole; ++i) {
-      const std::int32_t index = mesh_vertices_.at(std::int64_t{face.first_mesh_vertex} + i);
-      if (index < 0 || index >= face.vertex_count) {
-        throw Error(
-            fmt::format("has index {}, expected one below its {} vertices", index, face.vertex_count));
-      }
-      shape.indices.push_back(static_cast<std::uint32_t>(index));
-    }
-    return shape;
-  }
-
-  [[nodiscard]] Shape read_patch(const FaceRecord& face) {
-    const std::int64_t width = face.patch_width, height = face.patch_height;
-    const auto good = [](std::int64_t side) { return side >= 3 && side % 2 == 1 && side <= kMaxPatchSide; };
-    if (!good(width) || !good(height) || width * height != face.vertex_count) {
-      throw Error(
-          fmt::format("is a patch of {} × {} control points with {} vertices, expected odd sides of 3 … {} "
-                      "that multiply to the vertices",
-                      width, height, face.vertex_count, kMaxPatchSide));
-    }
-    PatchGrid grid = tessellate(surfels(face), static_cast<std::uint32_t>(width),
-                                static_cast<std::uint32_t>(height), patch_level_);
-    return {std::move(grid.vertices), std::move(grid.indices)};
-  }
-
-  static Vec3 point_of(const FaceRecord& face) {
-    return is_finite(face.light_map_origin) ? to_point(face.light_map_origin) : Vec3{};
-  }
-
-  static Shape flare_marker(const FaceRecord& face) {
-    constexpr float kReach = 0.1f;
-    const Vec3 c = point_of(face);
-    Shape shape;
-    for (std::uint32_t corner = 0; corner < 6; ++corner) {
-      const float reach = corner % 2 == 0 ? kReach : -kReach;
-      const Vec3 axis = corner < 2 ? Vec3{reach, 0, 0} : corner < 4 ? Vec3{0, reach, 0} : Vec3{0, 0, reach};
-      shape.vertices.push_back({{c.x + axis.x, c.y + axis.y, c.z + axis.z}, axis});
-    }
-    shape.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-    return shape;
-  }
-
-  static void spend(std::uint64_t& budget, std::int32_t count, const char* what) {
-    if (static_cast<std::uint64_t>(count) > budget) {
-      throw Error(fmt::format(
-          "claims {} {} that other faces claim too, expected no more than a level of its size needs", count,
-          what));
-    }
-    budget -= static_cast<std::uint64_t>(count);
-  }
-
-  Records<VertexRecord> vertices_;
-  Records<std::int32_t> mesh_vertices_;
-  std::uint32_t patch_level_;
-  std::uint64_t vertex_budget_, index_budget_;
-};
 
 /// The faces of each model: model 0 is the world, the others are its moving parts.
 std::vector<std::pair<std::size_t, std::size_t>> read_models(const Level& level, std::size_t face_count) {
@@ -233,30 +57,43 @@ std::vector<Affine> place_faces(const std::vector<Entity>& entities,
   return places;
 }
 
-void read_faces(const Level& level, std::uint32_t patch_level, std::span<const Affine> places, Scene& scene) {
+/// Unit length; up where there is no direction.
+Vec3 normalised(const Vec3& v) {
+  const double length = std::sqrt(double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z);
+  if (!(length > 1e-12) || !std::isfinite(length)) return {0, 1, 0};
+  return {static_cast<float>(v.x / length), static_cast<float>(v.y / length),
+          static_cast<float>(v.z / length)};
+}
+
+void read_faces(const Level& level, const LoadOptions& options, const ShaderScripts& scripts,
+                std::span<const Affine> places, Scene& scene) {
   const Records<FaceRecord> faces(level.lump(LumpId::faces), "faces");
   const Records<ShaderRecord> shaders(level.lump(LumpId::shaders), "shaders");
-  FaceReader reader(level, patch_level);
+  FaceReader reader(level.lump(LumpId::vertices), level.lump(LumpId::mesh_vertices), options.patch_level);
+  LevelImages images(options.game_file, scene);
   std::vector<Vec3> positions, normals;
+  std::vector<TextureCoordinate> coordinates;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     try {
       const FaceRecord face = faces.at(static_cast<std::int64_t>(i));
-      const ShaderRecord shader = shaders.at(face.shader);
-      const Shape shape = reader.read(face);
+      ShaderLook look = look_of(shaders.at(face.shader), scripts);
+      if (face.type == flare) look = {.surface = Surface::transparent, .cull = Cull::none};
+      const std::uint32_t image = images.image_of(look);
+      const FaceShape shape = reader.read(face, look.cull);
       positions.clear();
       normals.clear();
+      coordinates.clear();
       for (const Surfel& s : shape.vertices) {
         positions.push_back(s.position);
         normals.push_back(normalised(s.normal));
+        if (image != kNoAlphaImage) coordinates.push_back(s.texture);
       }
       if (scene.positions.size() + positions.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw Error("brings the level over 2^32 vertices");
       }
-      const bool see_through = face.type == flare ||
-                               (shader.content_flags & (kTranslucentContents | kFogContents)) != 0 ||
-                               (shader.surface_flags & kNoDrawSurface) != 0;
-      scene.add_object(scene.add_mesh(positions, normals, shape.indices), places[i],
-                       see_through ? Surface::transparent : Surface::opaque);
+      const Sides sides = look.cull == Cull::none ? Sides::both : Sides::front;
+      scene.add_object(scene.add_mesh(positions, normals, shape.indices, coordinates), places[i],
+                       {look.surface, sides, image, look.alpha_cutoff});
     } catch (const Error& error) {
       throw Error(fmt::format("face {} {}", i, error.what()));
     }
@@ -398,7 +235,7 @@ LevelPvs read_level_pvs(const Level& level, const std::pair<std::size_t, std::si
   return pvs;
 }
 
-Scene read(Bytes bytes, std::string name, std::uint32_t patch_level) {
+Scene read(Bytes bytes, std::string name, const LoadOptions& options) {
   const Level level(bytes);
   Scene scene;
   scene.name = std::move(name);
@@ -407,8 +244,14 @@ Scene read(Bytes bytes, std::string name, std::uint32_t patch_level) {
       parse_entities({reinterpret_cast<const char*>(text.data()), text.size()});
   const std::size_t face_count = Records<FaceRecord>(level.lump(LumpId::faces), "faces").size();
   const auto models = read_models(level, face_count);
-  read_faces(level, patch_level, place_faces(entities, models, face_count), scene);
+  const ShaderScripts scripts(options.shader_scripts);
+  if (scripts.broken() != 0) {
+    scene.ignored.push_back(fmt::format(
+        "{} shader scripts whose braces do not match: left out, as the game does", scripts.broken()));
+  }
+  read_faces(level, options, scripts, place_faces(entities, models, face_count), scene);
   scene.level = read_level_pvs(level, models[0], face_count);
+  scene.level->far_plane = far_plane(entities);
   check(scene);
   add_places(entities, scene);
   return scene;
@@ -425,7 +268,7 @@ Scene read_bsp(std::span<const std::byte> bytes, std::string name, const LoadOpt
         fmt::format("{}: patch level {}, expected 1 … {}", name, options.patch_level, kMaxPatchLevel));
   }
   try {
-    return read(bytes, name, options.patch_level);
+    return read(bytes, name, options);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }

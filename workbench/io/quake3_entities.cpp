@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -122,6 +123,16 @@ std::map<std::size_t, Float3> model_origins(const std::vector<Entity>& entities)
     if (error == std::errc{} && end == model.data() + model.size()) origins.insert_or_assign(number, origin);
   }
   return origins;
+}
+
+float far_plane(const std::vector<Entity>& entities) {
+  for (const Entity& entity : entities) {
+    if (value(entity, "classname") != "worldspawn") continue;
+    std::array<float, 1> units{};
+    const bool given = parse_numbers(value(entity, "_farplanedist"), units) == 1 && units[0] > 0;
+    return given ? units[0] * kMetresPerUnit : std::numeric_limits<float>::infinity();
+  }
+  return std::numeric_limits<float>::infinity();
 }
 
 void add_places(const std::vector<Entity>& entities, Scene& scene) {

@@ -21,6 +21,9 @@ std::vector<Entity> parse_entities(std::string_view text);
 /// do), in Quake's units and axes, finite.
 std::map<std::size_t, Float3> model_origins(const std::vector<Entity>& entities);
 
+/// How far the level is drawn, metres: what "_farplanedist" of the world's entity says; infinite without.
+float far_plane(const std::vector<Entity>& entities);
+
 /// Fills viewpoints and waypoints of a scene whose level tree stands. Places in solid are left out.
 void add_places(const std::vector<Entity>& entities, Scene& scene);
 

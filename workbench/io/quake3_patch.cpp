@@ -7,7 +7,7 @@ namespace sightline::io::quake3 {
 namespace {
 
 struct Surfel64 {
-  std::array<double, 6> v;
+  std::array<double, 8> v;
 };
 
 /// The three Bernstein weights at i / level. Built from integers so that i and level - i mirror each other
@@ -20,7 +20,7 @@ std::array<double, 3> weights(std::uint32_t i, std::uint32_t level) {
 Surfel64 blend(const Surfel64& a, const Surfel64& b, const Surfel64& c, const std::array<double, 3>& w) {
   Surfel64 out;
   // The ends are added first: the sum is then the same with a and c swapped.
-  for (std::size_t k = 0; k < 6; ++k) out.v[k] = (w[0] * a.v[k] + w[2] * c.v[k]) + w[1] * b.v[k];
+  for (std::size_t k = 0; k < out.v.size(); ++k) out.v[k] = (w[0] * a.v[k] + w[2] * c.v[k]) + w[1] * b.v[k];
   return out;
 }
 
@@ -30,7 +30,8 @@ PatchGrid tessellate(std::span<const Surfel> control, std::uint32_t width, std::
                      std::uint32_t level) {
   const auto point = [&](std::uint32_t column, std::uint32_t row) {
     const Surfel& s = control[std::size_t{row} * width + column];
-    return Surfel64{{s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z}};
+    return Surfel64{{s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z,
+                     s.texture.u, s.texture.v}};
   };
   const std::uint32_t columns = (width - 1) / 2 * level + 1, rows = (height - 1) / 2 * level + 1;
   PatchGrid grid;
@@ -47,7 +48,7 @@ PatchGrid tessellate(std::span<const Surfel> control, std::uint32_t width, std::
       }
       const auto v = blend(line[0], line[1], line[2], down).v;
       const auto f = [&](std::size_t k) { return static_cast<float>(v[k]); };
-      grid.vertices.push_back({{f(0), f(1), f(2)}, {f(3), f(4), f(5)}});
+      grid.vertices.push_back({{f(0), f(1), f(2)}, {f(3), f(4), f(5)}, {f(6), f(7)}});
     }
   }
   grid.indices.reserve(std::size_t{columns - 1} * (rows - 1) * 6);

@@ -5,12 +5,13 @@
 #include <span>
 #include <vector>
 
-#include <sightline/types.hpp>
+#include <sightline/workbench/scene.hpp>
 
 namespace sightline::io::quake3 {
 
 struct Surfel {
   Vec3 position, normal;
+  TextureCoordinate texture = {};
 };
 
 struct PatchGrid {

@@ -42,6 +42,7 @@ View look(const Vec3& eye, const Direction& direction, std::uint32_t side) {
 struct Sight {
   double solid = std::numeric_limits<double>::infinity();  ///< metres; infinite while none was confirmed
   Vec3 end;
+  bool beyond = false;  ///< there was one longer than the level is drawn
 };
 
 /// All that is seen from one eye, and for what the level denies, the clearest line of sight.
@@ -90,6 +91,10 @@ private:
         if (!t) continue;
         const glm::dvec3 end = ray.origin + std::max(0.0, *t - kBeforeFace) * ray.direction;
         const Vec3 point{static_cast<float>(end.x), static_cast<float>(end.y), static_cast<float>(end.z)};
+        if (glm::length(end - ray.origin) > level_.far_plane) {
+          clearest.beyond = true;
+          continue;
+        }
         const double solid = scene::solid_length(level_, eye_, point);
         if (solid < clearest.solid) clearest = {solid, point};
       }
@@ -110,7 +115,9 @@ bool lists(const LevelPvs& level, const LevelPvs::Leaf& leaf, ObjectId object) {
 }
 
 PvsException reason_for(const LevelPvs& level, const Vec3& eye, ObjectId object, const Sight& sight) {
-  if (sight.solid == std::numeric_limits<double>::infinity()) return PvsException::unconfirmed;
+  if (sight.solid == std::numeric_limits<double>::infinity()) {
+    return sight.beyond ? PvsException::beyond_far_plane : PvsException::unconfirmed;
+  }
   if (sight.solid > kThroughSolid) return PvsException::through_solid;
   if (level.in_world_model[object] == 0) return PvsException::moving_part;
   const LevelPvs::Leaf& there = level.leaves[level.leaf_at(sight.end)];
@@ -127,6 +134,8 @@ std::string_view explanation(PvsException exception) noexcept {
       return "every line of sight to it runs through solid space whose faces are not drawn (caulk)";
     case PvsException::moving_part:
       return "a face of a moving part (door, lift), which leaves do not list by where it may be seen";
+    case PvsException::beyond_far_plane:
+      return "farther away than the level is drawn (_farplanedist)";
     case PvsException::unlisted:
       return "the leaf it is seen in may be seen, but the compiler did not list the face there";
     case PvsException::unconfirmed:

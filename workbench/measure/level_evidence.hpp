@@ -16,11 +16,12 @@ namespace sightline::measure {
 enum class PvsException : std::uint8_t {
   through_solid,  ///< every line of sight to it runs through solid leaves whose faces are not drawn (caulk)
   moving_part,    ///< of a door or lift, which leaves do not list by where it may be seen
-  unlisted,       ///< the leaf it is seen in may be seen, but does not list the face
-  unconfirmed,    ///< seen in single precision alone, on a silhouette
+  beyond_far_plane,  ///< every line of sight to it is longer than LevelPvs::far_plane
+  unlisted,          ///< the leaf it is seen in may be seen, but does not list the face
+  unconfirmed,       ///< seen in single precision alone, on a silhouette
   unexplained,
 };
-inline constexpr std::size_t kPvsExceptions = 5;
+inline constexpr std::size_t kPvsExceptions = 6;
 
 /// A sentence on what the reason means.
 std::string_view explanation(PvsException exception) noexcept;

@@ -60,8 +60,10 @@ Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t
     const View view = or_throw(make_view(cameras[v], width, height));
     for (int look = 0; look < looks; ++look) {
       if (moving > 0) bench.update(mover.move());
+      LostObject where{v, cameras[v], width, height};
+      where.origin = bench.scene().origin;
       for (std::size_t m = 0; m < result.methods.size(); ++m)
-        examine(bench, bench.subjects()[m], view, {v, cameras[v], width, height}, result.methods[m]);
+        examine(bench, bench.subjects()[m], view, where, result.methods[m]);
     }
     ++result.views;
     if (progress) progress(v + 1, cameras.size());
@@ -72,7 +74,7 @@ Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t
 std::string describe(const MethodVerdict& verdict, const LostObject& lost) {
   return fmt::format("{} ({}) lost object {} in view {} ({} pixels lost in this view); the view, {}x{}: {}",
                      verdict.method, to_string(verdict.guarantee), lost.object, lost.view, lost.pixels,
-                     lost.width, lost.height, camera::camera_json(lost.camera).dump());
+                     lost.width, lost.height, camera::camera_json(lost.camera, lost.origin).dump());
 }
 
 }  // namespace sightline::measure

@@ -20,6 +20,7 @@ struct LostObject {
   std::uint32_t width = 0, height = 0;
   ObjectId object = kNoObject;
   std::uint64_t pixels = 0;  ///< lost in this view, over all its lost objects
+  WorldPoint origin{};       ///< what the camera counts from
 };
 
 struct MethodVerdict {

@@ -12,6 +12,7 @@
 #include "workbench/report/pictures.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/report/table.hpp"
+#include "workbench/scene/far_origin.hpp"
 
 namespace sightline::report {
 namespace {
@@ -130,8 +131,9 @@ std::string chart_html(const char* id, const char* title) {
       title, id, title);
 }
 
-std::string where_html(const Snapshot& snapshot) {
-  const Vec3 eye = eye_position(snapshot.view), forward = view_direction(snapshot.view);
+std::string where_html(const Scene& scene, const Snapshot& snapshot) {
+  const WorldPoint eye = scene::to_world(scene.origin, eye_position(snapshot.view));
+  const Vec3 forward = view_direction(snapshot.view);
   return fmt::format(
       "View {} of the path: eye at ({:.2f}, {:.2f}, {:.2f}) m, looking along ({:.2f}, {:.2f}, {:.2f}).",
       snapshot.index, eye.x, eye.y, eye.z, forward.x, forward.y, forward.z);
@@ -207,7 +209,7 @@ std::string make_page(const PageContent& content) {
           "everything drawn, "
           "nothing culled, each of the " +
           format_count(static_cast<double>(content.snapshot.truth.visible_count())) +
-          " visible objects in a colour of its own. " + where_html(content.snapshot) +
+          " visible objects in a colour of its own. " + where_html(content.scene, content.snapshot) +
           "</figcaption></figure>\n";
   page +=
       "<h2>From above</h2>\n<p>The same view, each object coloured by its outcome under each method; x runs "

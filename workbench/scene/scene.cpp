@@ -7,6 +7,7 @@
 #include <sightline/workbench/held_scene.hpp>
 
 #include "library/geometry/linear.hpp"
+#include "workbench/scene/materials.hpp"
 #include "workbench/scene/vertex_normals.hpp"
 
 namespace sightline {
@@ -20,12 +21,16 @@ Sphere Scene::sphere(ObjectId object) const noexcept {
 }
 
 std::uint32_t Scene::add_mesh(std::span<const Vec3> mesh_positions, std::span<const Vec3> mesh_normals,
-                              std::span<const std::uint32_t> mesh_indices) {
-  if (!mesh_normals.empty() && mesh_normals.size() != mesh_positions.size()) {
-    throw Error("scene '" + name + "': mesh " + std::to_string(meshes.size()) + ": " +
-                std::to_string(mesh_normals.size()) + " normals for " +
-                std::to_string(mesh_positions.size()) + " positions, expected one each or none at all");
-  }
+                              std::span<const std::uint32_t> mesh_indices,
+                              std::span<const TextureCoordinate> mesh_coordinates) {
+  const auto require_one_each = [&](std::size_t count, const char* of) {
+    if (count == 0 || count == mesh_positions.size()) return;
+    throw Error("scene '" + name + "': mesh " + std::to_string(meshes.size()) + ": " + std::to_string(count) +
+                " " + of + " for " + std::to_string(mesh_positions.size()) +
+                " positions, expected one each or none at all");
+  };
+  require_one_each(mesh_normals.size(), "normals");
+  require_one_each(mesh_coordinates.size(), "texture coordinates");
   std::vector<Vec3> computed;
   if (mesh_normals.empty()) {
     computed = scene::vertex_normals(mesh_positions, mesh_indices);
@@ -39,21 +44,39 @@ std::uint32_t Scene::add_mesh(std::span<const Vec3> mesh_positions, std::span<co
   positions.insert(positions.end(), mesh_positions.begin(), mesh_positions.end());
   normals.insert(normals.end(), mesh_normals.begin(), mesh_normals.end());
   indices.insert(indices.end(), mesh_indices.begin(), mesh_indices.end());
+  if (!texture_coordinates.empty() || !mesh_coordinates.empty()) {
+    texture_coordinates.resize(added.first_vertex);
+    texture_coordinates.insert(texture_coordinates.end(), mesh_coordinates.begin(), mesh_coordinates.end());
+    texture_coordinates.resize(positions.size());
+  }
   meshes.push_back(added);
   return static_cast<std::uint32_t>(meshes.size() - 1);
 }
 
-ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transform, Surface object_surface) {
+std::uint32_t Scene::add_alpha_image(AlphaImage image) {
+  alpha_images.push_back(std::move(image));
+  return static_cast<std::uint32_t>(alpha_images.size() - 1);
+}
+
+ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transform, const Material& look) {
   if (mesh_index >= meshes.size()) {
     throw Error("scene '" + name + "': object " + std::to_string(size()) + ": shows mesh " +
                 std::to_string(mesh_index) + ", but there are " + std::to_string(meshes.size()));
+  }
+  if (look.alpha_image != kNoAlphaImage && look.alpha_image >= alpha_images.size()) {
+    throw Error("scene '" + name + "': object " + std::to_string(size()) + ": shows alpha image " +
+                std::to_string(look.alpha_image) + ", but there are " + std::to_string(alpha_images.size()));
   }
   const auto object = static_cast<ObjectId>(size());
   bounds.push_back({});
   radius.push_back(0);
   mesh.push_back(mesh_index);
   transform.push_back(object_transform);
-  surface.push_back(object_surface);
+  surface.push_back(look.surface);
+  sides.push_back(scene::drawn_sides(look.sides, raster_state));
+  material_sides.push_back(look.sides);
+  alpha_image.push_back(look.alpha_image);
+  alpha_cutoff.push_back(look.alpha_cutoff);
   move_object(object, object_transform);
   return object;
 }
@@ -144,6 +167,10 @@ std::uint64_t fingerprint(const Scene& scene) noexcept {
   for (const auto* array : {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z}) {
     add(array->data(), array->size() * sizeof(float));
   }
+  // What older scenes do not have is left out, so that what was baked for them stays theirs.
+  if (scene.origin != WorldPoint{}) add(&scene.origin, sizeof scene.origin);
+  if (std::ranges::count(scene.surface, Surface::cut_out) != 0) add(scene.surface.data(), count);
+  if (std::ranges::count(scene.sides, Sides::front) != 0) add(scene.sides.data(), count);
   return hash;
 }
 
@@ -155,10 +182,11 @@ void check(const Scene& s) {
                             &s.bounds.max_y, &s.bounds.max_z, &s.radius}) {
     if (array->size() != n) throw Error("scene '" + s.name + "': object arrays differ in length");
   }
-  if (s.transform.size() != n || s.surface.size() != n) {
+  if (s.transform.size() != n || s.surface.size() != n || s.sides.size() != n) {
     throw Error("scene '" + s.name + "': object arrays differ in length");
   }
   check_geometry(s);
+  scene::check_materials(s);
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_valid(s.bounds[i])) refuse_object(s, i, "bounds must be finite with min <= max");
     if (!std::isfinite(s.radius[i]) || s.radius[i] < 0) refuse_object(s, i, "radius must be finite and >= 0");

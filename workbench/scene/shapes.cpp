@@ -1,6 +1,7 @@
 #include "workbench/scene/shapes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -22,6 +23,11 @@ void Shape::append(const Shape& other) {
   positions.insert(positions.end(), other.positions.begin(), other.positions.end());
   normals.insert(normals.end(), other.normals.begin(), other.normals.end());
   for (std::uint32_t index : other.indices) indices.push_back(first + index);
+  if (texture_coordinates.empty() && other.texture_coordinates.empty()) return;
+  texture_coordinates.resize(first);
+  texture_coordinates.insert(texture_coordinates.end(), other.texture_coordinates.begin(),
+                             other.texture_coordinates.end());
+  texture_coordinates.resize(positions.size());
 }
 
 Shape sphere(std::uint32_t subdivisions) {
@@ -99,6 +105,34 @@ Shape disc(float radius, float y, std::uint32_t sides, bool faces_up) {
     for (std::uint32_t v : {0u, faces_up ? next : here, faces_up ? here : next}) shape.indices.push_back(v);
   }
   shape.normals.assign(shape.positions.size(), {0, faces_up ? 1.0f : -1.0f, 0});
+  return shape;
+}
+
+Shape box(const Box& extent) {
+  const Vec3 &a = extent.min, &b = extent.max;
+  Shape shape;
+  const auto face = [&](const Vec3& normal, const std::array<Vec3, 4>& corners) {
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    shape.positions.insert(shape.positions.end(), corners.begin(), corners.end());
+    shape.normals.insert(shape.normals.end(), 4, normal);
+    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) shape.indices.push_back(first + corner);
+  };
+  face({-1, 0, 0}, {{{a.x, a.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {a.x, b.y, a.z}}});
+  face({1, 0, 0}, {{{b.x, a.y, b.z}, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}}});
+  face({0, -1, 0}, {{{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}}});
+  face({0, 1, 0}, {{{a.x, b.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z}}});
+  face({0, 0, -1}, {{{b.x, a.y, a.z}, {a.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z}}});
+  face({0, 0, 1}, {{{a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z}}});
+  return shape;
+}
+
+Shape card(float width, float height, float across, float up) {
+  Shape shape;
+  const float half = 0.5f * width;
+  shape.positions = {{-half, 0, 0}, {half, 0, 0}, {half, height, 0}, {-half, height, 0}};
+  shape.normals.assign(4, {0, 0, 1});
+  shape.texture_coordinates = {{0, up}, {across, up}, {across, 0}, {0, 0}};
+  shape.indices = {0, 1, 2, 0, 2, 3};
   return shape;
 }
 

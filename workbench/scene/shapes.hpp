@@ -4,15 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include <sightline/types.hpp>
+#include <sightline/workbench/scene.hpp>
 
 namespace sightline::scene {
 
 struct Shape {
   std::vector<Vec3> positions, normals;
   std::vector<std::uint32_t> indices;
+  std::vector<TextureCoordinate> texture_coordinates;  ///< as many as positions, or none
 
-  /// Appends another shape's triangles.
+  /// Appends another shape's triangles. Where one of the two has texture coordinates, so has the whole.
   void append(const Shape& other);
 };
 
@@ -25,5 +26,12 @@ Shape cone(float base_radius, float top_radius, float base_y, float top_y, std::
 
 /// A disc facing up or down at height y.
 Shape disc(float radius, float y, std::uint32_t sides, bool faces_up);
+
+/// A box whose faces look outwards, six times four vertices.
+Shape box(const Box& extent);
+
+/// An upright rectangle that looks along +z, its foot centred on the origin. The texture is repeated `across`
+/// times from left to right and `up` times, its top at the top.
+Shape card(float width, float height, float across = 1, float up = 1);
 
 }  // namespace sightline::scene

@@ -10,6 +10,8 @@ extern const WorldInfo kIrregularWorld;
 extern const WorldInfo kForestWorld;
 extern const WorldInfo kSoupWorld;
 extern const WorldInfo kStrataWorld;
+extern const WorldInfo kFoliageWorld;
+extern const WorldInfo kCityWorld;
 
 /// A transform that scales, turns about y, and moves.
 Affine place(const Vec3& position, float scale, float heading = 0) noexcept;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,9 @@ struct LevelPvs {
   std::vector<std::uint32_t> leaf_objects;  ///< object ids, leaf by leaf
   std::uint32_t clusters = 0;
   std::uint32_t bytes_per_cluster = 0;
-  std::vector<std::uint8_t> visibility;      ///< clusters × bytes_per_cluster bits; empty: all see all
+  std::vector<std::uint8_t> visibility;  ///< clusters × bytes_per_cluster bits; empty: all see all
+  /// Metres from the eye beyond which the level is not drawn and its visibility says nothing.
+  float far_plane = std::numeric_limits<float>::infinity();
   std::vector<std::uint8_t> in_some_leaf;    ///< one an object: 1 where a leaf of the tree lists it
   std::vector<std::uint8_t> in_world_model;  ///< one an object: 0 for a face of a moving part (door, lift)
 
