@@ -170,7 +170,9 @@ Status draw(Numbers& in, OcclusionBuffer& buffer) {
   for (Vec3& p : points) p = in.rarely() ? in.point() : box_of(in).min;
   const auto range = in.rarely() ? 44u : std::max(1u, static_cast<std::uint32_t>(points.size()));
   for (std::uint32_t& i : indices) i = in.byte() % range;
-  const auto mesh = OccluderMesh::make(points, indices);
+  std::vector<Sides> sides(in.byte() & 1 ? indices.size() / 3 : in.byte() % 3);
+  for (Sides& s : sides) s = in.byte() & 1 ? Sides::front : Sides::both;
+  const auto mesh = OccluderMesh::make(points, indices, sides);
   if (!done(mesh)) return mesh.error();
   Mat4 transform;
   if (in.byte() & 1) transform.m[in.byte() % 16] = in.number();

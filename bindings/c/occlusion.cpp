@@ -2,6 +2,7 @@
 #include <sightline/occlusion.hpp>
 
 #include <algorithm>
+#include <vector>
 
 #include "bindings/c/calls.hpp"
 
@@ -19,12 +20,20 @@ extern "C" {
 
 sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
                                                 const uint32_t* indices, size_t index_count,
+                                                const uint8_t* sides, size_t side_count,
                                                 sightline_occluder_mesh** mesh) {
   if (!mesh) return refuse("occluder mesh: what to write to is NULL");
   const auto points = points_of(positions, position_count);
-  if (!can_hold(points.data(), position_count) || !can_hold(indices, index_count))
-    return refuse("occluder mesh: positions or indices are NULL, or more than memory holds");
-  Result<OccluderMesh> made = OccluderMesh::make(points, {indices, index_count});
+  if (!can_hold(points.data(), position_count) || !can_hold(indices, index_count) ||
+      !can_hold(sides, side_count))
+    return refuse("occluder mesh: positions, indices or sides are NULL, or more than memory holds");
+  std::vector<Sides> drawn(side_count);
+  for (std::size_t i = 0; i < side_count; ++i) {
+    if (sides[i] > SIGHTLINE_FRONT_SIDE)
+      return keep({StatusCode::bad_argument, "occluder mesh: expected both sides or the front", i});
+    drawn[i] = static_cast<Sides>(sides[i]);
+  }
+  Result<OccluderMesh> made = OccluderMesh::make(points, {indices, index_count}, drawn);
   if (!made) return keep(made.error());
   *mesh = new sightline_occluder_mesh{*std::move(made)};
   return SIGHTLINE_OK;

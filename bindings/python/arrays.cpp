@@ -176,6 +176,11 @@ std::vector<std::uint32_t> numbers_of(const py::object& given, const char* name)
   return {array.data(), array.data() + array.size()};
 }
 
+std::vector<bool> truths_of(const py::object& given, const std::string& what) {
+  const auto array = contiguous<bool>(given, what);
+  return {array.data(), array.data() + array.size()};
+}
+
 WorldPoint world_point_of(const py::object& given, const char* name) {
   const auto p = doubles_of(given, {3}, std::string(name) + ": expected three numbers");
   return {p[0], p[1], p[2]};

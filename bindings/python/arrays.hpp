@@ -56,6 +56,7 @@ Strided<const std::uint32_t> column_of(const py::object& given, const char* name
 /// shape.
 std::vector<Vec3> points_of(const py::object& given, const char* name);
 std::vector<std::uint32_t> numbers_of(const py::object& given, const char* name);
+std::vector<bool> truths_of(const py::object& given, const std::string& what);
 
 WorldPoint world_point_of(const py::object& given, const char* name);
 std::pair<float, float> two_numbers_of(const py::object& given, const char* name);

@@ -13,12 +13,27 @@ namespace {
 
 using SharedTriangles = Guarded<OccludeeTriangles>;
 
-OccluderMesh make_mesh(const py::object& positions, const py::object& indices) {
+// "both", "front", or a truth a triangle: whether only its front occludes.
+std::vector<Sides> sides_of(const py::object& given) {
+  if (py::isinstance<py::str>(given)) {
+    const auto name = given.cast<std::string>();
+    if (name == "both") return {Sides::both};
+    if (name == "front") return {Sides::front};
+    refuse("sides: expected 'both', 'front' or bool (m,)");
+  }
+  std::vector<Sides> out;
+  for (const bool front : truths_of(given, "sides: expected 'both', 'front' or bool (m,)"))
+    out.push_back(front ? Sides::front : Sides::both);
+  return out;
+}
+
+OccluderMesh make_mesh(const py::object& positions, const py::object& indices, const py::object& sides) {
   const std::vector<Vec3> points = points_of(positions, "positions");
   const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");
+  const std::vector<Sides> drawn = sides_of(sides);
   return expect([&] {
     const Unlocked unlocked;
-    return OccluderMesh::make(points, corners);
+    return OccluderMesh::make(points, corners, drawn);
   }());
 }
 
@@ -112,12 +127,13 @@ std::uint32_t objects_of(const SharedTriangles& triangles) {
 
 void add_triangles(py::module_& m) {
   py::class_<OccluderMesh>(m, "OccluderMesh",
-                           "Triangles that occlude, from both sides: what can be looked through, or is not\n"
-                           "drawn from one side, must not be among them.")
+                           "Triangles that occlude: what can be looked through must not be among them.")
       .def(py::init(&make_mesh),
-           "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat. Refused: positions that are\n"
-           "not finite, indices that are out of range or no multiple of three.",
-           py::arg("positions"), py::arg("indices"))
+           "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat; sides: 'both', 'front', from\n"
+           "where corners turn counter-clockwise, or (m,) whether only a triangle's front is drawn and so\n"
+           "occludes. Refused: positions that are not finite, indices that are out of range or no multiple of\n"
+           "three, another number of sides.",
+           py::arg("positions"), py::arg("indices"), py::arg("sides") = "both")
       .def_property_readonly("triangles", &OccluderMesh::triangles);
 
   py::class_<SharedTriangles>(m, "OccludeeTriangles",

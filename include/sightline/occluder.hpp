@@ -10,9 +10,13 @@
 
 namespace sightline {
 
+/// Which sides of a triangle are drawn, and so occlude. Its front is the side from which its corners turn
+/// counter-clockwise, in mesh space: a mirroring transform turns nothing inside out, as glTF has it.
+enum class Sides : std::uint8_t { both, front };
+
 /// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
-/// the seams between triangles are tight while the outline is drawn a little smaller than it is. Both faces
-/// of a triangle occlude: what can be looked through, or is not drawn from one side, must not be among them.
+/// the seams between triangles are tight while the outline is drawn a little smaller than it is. What can be
+/// looked through (cut-outs, glass) must not be among them.
 ///
 /// Unless a function says otherwise: Errors: none. Cost: constant. Threads: any number may draw one mesh at
 /// once. Allocates: nothing.
@@ -24,12 +28,19 @@ public:
   OccluderMesh(OccluderMesh&&) noexcept;
   OccluderMesh& operator=(OccluderMesh&&) noexcept;
 
-  /// Three indices a triangle, each below positions.size(); positions in metres. Triangles that join to fewer
-  /// than three corners are left out. Errors: bad_mesh for indices that are not a multiple of three or out of
-  /// range (index(): which index) and for positions that are not finite (index(): which position); too_many
-  /// beyond 2³⁰ triangles or 2³² - 2 positions. Cost: n log n, some 2 µs a triangle: build once. Allocates:
-  /// about 300 bytes a triangle.
-  static Result<OccluderMesh> make(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
+  /// Three indices a triangle, each below positions.size(); positions in metres. `sides` has one entry a
+  /// triangle, or one for all of them; without any, both sides occlude. Triangles that join to fewer than
+  /// three corners are left out. Errors: bad_mesh for indices that are not a multiple of three or out of
+  /// range (index(): which index), for positions that are not finite (index(): which position) and for
+  /// another number of sides; too_many beyond 2³⁰ triangles or 2³² - 2 positions. Cost: n log n, some 2 µs a
+  /// triangle: build once. Allocates: about 300 bytes a triangle.
+  static Result<OccluderMesh> make(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                                   std::span<const Sides> sides = {});
+  /// The same where one answer does for all triangles.
+  static Result<OccluderMesh> make(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                                   Sides sides) {
+    return make(positions, indices, {&sides, 1});
+  }
 
   /// How many triangles are left.
   [[nodiscard]] std::size_t triangles() const noexcept;

@@ -114,12 +114,13 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
   }
 }
 
-// A polygon that lies on the plane.
-void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane) {
+// A polygon that lies on the plane, if it turns that way; 0: whichever way it turns.
+void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way) {
   if (!clip_to_view(tiles, 0, polygon)) return;
   if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
   const Outline outline = outline_of(tiles.projection, polygon);
   const float area = area_of(outline);
+  if (way * area < 0) return;
   Convex out;
   if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return;
   const float inset = kInset + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
@@ -147,18 +148,19 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
       }
       glm::dvec3 normal(0);
       normal[a] = 1;
-      draw_clipped(tiles, face, {normal, at});
+      draw_clipped(tiles, face, {normal, at}, 0);
     }
   }
 }
 
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners) noexcept {
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners,
+                           float way) noexcept {
   Polygon polygon;
   for (const auto& c : corners) polygon.points[polygon.count++] = {c[0], c[1], c[2]};
   const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
   const glm::dvec3 normal = glm::cross(q - p, r - p);
   const double length = glm::length(normal);
-  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)});
+  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way);
 }
 
 }  // namespace sightline::occlusion

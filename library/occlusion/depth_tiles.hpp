@@ -31,6 +31,7 @@ struct MeshScratch {
   geometry::AlignedVector<float> facing;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
+  float front = 1;  ///< which way triangles turn on the image that are seen from their front
 };
 
 struct DepthTiles {
@@ -57,8 +58,10 @@ struct DepthTiles {
 /// A box that crosses the near plane, about the eye.
 void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
                       const std::array<float, 3>& high) noexcept;
-/// A triangle that crosses the near plane, about the eye.
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners) noexcept;
+/// A triangle that crosses the near plane, about the eye; drawn only if it turns that way on the image, 1 or
+/// -1, or whichever way it turns for 0.
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners,
+                           float way) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// Allocates until it has seen its largest mesh.

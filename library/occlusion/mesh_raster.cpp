@@ -108,7 +108,9 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   for (; rest != 0; rest &= rest - 1) draw_one_of(tiles, ready, std::countr_zero(rest));
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    draw_clipped_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i));
+    const bool one_sided = mesh.groups[group].one_sided >> i & 1;
+    draw_clipped_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i),
+                          one_sided ? tiles.mesh.front : 0);
   }
 }
 
@@ -150,6 +152,19 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 HWY_EXPORT(draw_triangles);
 
+namespace {
+
+// Whether triangles turn the other way once they are moved so.
+bool mirrors(const RowTransform& transform) {
+  const auto row = [&](std::size_t a) {
+    const Vec4& r = transform.rows[a];
+    return glm::dvec3(r.x, r.y, r.z);
+  };
+  return glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
+}
+
+}  // namespace
+
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform) {
   MeshScratch& s = tiles.mesh;
   const std::size_t groups = mesh.groups.size();
@@ -159,6 +174,7 @@ void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransfo
     s.facing.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
+  s.front = tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
   HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform);
 }

@@ -28,15 +28,19 @@ HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopol
   return out;
 }
 
-// Which way a triangle turns on the image: 1 or -1; 0: too small; kCut: the near plane cuts it.
+// Which way a triangle turns on the image: 1 or -1; 0: too small, or not drawn from this side; kCut: the near
+// plane cuts it.
 constexpr float kCut = 2;
 
-HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image) {
+HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image,
+                        std::uint32_t one_sided) {
   const F f;
   const VF area = area_of(image);
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
-  const VF facing = hn::IfThenElse(hn::Gt(area, least), one,
-                                   hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
+  VF facing = hn::IfThenElse(hn::Gt(area, least), one,
+                             hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
+  const auto from_behind = hn::And(mask_of(f, one_sided), hn::Eq(facing, hn::Set(f, -tiles.mesh.front)));
+  facing = hn::IfThenZeroElse(from_behind, facing);
   // Not a number counts as behind, too.
   const auto before = [&](std::size_t k)
                           HWY_ATTR { return hn::Ge(dot_row(tiles.rays.near_plane, corners[k]), zero); };
@@ -54,8 +58,9 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTrans
   s.known[group] = s.turn;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
     const auto corners = corners_about_eye(tiles.projection, mesh, transform, group, lane);
-    hn::Store(facing_of(tiles, corners, on_image(tiles.projection, corners)), f,
-              &s.facing[group * kGroup + lane]);
+    hn::Store(facing_of(tiles, corners, on_image(tiles.projection, corners),
+                        mesh.groups[group].one_sided >> lane),
+              f, &s.facing[group * kGroup + lane]);
   }
 }
 
@@ -88,7 +93,7 @@ HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& m
   c.group = group, c.lane = lane;
   c.corners = corners_about_eye(e, mesh, transform, group, lane);
   c.image = on_image(e, c.corners);
-  c.facing = facing_of(tiles, c.corners, c.image);
+  c.facing = facing_of(tiles, c.corners, c.image, mesh.groups[group].one_sided >> lane);
   if (hn::Lanes(f) == kGroup) {
     hn::Store(c.facing, f, &tiles.mesh.facing[group * kGroup]);
     tiles.mesh.known[group] = tiles.mesh.turn;

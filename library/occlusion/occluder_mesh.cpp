@@ -26,7 +26,7 @@ struct Hash {
 
 // Triangles of joined vertices; those that keep fewer than three corners are left out.
 void add_triangles(OccluderTopology& mesh, std::span<const Vec3> positions,
-                   std::span<const std::uint32_t> indices) {
+                   std::span<const std::uint32_t> indices, std::span<const Sides> sides) {
   std::unordered_map<Vec3, std::uint32_t, Hash> joined;
   const auto vertex = [&](std::uint32_t index) {
     const auto [at, added] =
@@ -37,8 +37,9 @@ void add_triangles(OccluderTopology& mesh, std::span<const Vec3> positions,
   for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
     const auto corners = indices.subspan(i, 3);
     const std::array<std::uint32_t, 3> corner{vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
-    if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0])
-      mesh.triangles.push_back(corner);
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    mesh.triangles.push_back(corner);
+    mesh.one_sided.push_back(!sides.empty() && sides[sides.size() == 1 ? 0 : i / 3] == Sides::front);
   }
 }
 
@@ -65,12 +66,16 @@ void find_neighbours(OccluderTopology& mesh) {
   }
 }
 
-Status check_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) noexcept {
+Status check_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                  std::span<const Sides> sides) noexcept {
   constexpr std::size_t kMostTriangles = std::size_t{1} << 30;
   if (indices.size() % 3 != 0)
     return {StatusCode::bad_mesh, "occluder: expected three indices a triangle", indices.size()};
   if (indices.size() / 3 > kMostTriangles || positions.size() >= OccluderTopology::kNone)
     return {StatusCode::too_many, "occluder: expected at most 2^30 triangles and 2^32 - 2 positions"};
+  if (sides.size() > 1 && sides.size() != indices.size() / 3)
+    return {StatusCode::bad_mesh, "occluder: expected as many sides as triangles, one, or none",
+            sides.size()};
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!geometry::is_finite(positions[i]))
       return {StatusCode::bad_mesh, "occluder: a position is not finite", i};
@@ -96,10 +101,11 @@ OccluderMesh& OccluderMesh::operator=(OccluderMesh&& other) noexcept {
 }
 
 Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
-                                        std::span<const std::uint32_t> indices) {
-  if (const Status sound = check_mesh(positions, indices); !sound) return sound;
+                                        std::span<const std::uint32_t> indices,
+                                        std::span<const Sides> sides) {
+  if (const Status sound = check_mesh(positions, indices, sides); !sound) return sound;
   OccluderMesh mesh;
-  add_triangles(*mesh.topology_, positions, indices);
+  add_triangles(*mesh.topology_, positions, indices, sides);
   sort_along_curve(*mesh.topology_);
   find_neighbours(*mesh.topology_);
   pair_up(*mesh.topology_);

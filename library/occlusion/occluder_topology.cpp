@@ -34,13 +34,16 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
   OccluderTopology::Group& group = mesh.groups[g];
   const std::size_t at = g * kGroup + i, last = mesh.triangles.size() - 1;
   const auto& triangle = mesh.triangles[std::min(at, last)];
+  if (at <= last) {
+    group.first_half |= std::uint32_t{mesh.first_half[at]} << i;
+    group.one_sided |= std::uint32_t{mesh.one_sided[at]} << i;
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& p = mesh.positions[at <= last ? triangle[k] : triangle[0]];
     float* out = &mesh.corners[(g * 9 + 3 * k) * kGroup + i];
     out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
     bounds.add(p);
     if (at > last) continue;
-    group.first_half |= std::uint32_t{mesh.first_half[at]} << i;
     group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
     const std::uint32_t other = mesh.neighbours[at][k];
     mesh.neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
@@ -84,12 +87,20 @@ void sort_along_curve(OccluderTopology& mesh) {
     }
     return out;
   };
-  std::vector<std::pair<std::uint32_t, std::array<std::uint32_t, 3>>> keyed;
+  struct Keyed {
+    std::uint32_t key;
+    std::array<std::uint32_t, 3> triangle;
+    std::uint8_t one_sided;
+  };
+  std::vector<Keyed> keyed;
   keyed.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) keyed.emplace_back(key(t), t);
-  std::stable_sort(keyed.begin(), keyed.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < keyed.size(); ++i) mesh.triangles[i] = keyed[i].second;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    keyed.push_back({key(mesh.triangles[i]), mesh.triangles[i], mesh.one_sided[i]});
+  std::ranges::stable_sort(keyed, {}, &Keyed::key);
+  for (std::size_t i = 0; i < keyed.size(); ++i) {
+    mesh.triangles[i] = keyed[i].triangle;
+    mesh.one_sided[i] = keyed[i].one_sided;
+  }
 }
 
 }  // namespace sightline::occlusion

@@ -14,6 +14,7 @@ namespace sightline::occlusion {
 struct OccluderTopology {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint8_t> one_sided;  ///< one a triangle: it occludes from its front alone
   /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -27,6 +28,7 @@ struct OccluderTopology {
     /// A bit a triangle and edge: its second corner has the lower number.
     std::array<std::uint32_t, 3> turned{};
     std::uint32_t first_half = 0;                    ///< a bit a triangle
+    std::uint32_t one_sided = 0;                     ///< the same
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …

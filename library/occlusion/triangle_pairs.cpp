@@ -20,7 +20,7 @@ constexpr double kLeastTurn = 0.01;
 // is flat but for rounding; 0 elsewhere. That planes agree is looked into again when they are drawn.
 double diagonal(const OccluderTopology& mesh, std::uint32_t triangle, std::uint32_t k) {
   const std::uint32_t other = mesh.neighbours[triangle][k];
-  if (other == kNone) return 0;
+  if (other == kNone || mesh.one_sided[triangle] != mesh.one_sided[other]) return 0;
   const auto& t = mesh.triangles[triangle];
   const auto& sides = mesh.neighbours[other];
   const auto edge = static_cast<std::size_t>(std::ranges::find(sides, triangle) - sides.begin());
@@ -84,15 +84,18 @@ void pair_up(OccluderTopology& mesh) {
   for (std::uint32_t i = 0; i < count; ++i) place[order[i]] = i;
   auto triangles = mesh.triangles;
   auto neighbours = mesh.neighbours;
+  auto one_sided = mesh.one_sided;
   mesh.first_half.assign(count, 0);
   for (std::uint32_t i = 0; i < count; ++i) {
     triangles[i] = mesh.triangles[order[i]];
+    one_sided[i] = mesh.one_sided[order[i]];
     neighbours[i] = mesh.neighbours[order[i]];
     for (std::uint32_t& other : neighbours[i]) other = other == kNone ? kNone : place[other];
     mesh.first_half[i] = i + 1 < count && partner[order[i]] == order[i + 1] && i % 2 == 0;
   }
   mesh.triangles = std::move(triangles);
   mesh.neighbours = std::move(neighbours);
+  mesh.one_sided = std::move(one_sided);
 }
 
 }  // namespace sightline::occlusion

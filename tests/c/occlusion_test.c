@@ -14,9 +14,26 @@ static const float kFar[9] = {-1, -1, -7, 1, -1, -7, 0, 1, -7};
 
 static sightline_occluder_mesh* wall(void) {
   sightline_occluder_mesh* mesh = NULL;
-  EXPECT(sightline_occluder_mesh_create(kWall[0], 4, kIndices, 6, &mesh) == SIGHTLINE_OK);
+  EXPECT(sightline_occluder_mesh_create(kWall[0], 4, kIndices, 6, NULL, 0, &mesh) == SIGHTLINE_OK);
   EXPECT(sightline_occluder_mesh_triangles(mesh) == 2);
   return mesh;
+}
+
+/* Seen from its front the wall hides what is behind it, from behind only where both sides are drawn. */
+static void draw_sides(sightline_occlusion* occlusion, const sightline_view* view) {
+  const uint32_t turned[6] = {2, 1, 0, 3, 2, 0};
+  const uint8_t front = SIGHTLINE_FRONT_SIDE, both[2] = {SIGHTLINE_BOTH_SIDES, SIGHTLINE_BOTH_SIDES};
+  for (int way = 0; way < 3; ++way) {
+    sightline_occluder_mesh* mesh = NULL;
+    int seen = 9;
+    EXPECT(sightline_occluder_mesh_create(kWall[0], 4, way ? turned : kIndices, 6, way < 2 ? &front : both,
+                                          way < 2 ? 1 : 2, &mesh) == SIGHTLINE_OK);
+    EXPECT(sightline_occlusion_begin(occlusion, view) == SIGHTLINE_OK);
+    EXPECT(sightline_occlusion_draw_mesh(occlusion, mesh, NULL) == SIGHTLINE_OK);
+    EXPECT(sightline_occlusion_may_see_triangles(occlusion, kFar, 3, &seen) == SIGHTLINE_OK);
+    EXPECT(seen == (way == 1));
+    sightline_occluder_mesh_destroy(mesh);
+  }
 }
 
 static void draw_and_ask(sightline_occlusion* occlusion, const sightline_view* view) {
@@ -167,17 +184,22 @@ static void refuse_meshes(sightline_occlusion* occlusion) {
   const size_t none = SIGHTLINE_NO_INDEX;
   float positions[4][3];
   uint32_t indices[6];
+  uint8_t sides[3] = {SIGHTLINE_FRONT_SIDE, SIGHTLINE_BOTH_SIDES, 0};
   memcpy(positions, kWall, sizeof kWall), memcpy(indices, kIndices, sizeof kIndices);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(NULL, 4, indices, 6, &mesh), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, NULL, 6, &mesh), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], TOO_MUCH, indices, 6, &mesh), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, TOO_MUCH, &mesh), bad, none);
-  EXPECT(sightline_occluder_mesh_create(positions[0], 4, indices, 5, &mesh) == bad_mesh);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(NULL, 4, indices, 6, NULL, 0, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, NULL, 6, NULL, 0, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 0, NULL), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], TOO_MUCH, indices, 6, NULL, 0, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, TOO_MUCH, NULL, 0, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 2, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, sides, 3, &mesh), bad_mesh, 3);
+  sides[1] = 2;
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, sides, 2, &mesh), bad, 1);
+  EXPECT(sightline_occluder_mesh_create(positions[0], 4, indices, 5, NULL, 0, &mesh) == bad_mesh);
   indices[4] = 4;
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, &mesh), bad_mesh, 4);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 0, &mesh), bad_mesh, 4);
   indices[4] = 2, positions[3][1] = INFINITY;
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, &mesh), bad_mesh, 3);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 0, &mesh), bad_mesh, 3);
   EXPECT(mesh == NULL && sightline_occluder_mesh_triangles(NULL) == 0);
   sightline_occluder_mesh_destroy(NULL);
 
@@ -244,6 +266,7 @@ void test_occlusion(void) {
   sightline_occlusion* occlusion = sightline_occlusion_create();
   before_begin(&view);
   draw_and_ask(occlusion, &view);
+  draw_sides(occlusion, &view);
   ask_for_objects(occlusion, &view);
   read_pixels(occlusion, &view);
   refuse_meshes(occlusion);

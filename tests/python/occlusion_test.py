@@ -36,6 +36,14 @@ class Draw(Case):
         flat = sightline.OccluderMesh(WALL[:, :], INDICES.ravel())
         self.assertEqual(flat.triangles, 2)
 
+    def test_a_wall_seen_from_behind_hides_only_what_its_back_is_drawn_over(self):
+        turned = INDICES[:, ::-1].copy()
+        for indices, sides, seen in ((INDICES, "front", False), (turned, "front", True), (turned, "both", False),
+                                     (turned, np.array([True, False]), True), (turned, np.zeros(2, bool), False)):
+            self.occlusion.begin(VIEW)
+            self.occlusion.draw_mesh(sightline.OccluderMesh(WALL, indices, sides))
+            self.assertEqual(self.occlusion.may_see_boxes(BOXES[1:] * (9, 5, 1))[0], seen)
+
     def test_boxes_and_spheres_hide_too(self):
         columns = [np.ascontiguousarray(SPHERES[:, i]) for i in range(4)]
         fields = np.zeros(2, [("radius", "f4"), ("centre", "f4", 3)])
@@ -99,6 +107,9 @@ class Draw(Case):
         self.bad("positions: expected float32", mesh, WALL.ravel(), INDICES)
         self.bad("positions: expected float32", mesh, None, INDICES)
         self.bad("indices: expected uint32", mesh, WALL, INDICES.astype(int))
+        self.bad("sides: expected", mesh, WALL, INDICES, "back")
+        self.bad("sides: expected", mesh, WALL, INDICES, np.array([1, 0]))
+        self.refused("bad_mesh", "as many sides", mesh, WALL, INDICES, np.ones(3, bool), index=3)
         self.refused("bad_mesh", "names no position", mesh, WALL[:3], INDICES, index=5)
         broken = WALL.copy()
         broken[1, 2] = np.nan

@@ -13,16 +13,22 @@ extern "C" {
 
 /* --- occluders out of meshes --- */
 
-/** Triangles that occlude, from both sides: what can be looked through, or is not drawn from one side, must
- * not be among them. Any number of threads may draw one mesh at once. */
+/** Which sides of a triangle are drawn, and so occlude. Its front is the side from which its corners turn
+ * counter-clockwise, whatever a transform mirrors. */
+enum { SIGHTLINE_BOTH_SIDES = 0, SIGHTLINE_FRONT_SIDE = 1 };
+
+/** Triangles that occlude: what can be looked through must not be among them. Any number of threads may draw
+ * one mesh at once. */
 typedef struct sightline_occluder_mesh sightline_occluder_mesh;
 
-/** Three floats a position, three indices a triangle; triangles that join to fewer than three corners are
- * left out. Errors: BAD_ARGUMENT; BAD_MESH for indices that are not a multiple of three or out of range (the
- * index says which) and for positions that are not finite (which position); TOO_MANY. Cost: n log n, some 2
- * us a triangle: build once. Allocates: about 300 bytes a triangle. */
+/** Three floats a position, three indices a triangle, and of `sides` one a triangle or one for all of them;
+ * NULL and 0: both sides of each. Triangles that join to fewer than three corners are left out. Errors:
+ * BAD_ARGUMENT; BAD_MESH for indices that are not a multiple of three or out of range (the index says which),
+ * for positions that are not finite (which position) and for another number of sides; TOO_MANY. Cost: n log
+ * n, some 2 us a triangle: build once. Allocates: about 300 bytes a triangle. */
 SIGHTLINE_API sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
                                                               const uint32_t* indices, size_t index_count,
+                                                              const uint8_t* sides, size_t side_count,
                                                               sightline_occluder_mesh** mesh);
 SIGHTLINE_API void sightline_occluder_mesh_destroy(sightline_occluder_mesh* mesh);
 /** How many triangles are left; 0 for NULL. */

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <sightline/boxes.hpp>
+#include <sightline/occluder.hpp>
 #include <sightline/pvs.hpp>
 #include <sightline/types.hpp>
 #include <sightline/workbench/affine.hpp>
@@ -28,11 +29,6 @@ enum class Surface : std::uint8_t {
   cut_out,      ///< drawn where its alpha says so, seen, never an occluder: glTF's MASK, a shader's alphaFunc
   transparent,  ///< drawn last, far to near, blended; hides nothing
 };
-
-/// Which sides of its triangles a standard renderer draws. The front is where they turn counter-clockwise in
-/// mesh space. A mirroring transform turns nothing inside out: as glTF has it, the front of a mirrored object
-/// is where its triangles turn clockwise in world space.
-enum class Sides : std::uint8_t { both, front };
 
 /// Alpha over texture coordinates, 8 bits a texel, rows from the top: texel (x, y) covers u of x / width …
 /// (x + 1) / width and v of y / height … (y + 1) / height. Repeated without end in both directions.
