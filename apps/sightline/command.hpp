@@ -40,6 +40,9 @@ void on_run(CLI::App& command, int& exit, Run run) {
 /// scene.
 void attach_pvs(Scene& scene, const std::string& file);
 
+/// The option --faces: which sides of triangles are drawn.
+void add_faces(CLI::App& command, RasterState& state);
+
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 

@@ -22,6 +22,7 @@ struct CompareOptions {
   std::size_t frames = 24;
   double moving = 0;
   bool limit = false;
+  RasterState faces = RasterState::materials;
 };
 
 int run_compare(const CompareOptions& options) {
@@ -32,6 +33,7 @@ int run_compare(const CompareOptions& options) {
   const auto device = open_device_or_cpu(options.device);
   if (device) measure.repeats = 5;
   Scene scene = load_scene(options.scene);
+  set_raster_state(scene, options.faces);
   attach_pvs(scene, options.pvs);
   measure::Bench bench(scene,
                        options.methods.empty() ? measure::fitting_methods(scene, device != nullptr)
@@ -42,9 +44,9 @@ int run_compare(const CompareOptions& options) {
   const camera::CameraPath path = camera::make_path(scene, path_name, options.frames);
   const measure::Comparison comparison = measure::compare(bench, path, measure, progress("compare"));
   expect_silence(device.get());
-  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}\n\n", scene.name, scene.size(),
+  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}; {}\n\n", scene.name, scene.size(),
              triangle_count(scene), path.name, path.cameras.size(), options.size,
-             device ? " on " + comparison.device : "");
+             device ? " on " + comparison.device : "", report::sides_drawn(scene.raster_state));
   fmt::print("{}\n{}\n", report::render(report::summary_table(comparison)), report::verdict(comparison));
   if (const report::Table ratios = report::ratio_table(comparison); !ratios.rows.empty())
     fmt::print("\nWhere less than 20 % of the objects are visible:\n{}", report::render(ratios));
@@ -77,6 +79,7 @@ void add_compare(CLI::App& app, int& exit) {
       ->type_name("WxH")
       ->capture_default_str();
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
+  add_faces(command, options->faces);
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
       ->check(share());
   command.add_flag("--limit", options->limit,

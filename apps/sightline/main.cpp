@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <span>
 
@@ -62,6 +63,20 @@ CLI::Validator not_empty() {
     return text.empty() ? "it is empty, expected a name" : "";
   };
   return {refuse, ""};
+}
+
+void add_faces(CLI::App& command, RasterState& state) {
+  static const std::map<std::string, RasterState> kStates{{"materials", RasterState::materials},
+                                                          {"both", RasterState::both_sides},
+                                                          {"front", RasterState::front_faces}};
+  command
+      .add_option_function<std::string>(
+          "--faces", [&state](const std::string& name) { state = kStates.at(name); },
+          "sides of triangles that are drawn: as the materials say, both, or front alone; what is exact is "
+          "so "
+          "in that state")
+      ->check(CLI::IsMember(kStates).description(""))
+      ->type_name("materials|both|front");
 }
 
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {

@@ -10,6 +10,7 @@
 #include "device.hpp"
 #include "workbench/camera/random_views.hpp"
 #include "workbench/report/evidence_table.hpp"
+#include "workbench/report/summary.hpp"
 #include "workbench/report/verification_table.hpp"
 
 namespace sightline::app {
@@ -21,6 +22,7 @@ struct VerifyOptions {
   std::size_t views = 100;
   std::uint64_t seed = 1;
   double moving = 0;
+  RasterState faces = RasterState::materials;
 };
 
 // What the level's own visibility denies and rays see all the same, reason by reason.
@@ -37,6 +39,7 @@ int run_verify(const VerifyOptions& options) {
   const auto [width, height] = parse_size(options.size);
   const auto device = open_device_or_cpu(options.device);
   Scene scene = load_scene(options.scene);
+  set_raster_state(scene, options.faces);
   attach_pvs(scene, options.pvs);
   measure::Bench bench(scene,
                        options.methods.empty() ? measure::promising_methods(scene, device != nullptr)
@@ -51,7 +54,8 @@ int run_verify(const VerifyOptions& options) {
   if (device) fmt::print(", each as a camera cut and once more");
   if (options.moving > 0) fmt::print(", {:g} of the objects moving", options.moving);
   if (device) fmt::print(", on {}", result.device);
-  fmt::print("\n\n{}", report::render(report::verification_table(result)));
+  fmt::print("; {}\n\n{}", report::sides_drawn(scene.raster_state),
+             report::render(report::verification_table(result)));
   for (const measure::MethodVerdict& m : result.methods) {
     for (const measure::LostObject& lost : m.examples) fmt::print("{}\n", measure::describe(m, lost));
   }
@@ -83,6 +87,7 @@ void add_verify(CLI::App& app, int& exit) {
       ->type_name("WxH")
       ->capture_default_str();
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
+  add_faces(command, options->faces);
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
       ->check(share());
   on_run(command, exit, [options] { return run_verify(*options); });

@@ -19,8 +19,8 @@ device::Picture draw_all(device::Renderer& renderer, const View& view) {
   renderer.frame(view, [&](device::Recorder& frame) {
     renderer.draws().build(frame, flags.address(), device::VisibleDraws::kAll, renderer.transparent_order(),
                            draws);
-    renderer.draw_opaque(frame, draws, device::Renderer::Style::lit, device::Renderer::Clear::both);
-    renderer.draw_transparent(frame, draws);
+    renderer.draw_solid(frame, draws, device::Renderer::Style::lit, device::Renderer::Clear::both);
+    renderer.draw_rest(frame, draws);
   });
   return renderer.picture();
 }

@@ -44,9 +44,9 @@ TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
         const View view = view_of(camera, 160, 100);
         Frame frame;
         cull(*method, view, frame);
-        const auto truth = draws.item_buffer(view, all, Submission::calls);
+        const auto truth = draws.items(view, all).ids;
         for (const Submission submission : {Submission::calls, Submission::multi_draw}) {
-          const auto picture = draws.item_buffer(view, frame.draws, submission);
+          const auto picture = draws.items(view, frame.draws, submission).ids;
           ASSERT_EQ(std::ranges::mismatch(picture, truth).in1, picture.end()) << name;
         }
         shown += static_cast<std::size_t>(
@@ -59,15 +59,16 @@ TEST_F(TriangleDrawsTest, WhatIsSubmittedLooksLikeAllTriangles) {
 
 // Two independent judges of facing: the rasteriser's winding and the rays' normals.
 TEST_F(TriangleDrawsTest, BackFacesAreThoseOfTheRayJudge) {
-  const Scene scene = generate_world("soup?triangles=4000&size=60");
+  Scene scene = generate_world("soup?triangles=4000&size=60");
+  set_raster_state(scene, RasterState::front_faces);
   device::Renderer renderer(device(), scene);
   const auto zhang = create_method("zhang-octree", scene);
   device::TriangleDraws draws(renderer, *zhang->geometry());
-  const oracle::EmbreeJudge judge(scene, oracle::Faces::front);
+  const oracle::EmbreeJudge judge(scene);
   std::size_t differ = 0, all = 0;
   for (const Camera& camera : camera::random_cameras(scene, 8, 6)) {
     const View view = view_of(camera, 160, 100);
-    const auto picture = draws.item_buffer(view, everything(scene, *zhang->geometry()), Submission::calls);
+    const auto picture = draws.items(view, everything(scene, *zhang->geometry())).ids;
     const auto rays = judge.render(view).ids;
     for (std::size_t p = 0; p < rays.size(); ++p) differ += picture[p] != rays[p];
     all += rays.size();
@@ -111,9 +112,7 @@ TEST_F(TriangleDrawsTest, TransparentTrianglesBlendAsWithoutCulling) {
   for (const std::string name : {"simple-octree", "drawcall-wise-kd-tree", "zhang-grid",
                                  "zhang-octree?height=6", "cluster-cone", "adaptive"}) {
     const auto method = create_method(name, scene);
-    TriangleGeometry everything = *all->geometry();
-    everything.front_faces_only = method->geometry()->front_faces_only;
-    device::TriangleDraws draws(renderer, *method->geometry()), truth(renderer, everything);
+    device::TriangleDraws draws(renderer, *method->geometry()), truth(renderer, *all->geometry());
     for (const Camera& camera : camera::random_cameras(scene, 8, 15)) {
       const View view = view_of(camera, 160, 100);
       Frame frame;
@@ -144,7 +143,7 @@ TEST(TriangleDraws, NeedNoGeometryShaders) {
     const View view = view_of({.eye = {0, 0, 90}, .forward = {0, 0, -1}}, 160, 100);
     Frame frame;
     cull(*method, view, frame);
-    const auto ids = draws.item_buffer(view, frame.draws, Submission::calls);
+    const auto ids = draws.items(view, frame.draws).ids;
     EXPECT_GT(std::ranges::count_if(ids, [](ObjectId id) { return id != kNoObject; }), 100);
   }
   EXPECT_EQ(device.messages(), 0u) << device.first_message();

@@ -36,27 +36,31 @@ TEST(DrawCalls, LoseNoPixelOfAwkwardScenes) {
   std::vector<std::string> names(kAll.begin(), kAll.end());
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     Scene scene = test::scene_of(triangles);
-    measure::Bench bench(scene, names);
-    const auto cameras = camera::random_cameras(scene, 25, 7);
-    const measure::Verification result = measure::verify(bench, cameras, 96, 64);
-    for (const auto& verdict : result.methods) {
-      EXPECT_EQ(verdict.guarantee, Guarantee::exact);
-      EXPECT_EQ(verdict.lost_pixels, 0u) << name << ' ' << verdict.method;
-      if (name != "single" && name != "degenerate") EXPECT_GT(verdict.visible, 0u) << name;
+    for (const RasterState state : {RasterState::both_sides, RasterState::front_faces}) {
+      set_raster_state(scene, state);
+      measure::Bench bench(scene, names);
+      const auto cameras = camera::random_cameras(scene, 25, 7);
+      const measure::Verification result = measure::verify(bench, cameras, 96, 64);
+      for (const auto& verdict : result.methods) {
+        EXPECT_EQ(verdict.guarantee, Guarantee::exact);
+        EXPECT_EQ(verdict.lost_pixels, 0u) << name << ' ' << verdict.method;
+        if (name != "single" && name != "degenerate") EXPECT_GT(verdict.visible, 0u) << name;
+      }
     }
   }
 }
 
 // Independent of the judge's own book-keeping: rays against a scene of only the submitted triangles.
 TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
-  const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
+  Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
+  // Every other object from its front alone.
+  for (ObjectId object = 0; object < scene.size(); object += 2)
+    scene.sides[object] = scene.material_sides[object] = Sides::front;
   const Scene triangles = oracle::one_object_a_triangle(scene);
+  const oracle::EmbreeJudge judge(triangles);
   const auto cameras = camera::random_cameras(scene, 6, 9);
   for (const std::string& name : kAll) {
     const auto method = create_method(name, scene);
-    const oracle::Faces faces =
-        method->geometry()->front_faces_only ? oracle::Faces::front : oracle::Faces::both;
-    const oracle::EmbreeJudge judge(triangles, faces);
     for (const Camera& camera : cameras) {
       const View view = *make_view(camera, 120, 80);
       Frame frame;
@@ -70,7 +74,7 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
             only.add_mesh(std::span(triangles.positions).subspan(mesh.first_vertex, 3),
                           std::span(triangles.normals).subspan(mesh.first_vertex, 3),
                           std::span(triangles.indices).subspan(mesh.first_index, 3));
-        only.add_object(added, {}, triangles.surface[t]);
+        only.add_object(added, {}, triangles.material(t));
         number.push_back(t);
       }
       const oracle::ItemBuffer truth = judge.render(view);
@@ -78,7 +82,7 @@ TEST(DrawCalls, ASceneOfOnlyTheSubmittedTrianglesLooksTheSame) {
         EXPECT_EQ(truth.visible_count(), 0u);
         continue;
       }
-      const oracle::ItemBuffer picture = oracle::EmbreeJudge(only, faces).render(view);
+      const oracle::ItemBuffer picture = oracle::EmbreeJudge(only).render(view);
       for (std::size_t p = 0; p < truth.ids.size(); ++p) {
         const ObjectId shown = picture.ids[p] == kNoObject ? kNoObject : number[picture.ids[p]];
         ASSERT_EQ(shown, truth.ids[p]) << name << " pixel " << p;
@@ -179,7 +183,8 @@ TEST(DrawCalls, BlendTransparentTrianglesOnceAndFarToNear) {
 }
 
 TEST(DrawCalls, ZhangSubmitsNoMoreThanDrawcallWise) {
-  const Scene scene = generate_world("soup?triangles=20000&size=60");
+  Scene scene = generate_world("soup?triangles=20000&size=60");
+  set_raster_state(scene, RasterState::front_faces);
   const auto zhang = create_method("zhang-octree", scene),
              plain = create_method("drawcall-wise-octree", scene);
   scene::Random random(62);
@@ -298,6 +303,7 @@ TEST(DrawCalls, MovingAnObjectLeavesTheOthersAlone) {
 
 TEST(DrawCalls, ThePrintedRuleLosesPixelsAndSaysThatItMay) {
   Scene scene = generate_world("soup?triangles=5000&size=60");
+  set_raster_state(scene, RasterState::front_faces);
   const std::vector<std::string> names{"zhang-octree?facing=printed", "zhang-octree"};
   measure::Bench bench(scene, names);
   const auto result = measure::verify(bench, camera::random_cameras(scene, 20, 3), 96, 64);

@@ -159,7 +159,8 @@ TEST(ItemBuffer, TransparentObjectOfManyTrianglesCountsOnceAPixel) {
   EXPECT_EQ(EmbreeJudge(scene).render(view_of(from_origin(), 80, 80)).pixels[1], 1600u);
 }
 
-// Single triangles, instances, mirrored instances: a face is front where its corners run counter-clockwise.
+// Single triangles, instances, mirrored instances: a front is where corners run counter-clockwise in mesh
+// space.
 TEST(ItemBuffer, BackFacesVanishOnlyWhenAsked) {
   Scene scene;
   const std::uint32_t square = add_square(scene), single = add_square(scene);
@@ -168,14 +169,18 @@ TEST(ItemBuffer, BackFacesVanishOnlyWhenAsked) {
   };
   scene.add_object(square, turned({-6, 0, -10}, 1, 1));    // front
   scene.add_object(square, turned({-3, 0, -10}, -1, -1));  // turned by 180°: back
-  scene.add_object(square, turned({0, 0, -10}, -1, 1));    // mirrored in x: back
-  scene.add_object(square, turned({3, 0, -10}, 1, -1));    // mirrored in z alone: still counter-clockwise
-  scene.add_object(single, turned({6, 0, -10}, -1, 1));    // mirrored, not instanced: back
+  scene.add_object(square, turned({0, 0, -10}, -1, 1));    // mirrored in x: front
+  scene.add_object(square, turned({3, 0, -10}, 1, -1));    // mirrored in z: back
+  scene.add_object(single, turned({6, 0, -10}, -1, 1));    // mirrored, not instanced: front
   const View view = view_of(from_origin(), 80, 80);
-  const ItemBuffer both = EmbreeJudge(scene, Faces::both).render(view);
-  const ItemBuffer front = EmbreeJudge(scene, Faces::front).render(view);
+  const ItemBuffer both = EmbreeJudge(scene).render(view);
+  set_raster_state(scene, RasterState::front_faces);
+  const EmbreeJudge judge(scene);
+  const ItemBuffer front = judge.render(view);
   for (ObjectId object = 0; object < 5; ++object) EXPECT_EQ(both.pixels[object], 64u);
-  EXPECT_EQ(front.pixels, (std::vector<std::uint32_t>{64, 0, 0, 64, 0}));
+  EXPECT_EQ(front.pixels, (std::vector<std::uint32_t>{64, 0, 64, 0, 64}));
+  const std::array<ObjectId, 5> all{0, 1, 2, 3, 4};
+  EXPECT_EQ(judge.confirmed_pixels(view, both, all), front.pixels);
 }
 
 TEST(ItemBuffer, DegenerateTrianglesAreNothing) {

@@ -94,7 +94,7 @@ CellBaker::CellBaker(const Scene& scene, const partition::TriangleRays& rays, co
       seen_(scene.size()),
       known_(scene.size()) {
   for (ObjectId object = 0; object < scene.size(); ++object) {
-    if (scene.surface[object] == Surface::transparent) transparent_.push_back(object);
+    if (scene.surface[object] != Surface::opaque) see_through_.push_back(object);
   }
 }
 
@@ -125,7 +125,7 @@ std::uint64_t CellBaker::cast() {
     ++news;
     if (leads_.empty() || leads_.back() != batch_[r].origin) leads_.push_back(batch_[r].origin);
   }
-  for (const ObjectId object : transparent_) news += seen_[object] && !known_[object];
+  for (const ObjectId object : see_through_) news += seen_[object] && !known_[object];
   known_ = seen_;
   batch_.clear();
   return news;

@@ -51,7 +51,7 @@ private:
   const partition::TriangleRays& rays_;
   CellOptions options_;
   std::vector<Vec3> few_, many_;  ///< directions
-  std::vector<ObjectId> transparent_;
+  std::vector<ObjectId> see_through_;
   partition::TriangleRays::Stack stack_;
   rays::RayStats stats_;
   std::vector<Ray> batch_;

@@ -90,7 +90,6 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
   const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, state.topology};
   const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
   vk::PipelineRasterizationStateCreateInfo raster;
-  raster.cullMode = state.cull_back ? vk::CullModeFlagBits::eBack : vk::CullModeFlagBits::eNone;
   raster.depthBiasEnable = VK_TRUE;
   raster.lineWidth = 1;
   const vk::PipelineMultisampleStateCreateInfo samples;
@@ -115,7 +114,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
   }
   rendering.depthAttachmentFormat = kDepthFormat;
   const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor,
-                           vk::DynamicState::eDepthCompareOp, vk::DynamicState::eDepthBias};
+                           vk::DynamicState::eDepthCompareOp, vk::DynamicState::eDepthBias,
+                           vk::DynamicState::eCullMode};
   const vk::PipelineDynamicStateCreateInfo dynamic_state{{}, dynamic};
   vk::GraphicsPipelineCreateInfo info{{},      stages,   &input, &assembly, nullptr,        &viewport,
                                       &raster, &samples, &depth, &blend,    &dynamic_state, *device.layout()};

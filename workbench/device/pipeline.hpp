@@ -36,11 +36,10 @@ struct GraphicsState {
   vk::Format colour = vk::Format::eUndefined;  ///< of the one colour attachment, if there is one
   bool blend = false;
   bool depth_write = true;
-  bool cull_back = false;  ///< drops triangles that run clockwise as seen
 };
 
-/// Draws with a depth attachment. Viewport, scissor, the depth comparison and the depth bias are
-/// dynamic; Recorder::bind sets them.
+/// Draws with a depth attachment. Viewport, scissor, the depth comparison, the depth bias and the side that is
+/// culled are dynamic; Recorder::bind sets them.
 class GraphicsPipeline {
 public:
   GraphicsPipeline(const Device& device, const GraphicsState& state);

@@ -49,7 +49,8 @@ void Recorder::begin_rendering(const Into& into) const {
   commands.beginRendering(info);
 }
 
-void Recorder::bind(const GraphicsPipeline& pipeline, Compare compare, float bias) const {
+void Recorder::bind(const GraphicsPipeline& pipeline, Compare compare, float bias,
+                    vk::CullModeFlagBits culled) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
   const auto width = static_cast<float>(targets.depth.width()),
              height = static_cast<float>(targets.depth.height());
@@ -60,6 +61,7 @@ void Recorder::bind(const GraphicsPipeline& pipeline, Compare compare, float bia
   commands.setDepthCompareOp(equal        ? vk::CompareOp::eEqual
                              : reversed() ? vk::CompareOp::eGreaterOrEqual
                                           : vk::CompareOp::eLessOrEqual);
+  commands.setCullMode(culled);
   commands.setDepthBias(reversed() ? bias : -bias, 0, 0);
 }
 

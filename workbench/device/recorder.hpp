@@ -59,9 +59,9 @@ public:
 
   enum class Compare : std::uint8_t { nearer_or_equal, equal };
   /// Binds a pipeline with the frame's viewport; `bias` moves depths towards the eye, in units of the last
-  /// place.
-  void bind(const GraphicsPipeline& pipeline, Compare compare = Compare::nearer_or_equal,
-            float bias = 0) const;
+  /// place. Triangles that run clockwise as seen are back faces.
+  void bind(const GraphicsPipeline& pipeline, Compare compare = Compare::nearer_or_equal, float bias = 0,
+            vk::CullModeFlagBits culled = vk::CullModeFlagBits::eNone) const;
 
   template <class T>
   void push(const T& constants) const {

@@ -19,6 +19,16 @@ constexpr std::uint32_t kObjectVert[] =
 constexpr std::uint32_t kObjectShadeFrag[] =
 #include "shaders/shade.frag.inc"
     ;
+constexpr std::uint32_t kTestedVert[] =
+#include "shaders/tested.vert.inc"
+    ;
+constexpr std::uint32_t kTestedFrag[] =
+#include "shaders/tested.frag.inc"
+    ;
+
+using submission::DrawState;
+
+constexpr std::array kSolid{DrawState::both_sides, DrawState::front_faces, DrawState::turned_faces};
 
 struct DrawPush {
   vk::DeviceAddress objects, list, extra;
@@ -74,8 +84,11 @@ Renderer::Renderer(Device& device, const Scene& scene)
                              .fragment = kObjectShadeFrag,
                              .input = Input::mesh,
                              .colour = kColourFormat}),
-      blend_pipeline_(device, {.vertex = kObjectVert,
-                               .fragment = kObjectShadeFrag,
+      cut_out_pipeline_(
+          device,
+          {.vertex = kTestedVert, .fragment = kTestedFrag, .input = Input::mesh, .colour = kColourFormat}),
+      blend_pipeline_(device, {.vertex = kTestedVert,
+                               .fragment = kTestedFrag,
                                .input = Input::mesh,
                                .colour = kColourFormat,
                                .blend = true,
@@ -149,42 +162,67 @@ vk::DeviceAddress Renderer::transparent_order() {
   return buffers_.transparent_ids.empty() ? 0 : transparent_order_.address();
 }
 
-void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
-                             std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
-                             Recorder::Compare compare, vk::DeviceAddress extra) const {
-  if (count == 0) return;
-  frame.bind(pipeline, compare);
-  frame.push(DrawPush{buffers_.object_data.address(), list, extra});
-  frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
-  frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
-  frame.commands.drawIndexedIndirect(commands, first * kCommandSize, count, kCommandSize);
+vk::CullModeFlagBits culled_in(DrawState state) noexcept {
+  switch (state) {
+    case DrawState::front_faces:
+      return vk::CullModeFlagBits::eBack;
+    case DrawState::turned_faces:
+      return vk::CullModeFlagBits::eFront;
+    default:
+      return vk::CullModeFlagBits::eNone;
+  }
 }
 
-void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
-                           Recorder::Compare compare) const {
+Renderer::Commands Renderer::commands_of(const DrawBuffers& draws, DrawState state) noexcept {
+  return {draws.commands.handle(), draws.first_of(state), draws.count_of(state), draws.list.address(), state};
+}
+
+void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline,
+                             const Commands& commands, Recorder::Compare compare,
+                             vk::DeviceAddress extra) const {
+  if (commands.count == 0) return;
+  frame.bind(pipeline, compare, 0, culled_in(commands.state));
+  frame.push(DrawPush{buffers_.object_data.address(), commands.list, extra});
+  frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
+  frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
+  frame.commands.drawIndexedIndirect(commands.buffer, commands.first * kCommandSize, commands.count,
+                                     kCommandSize);
+}
+
+void Renderer::draw_lit(const Recorder& frame, const Commands& commands) const {
+  const bool solid = submission::is_solid(commands.state);
+  const GraphicsPipeline& pipeline = solid                                  ? lit_pipeline_
+                                     : commands.state == DrawState::cut_out ? cut_out_pipeline_
+                                                                            : blend_pipeline_;
+  draw_indirect(frame, pipeline, commands, Recorder::Compare::nearer_or_equal,
+                solid ? 0 : buffers_.looks.address());
+}
+
+void Renderer::draw_solid(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
+                          Recorder::Compare compare) const {
   const bool lit = style == Style::lit;
   frame.begin_rendering({.colour = lit ? &frame.targets.colour : nullptr,
                          .clear_colour = clear == Clear::colour || clear == Clear::both,
                          .clear_depth = clear == Clear::depth || clear == Clear::both,
                          .clear_value = background()});
-  draw_indirect(frame, lit ? lit_pipeline_ : depth_pipeline_, draws.commands.handle(), 0,
-                draws.opaque_commands, draws.list.address(), compare);
+  for (const DrawState state : kSolid)
+    draw_indirect(frame, lit ? lit_pipeline_ : depth_pipeline_, commands_of(draws, state), compare, 0);
   frame.end_rendering();
 }
 
-void Renderer::draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
-                           vk::DeviceAddress extra, Recorder::Compare compare) const {
+void Renderer::draw_solid(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                          vk::DeviceAddress extra, Recorder::Compare compare) const {
   frame.begin_rendering({.colour = &frame.targets.colour});
-  draw_indirect(frame, pipeline, draws.commands.handle(), 0, draws.opaque_commands, draws.list.address(),
-                compare, extra);
+  for (const DrawState state : kSolid)
+    draw_indirect(frame, pipeline, commands_of(draws, state), compare, extra);
   frame.end_rendering();
 }
 
-void Renderer::draw_transparent(const Recorder& frame, const DrawBuffers& draws) const {
-  if (draws.transparent_commands == 0) return;
+void Renderer::draw_rest(const Recorder& frame, const DrawBuffers& draws) const {
+  if (draws.count_of(DrawState::cut_out) + draws.count_of(DrawState::blended) == 0) return;
   frame.begin_rendering({.colour = &frame.targets.colour});
-  draw_indirect(frame, blend_pipeline_, draws.commands.handle(), draws.opaque_commands,
-                draws.transparent_commands, draws.list.address(), Recorder::Compare::nearer_or_equal);
+  for (const DrawState state : {DrawState::cut_out, DrawState::blended})
+    draw_lit(frame, commands_of(draws, state));
   frame.end_rendering();
 }
 
@@ -198,20 +236,18 @@ void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
   if (host_list_.size() == 0) host_list_ = Buffer(device_, 16, Memory::upload, "a draw list");
   std::ranges::copy(visible, host_list_.mapped<ObjectId>());
   if (!draws.empty()) std::ranges::copy(draws, host_commands_.mapped<DrawCommand>());
-  const auto blended = std::ranges::find_if(draws, [&](const DrawCommand& draw) {
-    return scene_.surface[visible[draw.first_instance]] == Surface::transparent;
-  });
-  const auto opaque = static_cast<std::uint32_t>(blended - draws.begin());
   frame.begin_rendering({.colour = &frame.targets.colour,
                          .clear_colour = true,
                          .clear_depth = true,
                          .clear_value = background()});
-  if (!draws.empty()) {
-    draw_indirect(frame, lit_pipeline_, host_commands_.handle(), 0, opaque, host_list_.address(),
-                  Recorder::Compare::nearer_or_equal);
-    draw_indirect(frame, blend_pipeline_, host_commands_.handle(), opaque,
-                  static_cast<std::uint32_t>(draws.size()) - opaque, host_list_.address(),
-                  Recorder::Compare::nearer_or_equal);
+  const auto state_of = [&](const DrawCommand& draw) {
+    return submission::draw_state(scene_, visible[draw.first_instance]);
+  };
+  for (std::size_t first = 0, end = 0; first < draws.size(); first = end) {
+    const DrawState state = state_of(draws[first]);
+    while (end < draws.size() && state_of(draws[end]) == state) ++end;
+    draw_lit(frame, {host_commands_.handle(), static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(end - first), host_list_.address(), state});
   }
   frame.end_rendering();
 }

@@ -14,6 +14,9 @@
 
 namespace sightline::device {
 
+/// Which sides are culled of what is drawn in a state.
+vk::CullModeFlagBits culled_in(submission::DrawState state) noexcept;
+
 /// Of indirect draws, in bytes: a DrawCommand is what the device reads.
 inline constexpr vk::DeviceSize kCommandSize = sizeof(DrawCommand);
 
@@ -42,20 +45,20 @@ public:
 
   enum class Style : std::uint8_t { depth, lit };
   enum class Clear : std::uint8_t { nothing, colour, depth, both };
-  /// Draws the opaque objects of `draws` after clearing.
-  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
-                   Recorder::Compare compare = Recorder::Compare::nearer_or_equal) const;
+  /// Draws the solid objects of `draws` after clearing.
+  void draw_solid(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
+                  Recorder::Compare compare = Recorder::Compare::nearer_or_equal) const;
   /// The same with a pipeline of one's own and colour; its shaders find `extra` after the list's address.
-  void draw_opaque(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
-                   vk::DeviceAddress extra, Recorder::Compare compare) const;
-  /// Blends the transparent objects of `draws` over the picture.
-  void draw_transparent(const Recorder& frame, const DrawBuffers& draws) const;
+  void draw_solid(const Recorder& frame, const DrawBuffers& draws, const GraphicsPipeline& pipeline,
+                  vk::DeviceAddress extra, Recorder::Compare compare) const;
+  /// Draws what hides nothing over the picture: first cut-outs, then the transparent objects, blended.
+  void draw_rest(const Recorder& frame, const DrawBuffers& draws) const;
   /// All transparent objects, farthest first for the frame's view; 0 where there are none. Sorted when first
   /// asked for in a frame.
   [[nodiscard]] vk::DeviceAddress transparent_order();
 
-  /// Draws what a CPU method hands over, in its order: a cleared picture, opaque commands, then blended ones.
-  /// One multi-draw-indirect call each.
+  /// Draws what a CPU method hands over, in its order, which is by submission::DrawState: a cleared picture,
+  /// then one multi-draw-indirect call a state.
   void draw(const Recorder& frame, std::span<const ObjectId> visible, std::span<const DrawCommand> draws);
 
   /// The last frame's picture.
@@ -65,9 +68,17 @@ public:
 private:
   void resize(std::uint32_t width, std::uint32_t height);
   void sort_transparent(const View& view);
-  void draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, vk::Buffer commands,
-                     std::uint32_t first, std::uint32_t count, vk::DeviceAddress list,
-                     Recorder::Compare compare, vk::DeviceAddress extra = 0) const;
+  /// Commands of one state, and who they draw.
+  struct Commands {
+    vk::Buffer buffer;
+    std::uint32_t first, count;
+    vk::DeviceAddress list;
+    submission::DrawState state;
+  };
+  static Commands commands_of(const DrawBuffers& draws, submission::DrawState state) noexcept;
+  void draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, const Commands& commands,
+                     Recorder::Compare compare, vk::DeviceAddress extra) const;
+  void draw_lit(const Recorder& frame, const Commands& commands) const;
 
   Device& device_;
   const Scene& scene_;
@@ -83,7 +94,7 @@ private:
   vk::raii::DescriptorSets view_set_;
   std::vector<std::uint64_t> sort_keys_;
   std::optional<View> unsorted_;  ///< the frame's view, until its transparent objects are sorted
-  GraphicsPipeline depth_pipeline_, lit_pipeline_, blend_pipeline_;
+  GraphicsPipeline depth_pipeline_, lit_pipeline_, cut_out_pipeline_, blend_pipeline_;
 };
 
 /// Writes a PNG through a temporary name. Throws Error when the file cannot be written.

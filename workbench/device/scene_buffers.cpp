@@ -4,22 +4,38 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include <sightline/workbench/error.hpp>
+
+#include "workbench/submission/draw_state.hpp"
 
 namespace sightline::device {
 
 namespace {
 
-shared::ObjectData object_data_of(const Scene& scene, ObjectId object, std::uint32_t slot) {
-  const Affine& transform = scene.transform[object];
-  const Surface surface = scene.surface[object];
-  return {{transform.rows[0], transform.rows[1], transform.rows[2]},
-          scene.mesh[object],
-          colour_of(object, surface),
-          surface == Surface::transparent,
-          slot};
+using submission::draw_state;
+using submission::DrawState;
+
+std::uint32_t look_of(const Scene& scene, ObjectId object) {
+  std::uint32_t look = std::uint32_t{scene.alpha_cutoff[object]} << shared::kCutoffShift;
+  if (scene.sides[object] == Sides::front) look |= shared::kFrontOnly;
+  if (mirrors(scene.transform[object])) look |= shared::kMirrored;
+  if (scene.surface[object] == Surface::cut_out) look |= shared::kCutOut;
+  if (!submission::is_solid(draw_state(scene, object))) look |= shared::kSeeThrough;
+  return look;
 }
 
 }  // namespace
+
+shared::ObjectData SceneBuffers::data_of(const Scene& scene, ObjectId object) const {
+  const Affine& transform = scene.transform[object];
+  return {{transform.rows[0], transform.rows[1], transform.rows[2]},
+          batch_count() + 1 + scene.mesh[object],
+          colour_of(object, scene.surface[object]),
+          look_of(scene, object),
+          scene.alpha_image[object]};
+}
 
 // Distinct calm colours: the golden ratio walks the hue, two bits of the id the lightness.
 std::uint32_t colour_of(ObjectId object, Surface surface) noexcept {
@@ -51,8 +67,7 @@ shared::BoxData box_data(const Scene& scene, ObjectId object) noexcept {
 }
 
 SceneBuffers::SceneBuffers(Device& device, const Scene& scene)
-    : objects(static_cast<std::uint32_t>(scene.size())),
-      meshes(static_cast<std::uint32_t>(scene.meshes.size())) {
+    : objects(static_cast<std::uint32_t>(scene.size())), slots_(scene.size()), batch_of_(scene.size()) {
   std::vector<Vec3> interleaved;
   interleaved.reserve(2 * scene.positions.size());
   for (std::size_t i = 0; i < scene.positions.size(); ++i) {
@@ -62,42 +77,90 @@ SceneBuffers::SceneBuffers(Device& device, const Scene& scene)
   vertices = upload(device, interleaved, "vertices");
   indices = upload(device, scene.indices, "indices");
 
-  std::vector<ObjectId> order;
-  order.reserve(objects);
-  for (ObjectId object = 0; object < objects; ++object) {
-    (scene.surface[object] == Surface::transparent ? transparent_ids : order).push_back(object);
-  }
-  opaque = static_cast<std::uint32_t>(order.size());
-  std::ranges::stable_sort(order, {}, [&](ObjectId object) { return scene.mesh[object]; });
-
-  std::vector<shared::MeshData> mesh_table(scene.meshes.size() + 1);
-  for (std::size_t mesh = 0, slot = 0; mesh <= scene.meshes.size(); ++mesh) {
-    mesh_table[mesh].first_slot = static_cast<std::uint32_t>(slot);
-    if (mesh == scene.meshes.size()) break;
-    const Mesh& from = scene.meshes[mesh];
-    mesh_table[mesh].first_index = from.first_index;
-    mesh_table[mesh].index_count = from.index_count;
-    mesh_table[mesh].first_vertex = static_cast<std::int32_t>(from.first_vertex);
-    while (slot < order.size() && scene.mesh[order[slot]] == mesh) ++slot;
-  }
-  order.insert(order.end(), transparent_ids.begin(), transparent_ids.end());
-  slots_.resize(objects);
-  for (std::uint32_t slot = 0; slot < objects; ++slot) slots_[order[slot]] = slot;
+  const std::vector<ObjectId> order = sort_objects(scene);
+  mesh_data = upload(device, make_table(scene, order), "meshes");
+  slot_objects = upload(device, order, "the order of drawing");
 
   std::vector<shared::ObjectData> data(objects);
   std::vector<shared::BoxData> boxes(objects);
   for (ObjectId object = 0; object < objects; ++object) {
-    data[object] = object_data_of(scene, object, slots_[object]);
+    data[object] = data_of(scene, object);
     boxes[object] = device::box_data(scene, object);
   }
   object_data = upload(device, data, "objects");
   box_data = upload(device, boxes, "bounding boxes");
-  mesh_data = upload(device, mesh_table, "meshes");
-  slot_objects = upload(device, order, "the order of drawing");
+  upload_looks(device, scene);
+}
+
+std::vector<ObjectId> SceneBuffers::sort_objects(const Scene& scene) {
+  std::vector<ObjectId> order(objects);
+  std::iota(order.begin(), order.end(), ObjectId{0});
+  const auto key = [&](ObjectId object) {
+    const DrawState state = draw_state(scene, object);
+    return std::pair(state, state == DrawState::blended ? 0 : scene.mesh[object]);
+  };
+  std::ranges::stable_sort(order, {}, key);
+  for (std::uint32_t slot = 0; slot < objects; ++slot) {
+    const DrawState state = draw_state(scene, order[slot]);
+    slots_[order[slot]] = slot;
+    states_.push_back(draw_state(scene, slot));
+    solid += submission::is_solid(state);
+    ordered += state < DrawState::blended;
+    if (state == DrawState::blended) transparent_ids.push_back(order[slot]);
+  }
+  return order;
+}
+
+std::vector<shared::MeshData> SceneBuffers::make_table(const Scene& scene, std::span<const ObjectId> order) {
+  std::vector<shared::MeshData> table;
+  const auto add = [&](const Mesh& mesh, std::uint32_t slot) {
+    table.push_back({mesh.first_index, mesh.index_count, static_cast<std::int32_t>(mesh.first_vertex), slot});
+  };
+  for (std::uint32_t slot = 0; slot < ordered; ++slot) {
+    const ObjectId object = order[slot];
+    const DrawState state = draw_state(scene, object);
+    const bool same = slot > 0 && scene.mesh[order[slot - 1]] == scene.mesh[object] &&
+                      draw_state(scene, order[slot - 1]) == state;
+    if (!same) {
+      add(scene.meshes[scene.mesh[object]], slot);
+      ++batches[static_cast<std::size_t>(state)];
+    }
+    batch_of_[object] = static_cast<std::uint32_t>(table.size() - 1);
+  }
+  add({}, ordered);
+  for (const Mesh& mesh : scene.meshes) add(mesh, 0);
+  return table;
+}
+
+void SceneBuffers::upload_looks(Device& device, const Scene& scene) {
+  std::vector<shared::ImageData> table;
+  std::vector<std::uint8_t> texels;
+  for (const AlphaImage& image : scene.alpha_images) {
+    table.push_back({static_cast<std::uint32_t>(texels.size()), image.width, image.height});
+    texels.insert(texels.end(), image.alpha.begin(), image.alpha.end());
+  }
+  if (texels.size() > std::numeric_limits<std::uint32_t>::max())
+    throw Error("renderer: the alpha images of '" + scene.name + "' hold more than 2^32 texels");
+  texels.resize((texels.size() + 3) / 4 * 4);
+  images = upload(device, table, "alpha images");
+  alpha = upload(device, texels, "alpha images");
+  if (!table.empty()) {
+    std::vector<TextureCoordinate> all = scene.texture_coordinates;
+    all.resize(scene.positions.size());
+    coordinates = upload(device, all, "texture coordinates");
+  }
+  const std::array addresses{object_data.address(), table.empty() ? 0 : coordinates.address(),
+                             table.empty() ? 0 : images.address(), table.empty() ? 0 : alpha.address()};
+  looks = upload(device, std::vector(addresses.begin(), addresses.end()), "what cut-outs are tested by");
 }
 
 void SceneBuffers::update(Device& device, const Scene& scene, std::span<const ObjectId> moved) {
   if (moved.empty()) return;
+  for (const ObjectId object : moved) {
+    if (states_[object] != draw_state(scene, object))
+      throw Error("renderer: object " + std::to_string(object) +
+                  " was mirrored by its new transform, expected one that does not turn its triangles");
+  }
   constexpr std::size_t kEach = sizeof(shared::ObjectData) + sizeof(shared::BoxData);
   if (staging_.size() < moved.size() * kEach)
     staging_ = Buffer(device, moved.size() * kEach, Memory::upload, "moved objects");
@@ -107,7 +170,7 @@ void SceneBuffers::update(Device& device, const Scene& scene, std::span<const Ob
   data_regions.reserve(moved.size());
   box_regions.reserve(moved.size());
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    data[i] = object_data_of(scene, moved[i], slots_[moved[i]]);
+    data[i] = data_of(scene, moved[i]);
     boxes[i] = device::box_data(scene, moved[i]);
     data_regions.push_back({i * sizeof *data, moved[i] * sizeof *data, sizeof *data});
     box_regions.push_back(

@@ -32,10 +32,20 @@ struct ViewData {
 
 struct ObjectData {
   vec4 rows[3];  // mesh space to world space
-  uint mesh;
-  uint colour;  // RGBA, 8 bits each, red lowest
-  uint transparent;
-  uint slot;  // position in the order of drawing
+  uint mesh;     // in the table of meshes
+  uint colour;   // RGBA, 8 bits each, red lowest
+  uint look;     // kFrontOnly …; from kCutoffShift on the least alpha that is drawn
+  uint image;    // its alpha, or kNoImage
+};
+
+const uint kFrontOnly = 1, kMirrored = 2, kCutOut = 4;
+const uint kSeeThrough = 8;  // hides nothing: whatever is not solid
+const uint kCutoffShift = 8;
+const uint kNoImage = 0xffffffffu;
+
+/// An alpha image: where its first texel stands, four a word.
+struct ImageData {
+  uint first, width, height;
 };
 
 /// Axis-aligned box and bounding sphere about one centre; half extents rounded up.
@@ -44,10 +54,11 @@ struct BoxData {
   vec4 half_extent;
 };
 
+/// A batch of objects of one mesh and one state, which are drawn by one command; or a mesh by itself.
 struct MeshData {
   uint first_index, index_count;
   int first_vertex;
-  uint first_slot;  // of the opaque objects of this mesh; those of mesh m + 1 follow
+  uint first_slot;  // of the batch's objects; those of the next batch follow
 };
 
 /// A corner of a world-space triangle that knows its object.
@@ -85,5 +96,18 @@ layout(buffer_reference, scalar) readonly buffer PositionBuffer {
 };
 layout(buffer_reference, scalar) buffer WordBuffer {
   uint at[];
+};
+layout(buffer_reference, scalar) readonly buffer CoordinateBuffer {
+  vec2 at[];
+};
+layout(buffer_reference, scalar) readonly buffer ImageBuffer {
+  ImageData at[];
+};
+/// What fragments of cut-outs are tested by.
+layout(buffer_reference, scalar) readonly buffer LookBuffer {
+  ObjectBuffer objects;
+  CoordinateBuffer coordinates;  // one a vertex, where there are images
+  ImageBuffer images;
+  WordBuffer alpha;
 };
 #endif

@@ -13,9 +13,22 @@ constexpr std::uint32_t kTriangleVert[] =
 constexpr std::uint32_t kTriangleShadeFrag[] =
 #include "shaders/triangle_shade.frag.inc"
     ;
+constexpr std::uint32_t kTriangleTestedVert[] =
+#include "shaders/triangle_tested.vert.inc"
+    ;
+constexpr std::uint32_t kTriangleTestedFrag[] =
+#include "shaders/triangle_tested.frag.inc"
+    ;
 constexpr std::uint32_t kIdFrag[] =
 #include "shaders/triangle_id.frag.inc"
     ;
+constexpr std::uint32_t kTriangleSeenFrag[] =
+#include "shaders/triangle_seen.frag.inc"
+    ;
+
+struct TrianglePush {
+  vk::DeviceAddress looks, coordinates, seen;
+};
 
 std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const Scene& scene) {
   std::vector<shared::CornerData> out;
@@ -28,42 +41,61 @@ std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const 
   return out;
 }
 
+// One a position where the scene has alpha images, which need some.
+std::vector<TextureCoordinate> coordinates(const TriangleGeometry& geometry, const Scene& scene) {
+  std::vector<TextureCoordinate> out(geometry.texture_coordinates.begin(),
+                                     geometry.texture_coordinates.end());
+  if (!scene.alpha_images.empty()) out.resize(geometry.positions.size());
+  return out;
+}
+
 }  // namespace
 
-TriangleDraws::Pipelines::Pipelines(const Device& device, bool cull_back)
+TriangleDraws::Pipelines::Pipelines(const Device& device)
     : lit(device, {.vertex = kTriangleVert,
                    .fragment = kTriangleShadeFrag,
                    .input = Input::corner,
-                   .colour = kColourFormat,
-                   .cull_back = cull_back}),
-      blended(device, {.vertex = kTriangleVert,
-                       .fragment = kTriangleShadeFrag,
+                   .colour = kColourFormat}),
+      tested(device, {.vertex = kTriangleTestedVert,
+                      .fragment = kTriangleTestedFrag,
+                      .input = Input::corner,
+                      .colour = kColourFormat}),
+      blended(device, {.vertex = kTriangleTestedVert,
+                       .fragment = kTriangleTestedFrag,
                        .input = Input::corner,
                        .colour = kColourFormat,
                        .blend = true,
-                       .depth_write = false,
-                       .cull_back = cull_back}),
-      ids(device, {.vertex = kTriangleVert,
-                   .fragment = kIdFrag,
-                   .input = Input::corner,
-                   .colour = kIdFormat,
-                   .cull_back = cull_back}) {}
+                       .depth_write = false}),
+      ids(device,
+          {.vertex = kTriangleVert, .fragment = kIdFrag, .input = Input::corner, .colour = kIdFormat}),
+      seen(device, {.vertex = kTriangleVert,
+                    .fragment = kTriangleSeenFrag,
+                    .input = Input::corner,
+                    .depth_write = false}) {}
 
 TriangleDraws::TriangleDraws(Renderer& renderer, const TriangleGeometry& geometry)
     : renderer_(renderer),
       objects_(geometry.objects),
       corners_(upload(renderer.device(), corners(geometry, renderer.scene()), "triangle corners")),
+      coordinates_(
+          upload(renderer.device(), coordinates(geometry, renderer.scene()), "triangle texture coordinates")),
       indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")),
-      pipelines_(renderer.device(), geometry.front_faces_only) {
+      pipelines_(renderer.device()) {
   const Scene& scene = renderer.scene();
-  for (const Surface surface : scene.surface) is_transparent_.push_back(surface == Surface::transparent);
+  for (const Surface surface : scene.surface) {
+    is_transparent_.push_back(surface == Surface::transparent);
+    tested_ = tested_ || surface == Surface::cut_out;
+  }
+  sides_ = scene.sides.front();
+  if (std::ranges::any_of(scene.sides, [&](Sides sides) { return sides != sides_; })) tested_ = true;
+  if (tested_) sides_ = Sides::both;
 }
 
 std::uint64_t TriangleDraws::bytes() const noexcept {
-  return corners_.size() + indices_.size();
+  return corners_.size() + coordinates_.size() + indices_.size();
 }
 
-std::size_t TriangleDraws::opaque_count(std::span<const DrawCommand> draws) const noexcept {
+std::size_t TriangleDraws::unblended_count(std::span<const DrawCommand> draws) const noexcept {
   const auto blended = std::ranges::find_if(
       draws, [&](const DrawCommand& draw) { return is_transparent_[objects_[draw.first_instance]] != 0; });
   return static_cast<std::size_t>(blended - draws.begin());
@@ -76,10 +108,12 @@ void TriangleDraws::copy_commands(std::span<const DrawCommand> draws) {
 }
 
 void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeline,
-                           std::span<const DrawCommand> draws, std::size_t first,
-                           Submission submission) const {
+                           std::span<const DrawCommand> draws, std::size_t first, Submission submission,
+                           Sides sides) const {
   if (draws.empty()) return;
-  frame.bind(pipeline);
+  frame.bind(pipeline, Recorder::Compare::nearer_or_equal, 0,
+             sides == Sides::front ? vk::CullModeFlagBits::eBack : vk::CullModeFlagBits::eNone);
+  frame.push(TrianglePush{renderer_.buffers().looks.address(), coordinates_.address(), seen_.address()});
   // Strictly nearer: a triangle that crosses cells is drawn once for each, and shaded once all the same.
   frame.commands.setDepthCompareOp(frame.reversed() ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
   frame.commands.bindVertexBuffers(0, corners_.handle(), vk::DeviceSize{0});
@@ -99,34 +133,42 @@ void TriangleDraws::submit(const Recorder& frame, const GraphicsPipeline& pipeli
 
 void TriangleDraws::draw(const Recorder& frame, std::span<const DrawCommand> draws, Submission submission) {
   if (submission == Submission::multi_draw) copy_commands(draws);
-  const std::size_t opaque = opaque_count(draws);
+  const std::size_t unblended = unblended_count(draws);
   frame.begin_rendering(
       {.colour = &frame.targets.colour,
        .clear_colour = true,
        .clear_depth = true,
        .clear_value = {std::bit_cast<std::uint32_t>(0.62f), std::bit_cast<std::uint32_t>(0.70f),
                        std::bit_cast<std::uint32_t>(0.80f), std::bit_cast<std::uint32_t>(1.0f)}});
-  submit(frame, pipelines_.lit, draws.first(opaque), 0, submission);
-  submit(frame, pipelines_.blended, draws.subspan(opaque), opaque, submission);
+  submit(frame, tested_ ? pipelines_.tested : pipelines_.lit, draws.first(unblended), 0, submission, sides_);
+  submit(frame, pipelines_.blended, draws.subspan(unblended), unblended, submission);
   frame.end_rendering();
 }
 
-std::vector<ObjectId> TriangleDraws::item_buffer(const View& view, std::span<const DrawCommand> draws,
-                                                 Submission submission) {
+TriangleDraws::Items TriangleDraws::items(const View& view, std::span<const DrawCommand> opaque,
+                                          Submission submission, std::span<const DrawCommand> see_through) {
+  if (submission == Submission::multi_draw) copy_commands(opaque);
+  Device& device = renderer_.device();
   if (!ids_ || ids_->width() != view.width || ids_->height() != view.height) {
     ids_.reset();
-    ids_.emplace(renderer_.device(), kIdFormat, view.width, view.height, "the item buffer");
+    ids_.emplace(device, kIdFormat, view.width, view.height, "the item buffer");
   }
-  if (submission == Submission::multi_draw) copy_commands(draws);
+  const std::size_t objects = is_transparent_.size();
+  if (seen_.size() == 0) seen_ = Buffer(device, objects * 4, Memory::device, "the item buffer");
   renderer_.frame(view, [&](Recorder& frame) {
+    frame.fill(seen_, 0, seen_.size());
     frame.begin_rendering({.colour = &*ids_,
                            .clear_colour = true,
                            .clear_depth = true,
                            .clear_value = {kNoObject, kNoObject, kNoObject, kNoObject}});
-    submit(frame, pipelines_.ids, draws.first(opaque_count(draws)), 0, submission);
+    submit(frame, pipelines_.ids, opaque.first(unblended_count(opaque)), 0, submission);
+    frame.end_rendering();
+    full_barrier(frame.commands);
+    frame.begin_rendering({});
+    submit(frame, pipelines_.seen, see_through, 0, Submission::calls);
     frame.end_rendering();
   });
-  return ids_->read();
+  return {ids_->read(), read_words(device, seen_, objects)};
 }
 
 }  // namespace sightline::device

@@ -13,33 +13,40 @@ public:
   /// out.
   TriangleDraws(Renderer& renderer, const TriangleGeometry& geometry);
 
-  /// Records a cleared picture, opaque ranges, then blended ones in their order. `draws` are ranges of the
-  /// geometry, opaque ones first. Back faces are culled where the geometry wants it.
+  /// Records a cleared picture, first what is not blended, then the rest in its order. `draws` are ranges of
+  /// the geometry, blended ones last.
   void draw(const Recorder& frame, std::span<const DrawCommand> draws, Submission submission);
 
-  /// Which object each pixel shows, row 0 first, when the opaque ranges of `draws` are drawn; kNoObject for
-  /// none. Draws and waits.
-  [[nodiscard]] std::vector<ObjectId> item_buffer(const View& view, std::span<const DrawCommand> draws,
-                                                  Submission submission);
+  /// Draws ranges of opaque triangles, up to the first blended one, then tests ranges of what hides nothing
+  /// against them; waits.
+  struct Items {
+    std::vector<ObjectId> ids;        ///< which opaque object each pixel shows, row 0 first, or kNoObject
+    std::vector<std::uint32_t> seen;  ///< one an object: not 0 where one that hides nothing has a pixel
+  };
+  [[nodiscard]] Items items(const View& view, std::span<const DrawCommand> opaque,
+                            Submission submission = Submission::calls,
+                            std::span<const DrawCommand> see_through = {});
 
   /// Device memory taken by the triangles.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
 private:
   struct Pipelines {
-    GraphicsPipeline lit, blended, ids;
-    Pipelines(const Device& device, bool cull_back);
+    GraphicsPipeline lit, tested, blended, ids, seen;
+    explicit Pipelines(const Device& device);
   };
 
   void submit(const Recorder& frame, const GraphicsPipeline& pipeline, std::span<const DrawCommand> draws,
-              std::size_t first, Submission submission) const;
+              std::size_t first, Submission submission, Sides sides = Sides::both) const;
   void copy_commands(std::span<const DrawCommand> draws);
-  [[nodiscard]] std::size_t opaque_count(std::span<const DrawCommand> draws) const noexcept;
+  [[nodiscard]] std::size_t unblended_count(std::span<const DrawCommand> draws) const noexcept;
 
   Renderer& renderer_;
   std::vector<std::uint8_t> is_transparent_;  ///< one an object
+  bool tested_ = false;        ///< cut-outs, or objects of which one has sides and another none
+  Sides sides_ = Sides::both;  ///< of all, else
   std::span<const ObjectId> objects_;
-  Buffer corners_, indices_, commands_;
+  Buffer corners_, coordinates_, indices_, commands_, seen_;
   Pipelines pipelines_;
   std::optional<Image> ids_;
 };

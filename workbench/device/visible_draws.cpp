@@ -1,5 +1,6 @@
 #include "workbench/device/visible_draws.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace sightline::device {
@@ -20,16 +21,16 @@ struct Push {
   vk::DeviceAddress flags, slot_objects, scan, meshes, objects, transparent_order;
   std::array<vk::DeviceAddress, 2> lists, commands;
   std::array<VisibleDraws::Condition, 2> conditions;
-  VisibleDraws::Condition transparent_condition;
-  std::uint32_t opaque, mesh_count, transparent, list_count, widest;
+  VisibleDraws::Condition rest_condition;
+  std::uint32_t solid, ordered, batch_count, transparent, list_count, widest;
 };
 
 std::uint32_t block_count(const SceneBuffers& scene) {
-  return scene.opaque / kBlockSlots + 1;
+  return scene.ordered / kBlockSlots + 1;
 }
 
 std::uint64_t done_at(const SceneBuffers& scene) {
-  return 2 * (2 * (std::uint64_t{scene.opaque} / 32 + 1) + block_count(scene));
+  return 2 * (2 * (std::uint64_t{scene.ordered} / 32 + 1) + block_count(scene));
 }
 
 Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& frame, vk::DeviceAddress flags,
@@ -46,11 +47,12 @@ Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& fram
           transparent_order,
           {list(&first), list(second)},
           {commands(&first), commands(second)},
-          {first.opaque, second ? second->opaque : VisibleDraws::Condition{}},
-          first.transparent,
-          scene.opaque,
-          scene.meshes,
-          transparent_order ? first.out->transparent_commands : 0,
+          {first.solid, second ? second->solid : VisibleDraws::Condition{}},
+          first.rest,
+          scene.solid,
+          scene.ordered,
+          scene.batch_count(),
+          transparent_order ? first.out->count_of(submission::DrawState::blended) : 0,
           second ? 2u : 1u,
           frame.widest_dispatch()};
 }
@@ -70,13 +72,15 @@ VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
 
 DrawBuffers VisibleDraws::make_buffers(Device& device) const {
   const auto transparent = static_cast<std::uint32_t>(scene_.transparent_ids.size());
+  const std::uint64_t commands = std::uint64_t{scene_.batch_count()} + transparent;
   DrawBuffers out{Buffer(device, std::uint64_t{scene_.objects} * 4, Memory::device, "a draw list"),
-                  Buffer(device, (std::uint64_t{scene_.meshes} + transparent) * sizeof(shared::CommandData),
-                         Memory::device, "draw commands"),
-                  scene_.meshes, transparent};
-  device.run([&](const vk::raii::CommandBuffer& commands) {
-    commands.fillBuffer(out.commands.handle(), 0, VK_WHOLE_SIZE, 0);
-    full_barrier(commands);
+                  Buffer(device, commands * sizeof(shared::CommandData), Memory::device, "draw commands"),
+                  {}};
+  std::ranges::copy(scene_.batches, out.commands_of.begin());
+  out.commands_of.back() = transparent;
+  device.run([&](const vk::raii::CommandBuffer& record) {
+    record.fillBuffer(out.commands.handle(), 0, VK_WHOLE_SIZE, 0);
+    full_barrier(record);
   });
   return out;
 }

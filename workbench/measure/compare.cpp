@@ -121,6 +121,7 @@ Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOp
   if (options.limit) limit.emplace(bench);
   Comparison result;
   result.scene = bench.scene().name;
+  result.raster_state = bench.scene().raster_state;
   result.path = path.name;
   result.machine = this_machine();
   result.device = bench.device_name();

@@ -32,6 +32,7 @@ struct Row {
 
 struct Comparison {
   std::string scene, path, device = "cpu";
+  RasterState raster_state = RasterState::materials;  ///< that "exact" speaks of
   Machine machine;
   std::uint32_t width = 0, height = 0;
   std::vector<std::string> methods;

@@ -61,6 +61,7 @@ Json to_json(const Comparison& comparison) {
                     {"os", machine.os},
                     {"compiler", machine.compiler}};
   out["device"] = comparison.device;
+  out["raster_state"] = to_string(comparison.raster_state);
   out["path"] = comparison.path;
   out["size"] = {comparison.width, comparison.height};
   out["rows"] = Json::array();

@@ -76,9 +76,9 @@ private:
   std::optional<double> distance(ObjectId object, ObjectId nearest, const oracle::PixelRay& ray) {
     const bool is_opaque = scene_.surface[object] == Surface::opaque;
     if (is_opaque && nearest != object) return {};
-    const std::optional<double> t = triangles(object).meet(ray, oracle::Faces::both);
+    const std::optional<double> t = triangles(object).meet(ray);
     if (!t || is_opaque || nearest == kNoObject) return t;
-    const std::optional<double> opaque = triangles(nearest).meet(ray, oracle::Faces::both);
+    const std::optional<double> opaque = triangles(nearest).meet(ray);
     return opaque && *opaque < *t ? std::nullopt : t;
   }
 

@@ -47,6 +47,7 @@ Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t
                     double moving, const Progress& progress) {
   Verification result;
   result.scene = bench.scene().name;
+  result.raster_state = bench.scene().raster_state;
   result.device = bench.device_name();
   for (const Subject& subject : bench.subjects()) {
     MethodVerdict verdict;

@@ -42,6 +42,7 @@ struct MethodVerdict {
 
 struct Verification {
   std::string scene, device = "cpu";
+  RasterState raster_state = RasterState::materials;  ///< that "exact" speaks of
   std::size_t views = 0;
   std::vector<MethodVerdict> methods;
   [[nodiscard]] bool passed() const noexcept;

@@ -47,8 +47,8 @@ public:
                               renderer_.transparent_order(), draws_);
       listed_ = true;
     }
-    renderer_.draw_opaque(frame, draws_, device::Renderer::Style::lit, device::Renderer::Clear::both);
-    renderer_.draw_transparent(frame, draws_);
+    renderer_.draw_solid(frame, draws_, device::Renderer::Style::lit, device::Renderer::Clear::both);
+    renderer_.draw_rest(frame, draws_);
   }
 
   void read_back(Frame& frame) override {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ranges>
+#include <utility>
 
 namespace sightline::oracle {
 
@@ -44,10 +45,17 @@ AllTriangles::AllTriangles(device::Renderer& renderer, const TriangleGeometry& g
 }
 
 ItemBuffer AllTriangles::look(const View& view) {
+  const Scene& scene = renderer_.scene();
+  std::vector<DrawCommand> opaque, see_through;
+  for (ObjectId object = 0; object < scene.size(); ++object) {
+    auto& draws = scene.surface[object] == Surface::opaque ? opaque : see_through;
+    draws.insert(draws.end(), ranges_[object].begin(), ranges_[object].end());
+  }
+  device::TriangleDraws::Items items = triangles_.items(view, opaque, Submission::calls, see_through);
   ItemBuffer out;
   out.width = view.width, out.height = view.height;
-  out.ids = triangles_.item_buffer(view, everything(view, Order::rising), Submission::calls);
-  out.pixels.resize(renderer_.scene().size());
+  out.ids = std::move(items.ids);
+  out.pixels = std::move(items.seen);
   for (const ObjectId id : out.ids) {
     if (id != kNoObject) ++out.pixels[id];
   }

@@ -14,14 +14,14 @@ public:
   /// Copies the geometry to the device, and finds each object's triangles in it. The renderer outlives this.
   AllTriangles(device::Renderer& renderer, const TriangleGeometry& geometry);
 
-  /// Which object each pixel shows, transparent ones left out.
+  /// Which opaque object each pixel shows, and which others have one; those count as one pixel each.
   [[nodiscard]] ItemBuffer look(const View& view);
   /// Of opaque triangles at one depth the first drawn shows, which is another in the other order.
   enum class Order : std::uint8_t { rising, falling };
   [[nodiscard]] device::Picture picture(const View& view, Order order);
 
 private:
-  /// Every triangle once: opaque ones in that order, then transparent ones far to near.
+  /// Every triangle once: those that are not blended in that order, then transparent ones far to near.
   std::vector<DrawCommand> everything(const View& view, Order order);
 
   device::Renderer& renderer_;

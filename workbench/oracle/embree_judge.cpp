@@ -27,27 +27,25 @@ constexpr unsigned kPacket = kTile * kTile;
 struct LayerContext {
   RTCIntersectContext embree;  ///< first, so that a filter may cast back
   const EmbreeLayer* layer = nullptr;
-  bool front_only = false;
   std::vector<ObjectId>* through = nullptr;  ///< set: every object passed is noted and the ray goes on
 };
 
-// Refuses back faces, and in a pass through transparent objects notes each one met and lets the ray go on.
+// Refuses sides that are not drawn, and in a pass through what hides nothing notes each object met and lets the
+// ray go on.
 void filter(const RTCFilterFunctionNArguments* call) {
   auto* context = reinterpret_cast<LayerContext*>(call->context);
+  const EmbreeLayer& layer = *context->layer;
   for (unsigned i = 0; i < call->N; ++i) {
     if (call->valid[i] != -1) continue;
     const unsigned instance = RTCHitN_instID(call->hit, call->N, i, 0);
-    if (context->front_only) {
-      const float facing = RTCHitN_Ng_x(call->hit, call->N, i) * RTCRayN_dir_x(call->ray, call->N, i) +
-                           RTCHitN_Ng_y(call->hit, call->N, i) * RTCRayN_dir_y(call->ray, call->N, i) +
-                           RTCHitN_Ng_z(call->hit, call->N, i) * RTCRayN_dir_z(call->ray, call->N, i);
-      if ((facing >= 0) != context->layer->is_mirrored(instance)) {
-        call->valid[i] = 0;
-        continue;
-      }
-    }
-    if (context->through != nullptr) {
-      context->through->push_back(context->layer->object_of(instance, RTCHitN_primID(call->hit, call->N, i)));
+    const ObjectId object = layer.object_of(instance, RTCHitN_primID(call->hit, call->N, i));
+    const float along = RTCHitN_Ng_x(call->hit, call->N, i) * RTCRayN_dir_x(call->ray, call->N, i) +
+                        RTCHitN_Ng_y(call->hit, call->N, i) * RTCRayN_dir_y(call->ray, call->N, i) +
+                        RTCHitN_Ng_z(call->hit, call->N, i) * RTCRayN_dir_z(call->ray, call->N, i);
+    if (!layer.is_drawn(object, instance, along)) {
+      call->valid[i] = 0;
+    } else if (context->through != nullptr) {
+      context->through->push_back(object);
       call->valid[i] = 0;
     }
   }
@@ -83,30 +81,28 @@ RTCRayHit extract_ray(const Packet& packet, unsigned i) {
 }  // namespace
 
 struct EmbreeJudge::State {
-  State(const Scene& shown, Faces seen_faces);
+  explicit State(const Scene& shown);
   ~State();
   void trace_tile(const PixelRays& rays, std::uint32_t x, std::uint32_t y, ItemBuffer& out,
-                  std::vector<std::uint32_t>& transparent_pixels, std::vector<ObjectId>& passed) const;
+                  std::vector<std::uint32_t>& see_through_pixels, std::vector<ObjectId>& passed) const;
 
   const Scene& scene;
   HeldScene held;
-  Faces faces;
   RTCDevice device = nullptr;
   std::vector<RTCScene> mesh_scenes;
-  std::unique_ptr<EmbreeLayer> opaque, transparent;
+  std::unique_ptr<EmbreeLayer> opaque, see_through;  ///< what hides nothing: cut-outs, glass
 };
 
-EmbreeJudge::State::State(const Scene& shown, Faces seen_faces)
-    : scene(shown), held(shown, "oracle of rays"), faces(seen_faces) {
+EmbreeJudge::State::State(const Scene& shown) : scene(shown), held(shown, "oracle of rays") {
   device = rtcNewDevice(nullptr);
   if (device == nullptr) throw Error("item buffer: Embree could not be started on this machine");
   mesh_scenes = build_mesh_scenes(device, scene);
-  std::vector<ObjectId> opaque_objects, transparent_objects;
+  std::vector<ObjectId> opaque_objects, see_through_objects;
   for (ObjectId object = 0; object < scene.size(); ++object) {
-    (scene.surface[object] == Surface::opaque ? opaque_objects : transparent_objects).push_back(object);
+    (scene.surface[object] == Surface::opaque ? opaque_objects : see_through_objects).push_back(object);
   }
   opaque = std::make_unique<EmbreeLayer>(device, scene, opaque_objects, mesh_scenes);
-  transparent = std::make_unique<EmbreeLayer>(device, scene, transparent_objects, mesh_scenes);
+  see_through = std::make_unique<EmbreeLayer>(device, scene, see_through_objects, mesh_scenes);
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
     throw Error(
         "item buffer: Embree could not build its acceleration structure, most likely for want of memory");
@@ -115,22 +111,22 @@ EmbreeJudge::State::State(const Scene& shown, Faces seen_faces)
 
 EmbreeJudge::State::~State() {
   opaque.reset();
-  transparent.reset();
+  see_through.reset();
   for (RTCScene mesh_scene : mesh_scenes) {
     if (mesh_scene != nullptr) rtcReleaseScene(mesh_scene);
   }
   rtcReleaseDevice(device);
 }
 
-EmbreeJudge::EmbreeJudge(const Scene& scene, Faces faces) {
+EmbreeJudge::EmbreeJudge(const Scene& scene) {
   check(scene);
-  state_ = std::make_unique<State>(scene, faces);
+  state_ = std::make_unique<State>(scene);
 }
 
 EmbreeJudge::~EmbreeJudge() = default;
 
 void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std::uint32_t y, ItemBuffer& out,
-                                    std::vector<std::uint32_t>& transparent_pixels,
+                                    std::vector<std::uint32_t>& see_through_pixels,
                                     std::vector<ObjectId>& passed) const {
   Packet packet{};  // Embree looks at lanes without a ray, too
   for (unsigned i = 0; i < kPacket; ++i) {
@@ -140,11 +136,10 @@ void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std:
   LayerContext context;
   rtcInitIntersectContext(&context.embree);
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  context.front_only = faces == Faces::front;
   context.layer = opaque.get();
-  if (context.front_only) context.embree.filter = filter;
+  if (opaque->has_sides()) context.embree.filter = filter;
   if (!opaque->empty()) rtcIntersect16(packet.valid.data(), opaque->handle(), &context.embree, &packet.rays);
-  context.layer = transparent.get();
+  context.layer = see_through.get();
   context.embree.filter = filter;
   context.through = &passed;
   for (unsigned i = 0; i < kPacket; ++i) {
@@ -155,13 +150,13 @@ void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std:
       out.ids[pixel] = opaque->object_of(hit.instID[0][i], hit.primID[i]);
       out.distances[pixel] = packet.rays.ray.tfar[i];
     }
-    if (transparent->empty()) continue;
+    if (see_through->empty()) continue;
     RTCRayHit one = extract_ray(packet, i);
     passed.clear();
-    rtcIntersect1(transparent->handle(), &context.embree, &one);
+    rtcIntersect1(see_through->handle(), &context.embree, &one);
     std::sort(passed.begin(), passed.end());
     passed.erase(std::unique(passed.begin(), passed.end()), passed.end());
-    for (const ObjectId object : passed) ++transparent_pixels[object];
+    for (const ObjectId object : passed) ++see_through_pixels[object];
   }
 }
 
@@ -174,7 +169,7 @@ ItemBuffer EmbreeJudge::render(const View& view) const {
   out.distances.assign(out.ids.size(), std::numeric_limits<float>::infinity());
   out.pixels.assign(state_->scene.size(), 0);
   const PixelRays rays(view);
-  const bool counts = !state_->transparent->empty();
+  const bool counts = !state_->see_through->empty();
   struct Worker {
     std::vector<std::uint32_t> pixels;
     std::vector<ObjectId> passed;
@@ -203,7 +198,7 @@ ItemBuffer EmbreeJudge::render(const View& view) const {
 void EmbreeJudge::move(std::span<const ObjectId> objects) {
   state_->held.require_sound(objects);
   state_->opaque->move(objects);
-  state_->transparent->move(objects);
+  state_->see_through->move(objects);
 }
 
 std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const ItemBuffer& truth,
@@ -212,28 +207,28 @@ std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const
   std::vector<std::uint32_t> confirmed(objects.size(), 0);
   if (objects.empty()) return confirmed;
   std::vector<ObjectTriangles> triangles;
-  std::vector<std::size_t> place(scene.size(), objects.size()), transparent_places;
+  std::vector<std::size_t> place(scene.size(), objects.size()), see_through_places;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     triangles.emplace_back(scene, objects[i]);
     place[objects[i]] = i;
-    if (scene.surface[objects[i]] == Surface::transparent) transparent_places.push_back(i);
+    if (scene.surface[objects[i]] != Surface::opaque) see_through_places.push_back(i);
   }
   const PixelRays rays(view);
   const auto add = [&](std::size_t i, const PixelRay& ray) {
-    confirmed[i] += triangles[i].meet(ray, state_->faces).has_value();
+    confirmed[i] += triangles[i].meet(ray).has_value();
   };
   for (std::uint32_t y = 0; y < truth.height; ++y) {
     for (std::uint32_t x = 0; x < truth.width; ++x) {
       const ObjectId nearest = truth.ids[std::size_t{y} * truth.width + x];
       const bool asked = nearest != kNoObject && place[nearest] < objects.size();
-      if (!asked && transparent_places.empty()) continue;
+      if (!asked && see_through_places.empty()) continue;
       const PixelRay ray = rays.through(x, y);
       if (asked) add(place[nearest], ray);
-      for (const std::size_t i : transparent_places) add(i, ray);
+      for (const std::size_t i : see_through_places) add(i, ray);
     }
   }
-  // A transparent object's own rays may meet it behind something opaque, too.
-  for (const std::size_t i : transparent_places)
+  // The own rays of what hides nothing may meet it behind something opaque, too.
+  for (const std::size_t i : see_through_places)
     confirmed[i] = std::min(confirmed[i], truth.pixels[objects[i]]);
   return confirmed;
 }

@@ -18,7 +18,7 @@ class EmbreeJudge {
 public:
   /// Builds acceleration structures over all triangles. The scene outlives the judge. Throws Error where
   /// Embree cannot be started or runs out of memory.
-  explicit EmbreeJudge(const Scene& scene, Faces faces = Faces::both);
+  explicit EmbreeJudge(const Scene& scene);
   ~EmbreeJudge();
   EmbreeJudge(const EmbreeJudge&) = delete;
   EmbreeJudge& operator=(const EmbreeJudge&) = delete;

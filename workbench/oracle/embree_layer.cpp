@@ -10,12 +10,6 @@
 namespace sightline::oracle {
 namespace {
 
-double determinant(const Affine& a) {
-  const auto& [x, y, z] = a.rows;
-  const auto minor = [](double p, double q, double r, double s) { return p * s - q * r; };
-  return x.x * minor(y.y, y.z, z.y, z.z) - x.y * minor(y.x, y.z, z.x, z.z) + x.z * minor(y.x, y.y, z.x, z.y);
-}
-
 void* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t item,
                  std::size_t count) {
   void* memory = rtcSetNewGeometryBuffer(geometry, type, 0, format, item, count);
@@ -70,10 +64,11 @@ std::vector<RTCScene> build_mesh_scenes(RTCDevice device, const Scene& scene) {
 
 EmbreeLayer::EmbreeLayer(RTCDevice device, const Scene& scene, std::span<const ObjectId> objects,
                          std::span<const RTCScene> mesh_scenes)
-    : scene_(scene), top_(rtcNewScene(device)), places_(scene.size()) {
+    : scene_(scene), top_(rtcNewScene(device)), mirrored_(scene.size()), places_(scene.size()) {
   rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   std::vector<ObjectId> single;
   for (const ObjectId object : objects) {
+    has_sides_ |= scene.sides[object] == Sides::front;
     if (scene.meshes[scene.mesh[object]].index_count == 0) continue;
     RTCScene mesh_scene = mesh_scenes[scene.mesh[object]];
     if (mesh_scene != nullptr && can_instance(scene.transform[object])) {
@@ -122,7 +117,6 @@ void EmbreeLayer::add_instance(RTCDevice device, ObjectId object, RTCScene mesh_
   rtcSetGeometryInstancedScene(instance, mesh_scene);
   instances_.push_back(instance);
   instance_object_.push_back(object);
-  mirrored_.push_back(0);
   const auto id = static_cast<unsigned>(instances_.size());  // 0 is the world triangles'
   places_[object] = {0, id, true};
   place(object);
@@ -133,6 +127,7 @@ void EmbreeLayer::add_instance(RTCDevice device, ObjectId object, RTCScene mesh_
 void EmbreeLayer::place(ObjectId object) {
   const Affine& transform = scene_.transform[object];
   const Place& at = places_[object];
+  mirrored_[object] = mirrors(transform);
   if (at.instance == RTC_INVALID_GEOMETRY_ID) {
     const Mesh& mesh = scene_.meshes[scene_.mesh[object]];
     for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -145,7 +140,6 @@ void EmbreeLayer::place(ObjectId object) {
   RTCGeometry instance = instances_[at.instance - 1];
   rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows.data());
   rtcCommitGeometry(instance);
-  mirrored_[at.instance - 1] = determinant(transform) < 0;
 }
 
 void EmbreeLayer::move(std::span<const ObjectId> objects) {

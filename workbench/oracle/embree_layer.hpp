@@ -24,9 +24,15 @@ public:
   [[nodiscard]] ObjectId object_of(unsigned instance, unsigned triangle) const noexcept {
     return instance == RTC_INVALID_GEOMETRY_ID ? triangle_object_[triangle] : instance_object_[instance - 1];
   }
-  /// Whether the object's transform turns its triangles inside out.
-  [[nodiscard]] bool is_mirrored(unsigned instance) const noexcept {
-    return instance != RTC_INVALID_GEOMETRY_ID && mirrored_[instance - 1] != 0;
+  /// Whether some object of the layer is drawn from its front alone.
+  [[nodiscard]] bool has_sides() const noexcept { return has_sides_; }
+  /// Whether a triangle of the object is drawn where its normal, as Embree tells it, has that product with
+  /// the ray: an instance's triangles are met in mesh space, the rest in world space, where a mirror turns
+  /// them.
+  [[nodiscard]] bool is_drawn(ObjectId object, unsigned instance, float along) const noexcept {
+    if (scene_.sides[object] == Sides::both) return true;
+    const bool turned = instance == RTC_INVALID_GEOMETRY_ID && mirrored_[object] != 0;
+    return turned ? along > 0 : along < 0;
   }
 
   /// Takes over the new transforms of those objects that are in this layer.
@@ -48,7 +54,8 @@ private:
   RTCGeometry triangles_ = nullptr;
   Vec3* vertices_ = nullptr;
   std::vector<ObjectId> triangle_object_, instance_object_;
-  std::vector<std::uint8_t> mirrored_;
+  std::vector<std::uint8_t> mirrored_;  ///< one an object of the whole scene
+  bool has_sides_ = false;
   std::vector<RTCGeometry> instances_;
   std::vector<Place> places_;  ///< one an object of the whole scene
 };

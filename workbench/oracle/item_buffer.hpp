@@ -12,7 +12,8 @@ struct ItemBuffer {
   std::uint32_t width = 0, height = 0;
   std::vector<ObjectId> ids;  ///< width × height, row 0 at the top: the nearest opaque object, or kNoObject
   std::vector<float> distances;  ///< metres from the near plane to what `ids` shows; +infinity for nothing
-  /// One an object: pixels it is seen in. A transparent object is seen where nothing opaque lies before it.
+  /// One an object: pixels it is seen in. A cut-out or transparent one is seen where nothing opaque lies
+  /// before it, whatever its alpha there.
   std::vector<std::uint32_t> pixels;
 
   [[nodiscard]] bool sees(ObjectId object) const noexcept { return pixels[object] != 0; }

@@ -12,20 +12,16 @@
 
 namespace sightline::oracle {
 
-enum class Faces : std::uint8_t {
-  both,   ///< triangles are seen from both sides
-  front,  ///< only where their vertices run counter-clockwise, as with back-face culling
-};
-
 class ObjectTriangles {
 public:
   ObjectTriangles(const Scene& scene, ObjectId object);
 
-  /// Distance to the nearest triangle the ray meets within its length; nothing for a miss.
-  [[nodiscard]] std::optional<double> meet(const PixelRay& ray, Faces faces) const;
+  /// Distance to the nearest triangle whose drawn side the ray meets within its length; nothing for a miss.
+  [[nodiscard]] std::optional<double> meet(const PixelRay& ray) const;
 
 private:
-  std::vector<glm::dvec3> corners_;  ///< three a triangle
+  std::vector<glm::dvec3> corners_;  ///< three a triangle, counter-clockwise from its front
+  Sides sides_;
   glm::dvec3 centre_;                ///< of a sphere around them, which most rays miss
   double radius_ = 0;
 };

@@ -8,6 +8,7 @@
 namespace sightline::oracle {
 
 using namespace device;
+using submission::DrawState;
 
 namespace {
 
@@ -62,24 +63,26 @@ ItemBuffer RasterItemBuffer::render(const View& view) {
   renderer_.frame(view, [&](Recorder& frame) {
     frame.fill(seen_, 0, seen_.size());
     renderer_.draws().build(frame, seen_.address(), VisibleDraws::kAll, renderer_.transparent_order(), all_);
-    const auto draw = [&](const GraphicsPipeline& pipeline, std::uint32_t first, std::uint32_t count) {
-      if (count == 0) return;
-      frame.bind(pipeline);
+    const auto draw = [&](const GraphicsPipeline& pipeline, DrawState state) {
+      if (all_.count_of(state) == 0) return;
+      frame.bind(pipeline, Recorder::Compare::nearer_or_equal, 0, culled_in(state));
       frame.push(Push{scene.object_data.address(), all_.list.address(), seen_.address()});
       frame.commands.bindVertexBuffers(0, scene.vertices.handle(), vk::DeviceSize{0});
       frame.commands.bindIndexBuffer(scene.indices.handle(), 0, vk::IndexType::eUint32);
-      frame.commands.drawIndexedIndirect(all_.commands.handle(), first * sizeof(DrawCommand), count,
-                                         sizeof(DrawCommand));
+      frame.commands.drawIndexedIndirect(all_.commands.handle(), all_.first_of(state) * kCommandSize,
+                                         all_.count_of(state), kCommandSize);
     };
     frame.begin_rendering({.colour = &*ids_,
                            .clear_colour = true,
                            .clear_depth = true,
                            .clear_value = {kNoObject, kNoObject, kNoObject, kNoObject}});
-    draw(id_pipeline_, 0, all_.opaque_commands);
+    for (const DrawState state : {DrawState::both_sides, DrawState::front_faces, DrawState::turned_faces})
+      draw(id_pipeline_, state);
     frame.end_rendering();
     full_barrier(frame.commands);
     frame.begin_rendering({});
-    draw(seen_pipeline_, all_.opaque_commands, all_.transparent_commands);
+    draw(seen_pipeline_, DrawState::cut_out);
+    draw(seen_pipeline_, DrawState::blended);
     frame.end_rendering();
   });
   ItemBuffer out;

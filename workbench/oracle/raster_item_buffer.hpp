@@ -11,8 +11,8 @@ public:
   /// Shares the renderer's copy of the scene.
   explicit RasterItemBuffer(device::Renderer& renderer);
 
-  /// Draws every object of the scene. The renderer's picture is left as it was, its depth is not. Of a
-  /// transparent object the rasteriser says that it is seen, not in how many pixels: it counts as one.
+  /// Draws every object of the scene. The renderer's picture is left as it was, its depth is not. Of
+  /// what hides nothing the rasteriser says that it is seen, not in how many pixels: it counts as one.
   [[nodiscard]] ItemBuffer render(const View& view);
 
 private:

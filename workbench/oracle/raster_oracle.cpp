@@ -93,8 +93,8 @@ private:
     renderer_.frame(view, [&](device::Recorder& frame) {
       renderer_.draws().build(frame, flags_.address(), device::VisibleDraws::kAll,
                               renderer_.transparent_order(), everything_);
-      renderer_.draw_opaque(frame, everything_, device::Renderer::Style::lit, device::Renderer::Clear::both);
-      renderer_.draw_transparent(frame, everything_);
+      renderer_.draw_solid(frame, everything_, device::Renderer::Style::lit, device::Renderer::Clear::both);
+      renderer_.draw_rest(frame, everything_);
     });
   }
 

@@ -1,6 +1,7 @@
 #include "workbench/oracle/triangle_judge.hpp"
 
 #include <string>
+#include <utility>
 
 #include <sightline/workbench/error.hpp>
 
@@ -19,33 +20,32 @@ Scene one_object_a_triangle(const Scene& scene) {
         const std::uint32_t v = mesh.first_vertex + scene.indices[mesh.first_index + i + c];
         corners[c] = transform_point(scene.transform[object], scene.positions[v]);
       }
-      out.add_object(out.add_mesh(corners, kNormals, kCorners), {}, scene.surface[object]);
+      if (mirrors(scene.transform[object])) std::swap(corners[1], corners[2]);
+      out.add_object(out.add_mesh(corners, kNormals, kCorners), {},
+                     {scene.surface[object], scene.sides[object]});
     }
   }
   return out;
 }
 
-TriangleJudge::Truth& TriangleJudge::truth(const View& view, Faces faces) {
-  std::unique_ptr<Truth>& slot = truths_[faces == Faces::front];
-  if (!slot) {
-    slot = std::make_unique<Truth>();
-    slot->triangles = one_object_a_triangle(scene_);
-    slot->judge.emplace(slot->triangles, faces);
-    if (owners_.empty()) {
-      for (ObjectId object = 0; object < scene_.size(); ++object)
-        owners_.insert(owners_.end(), scene_.triangles(object), object);
-    }
+TriangleJudge::Truth& TriangleJudge::truth(const View& view) {
+  if (!truth_) {
+    truth_ = std::make_unique<Truth>();
+    truth_->triangles = one_object_a_triangle(scene_);
+    truth_->judge.emplace(truth_->triangles);
+    for (ObjectId object = 0; object < scene_.size(); ++object)
+      owners_.insert(owners_.end(), scene_.triangles(object), object);
   }
-  if (slot->view != view) {
-    slot->image = slot->judge->render(view);
-    slot->view = view;
+  if (truth_->view != view) {
+    truth_->image = truth_->judge->render(view);
+    truth_->view = view;
   }
-  return *slot;
+  return *truth_;
 }
 
 TriangleJudge::Verdict TriangleJudge::judge(const View& view, const TriangleGeometry& geometry,
                                             const Frame& frame) {
-  Truth& all = truth(view, geometry.front_faces_only ? Faces::front : Faces::both);
+  Truth& all = truth(view);
   submitted_.assign(owners_.size(), 0);
   for (const DrawCommand& draw : frame.draws) {
     const std::size_t first = draw.first_instance, end = first + draw.index_count / 3;

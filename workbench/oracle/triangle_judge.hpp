@@ -2,7 +2,6 @@
 // triangle.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 
@@ -18,8 +17,7 @@ namespace sightline::oracle {
 /// TriangleGeometry::sources.
 Scene one_object_a_triangle(const Scene& scene);
 
-/// Rays through pixel centres against all triangles, with or without back-face culling as the method's
-/// geometry wants it. Built when first asked; one view's truth is kept.
+/// Rays through pixel centres against all triangles. Built when first asked; one view's truth is kept.
 class TriangleJudge {
 public:
   /// The scene outlives the judge and does not move.
@@ -40,11 +38,11 @@ private:
     ItemBuffer image;
   };
 
-  Truth& truth(const View& view, Faces faces);
+  Truth& truth(const View& view);
 
   const Scene& scene_;
   std::vector<ObjectId> owners_;
-  std::array<std::unique_ptr<Truth>, 2> truths_;
+  std::unique_ptr<Truth> truth_;
   std::vector<std::uint8_t> submitted_;
 };
 

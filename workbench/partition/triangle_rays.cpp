@@ -14,6 +14,7 @@ struct TriangleArrays {
   const std::uint32_t* mesh;
   const Affine* to_mesh;
   const std::uint8_t* invertible;
+  const Sides* sides;
   std::uint64_t *object_stack, *triangle_stack;
 };
 }  // namespace sightline::partition
@@ -41,15 +42,16 @@ HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
 struct NearestTriangle {
   const TriangleRays::Triangle* triangles;
   Vec3 origin, direction;
+  bool front_only;
   float distance;
   bool hit = false;
 
-  // Möller & Trumbore 1997, both sides.
+  // Möller & Trumbore 1997.
   void offer(float, std::uint32_t id) {
     const TriangleRays::Triangle& t = triangles[id];
     const Vec3 p = cross(direction, t.ac);
     const float determinant = dot(t.ab, p);
-    if (determinant == 0) return;
+    if (determinant == 0 || (front_only && determinant < 0)) return;
     const float inverse = 1 / determinant;
     const Vec3 from{origin.x - t.a.x, origin.y - t.a.y, origin.z - t.a.z};
     const float u = dot(from, p) * inverse;
@@ -77,7 +79,8 @@ struct Caster {
     };
     const Vec3 at = turn(ray.origin);
     const Ray local{{at.x + rows[0].w, at.y + rows[1].w, at.z + rows[2].w}, turn(ray.direction), limit};
-    NearestTriangle nearest{tree.triangles.data(), local.origin, local.direction, limit};
+    NearestTriangle nearest{tree.triangles.data(), local.origin, local.direction,
+                            arrays.sides[object] == Sides::front, limit};
     rays::HWY_NAMESPACE::walk(tree.bvh.nodes().data(), rays::WideNode::kInner, PreparedRay(local), nearest,
                               arrays.triangle_stack, work);
     return nearest.hit ? nearest.distance : -1;
@@ -153,7 +156,7 @@ struct SeenThrough {
 };
 
 void cast_triangles(const TriangleArrays* arrays, const TriangleRays::Kind* opaque,
-                    const TriangleRays::Kind* transparent, const Ray* rays, std::size_t count,
+                    const TriangleRays::Kind* see_through, const Ray* rays, std::size_t count,
                     ObjectId* nearest, std::uint8_t* seen, rays::RayStats* stats) {
   const Caster caster{*arrays};
   rays::HWY_NAMESPACE::Work work, triangles;
@@ -167,9 +170,9 @@ void cast_triangles(const TriangleArrays* arrays, const TriangleRays::Kind* opaq
     nearest[r] = found.object;
     found.mark(seen);
     stats->hits += found.object != kNoObject;
-    if (transparent->ids.empty()) continue;
-    SeenThrough through{caster, rays[r], transparent->ids.data(), seen, triangles, found.distance};
-    rays::HWY_NAMESPACE::walk(transparent->bvh.nodes().data(), rays::WideNode::kInner, ray, through,
+    if (see_through->ids.empty()) continue;
+    SeenThrough through{caster, rays[r], see_through->ids.data(), seen, triangles, found.distance};
+    rays::HWY_NAMESPACE::walk(see_through->bvh.nodes().data(), rays::WideNode::kInner, ray, through,
                               arrays->object_stack, work);
   }
   stats->rays += count;
@@ -245,14 +248,14 @@ void TriangleRays::update() {
 }
 
 void TriangleRays::refresh() {
-  opaque_.ids.clear(), transparent_.ids.clear();
+  opaque_.ids.clear(), see_through_.ids.clear();
   for (ObjectId object = 0; object < scene_.size(); ++object) {
     invertible_[object] = invert(scene_.transform[object], to_mesh_[object]);
     const bool hides = invertible_[object] && scene_.surface[object] == Surface::opaque;
-    (hides ? opaque_ : transparent_).ids.push_back(object);
+    (hides ? opaque_ : see_through_).ids.push_back(object);
   }
   Boxes boxes;
-  for (Kind* kind : {&opaque_, &transparent_}) {
+  for (Kind* kind : {&opaque_, &see_through_}) {
     boxes.resize(kind->ids.size());
     for (std::size_t slot = 0; slot < kind->ids.size(); ++slot) {
       // Widened like a triangle's, as the transform into mesh space rounds too.
@@ -272,10 +275,11 @@ void TriangleRays::cast(std::span<const Ray> rays, std::span<ObjectId> nearest, 
                         Stack& stack, rays::RayStats& stats) const {
   if (stack.objects.size() < stack_size_)
     stack.objects.resize(stack_size_), stack.triangles.resize(stack_size_);
-  const TriangleArrays arrays{meshes_.data(),     scene_.mesh.data(),   to_mesh_.data(),
-                              invertible_.data(), stack.objects.data(), stack.triangles.data()};
+  const TriangleArrays arrays{meshes_.data(),        scene_.mesh.data(),  to_mesh_.data(),
+                              invertible_.data(),    scene_.sides.data(), stack.objects.data(),
+                              stack.triangles.data()};
   HWY_DYNAMIC_DISPATCH(cast_triangles)
-  (&arrays, &opaque_, &transparent_, rays.data(), rays.size(), nearest.data(), seen.data(), &stats);
+  (&arrays, &opaque_, &see_through_, rays.data(), rays.size(), nearest.data(), seen.data(), &stats);
 }
 
 }  // namespace sightline::partition

@@ -14,8 +14,9 @@
 
 namespace sightline::partition {
 
-/// A tree over objects and one over each mesh's triangles, seen from both sides. Opaque objects hide what
-/// lies behind them; transparent ones are seen where nothing opaque lies before, and hide nothing.
+/// A tree over objects and one over each mesh's triangles, met from the sides that are drawn. Opaque objects
+/// hide what lies behind them; cut-outs and transparent ones are seen where nothing opaque lies before, and
+/// hide nothing.
 class TriangleRays {
 public:
   /// The scene has passed check() and outlives this.
@@ -30,7 +31,7 @@ public:
 
   /// For each ray the nearest opaque object, or kNoObject, in `nearest`; of equally near objects, the lower
   /// id. Sets seen[o] to 1 for it, for up to seven more that lie on the same spot up to rounding (of two
-  /// coincident faces nobody knows which one a renderer shows), and for each transparent object before it.
+  /// coincident faces nobody knows which one a renderer shows), and for each that hides nothing before it.
   /// Adds to `stats`.
   void cast(std::span<const Ray> rays, std::span<ObjectId> nearest, std::span<std::uint8_t> seen,
             Stack& stack, rays::RayStats& stats) const;
@@ -54,7 +55,7 @@ private:
   std::vector<MeshTree> meshes_;
   std::vector<Affine> to_mesh_;           ///< one an object: world space to mesh space
   std::vector<std::uint8_t> invertible_;  ///< 0: flattened by its transform; its box is taken for it
-  Kind opaque_, transparent_;
+  Kind opaque_, see_through_;
   std::size_t stack_size_ = 0;
 };
 

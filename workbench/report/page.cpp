@@ -120,8 +120,8 @@ std::string facts_html(const PageContent& content) {
   return "<ul class=\"facts\">" + fact(static_cast<double>(content.scene.size()), "objects") +
          fact(static_cast<double>(triangle_count(content.scene)), "triangles") +
          fact(static_cast<double>(c.cameras.size()), "views") +
-         fmt::format("<li>path <b>{}</b></li><li><b>{} × {}</b> pixels</li></ul>\n", escape(c.path), c.width,
-                     c.height);
+         fmt::format("<li>path <b>{}</b></li><li><b>{} × {}</b> pixels</li><li>{}</li></ul>\n",
+                     escape(c.path), c.width, c.height, sides_drawn(c.raster_state));
 }
 
 std::string chart_html(const char* id, const char* title) {

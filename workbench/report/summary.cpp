@@ -10,6 +10,18 @@
 
 namespace sightline::report {
 
+std::string_view sides_drawn(RasterState state) noexcept {
+  switch (state) {
+    case RasterState::materials:
+      return "sides drawn as the materials say";
+    case RasterState::both_sides:
+      return "both sides drawn";
+    case RasterState::front_faces:
+      return "front faces drawn";
+  }
+  return "";
+}
+
 std::vector<MethodSummary> summarise(const measure::Comparison& comparison) {
   std::vector<MethodSummary> out;
   for (const std::string& method : comparison.methods) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "workbench/measure/compare.hpp"
@@ -22,6 +23,9 @@ struct MethodSummary {
 
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
+
+/// Which sides of triangles are drawn, in words, for whoever reads "exact".
+std::string_view sides_drawn(RasterState state) noexcept;
 
 /// In the order of the methods.
 std::vector<MethodSummary> summarise(const measure::Comparison& comparison);

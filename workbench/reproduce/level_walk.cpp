@@ -24,7 +24,7 @@ public:
     const auto all = static_cast<double>(walkers.size() - 1);
     for (const auto& walker : walkers) {
       if (walker->row.method == "nothing") continue;
-      const bool multi = walker->geometry().submission == Submission::multi_draw;
+      const bool multi = walker->method().geometry()->submission == Submission::multi_draw;
       const auto ranges = static_cast<double>(walker->frame().draws.size());
       samples.push_back({multi ? 0 : ranges, multi ? ranges : 0,
                          static_cast<double>(walker->frame().stats.triangles),
@@ -118,7 +118,7 @@ public:
       row.ranges += static_cast<double>(frame.draws.size()) / views();
       row.triangles += static_cast<double>(frame.stats.triangles) / views();
       if (walkers_[w]->culls())
-        row.lost_pixels += judge_.judge(view, walkers_[w]->geometry(), frame).loss.lost_pixels;
+        row.lost_pixels += judge_.judge(view, *walkers_[w]->method().geometry(), frame).loss.lost_pixels;
     }
     fit_.add_view(walkers_);
     const View small = or_throw(make_view(out_.path.cameras[v], kSmallWidth, kSmallHeight));
@@ -203,6 +203,7 @@ LevelWalk walk_level(device::Device& device, const LevelChoice& level, const Dra
                      const Progress& progress) {
   Scene scene = load_scene(level.specification);
   std::ranges::fill(scene.surface, Surface::opaque);
+  set_raster_state(scene, RasterState::front_faces);  // as the paper draws
   LevelWalk out;
   out.level = scene.name, out.kind = level.kind;
   out.triangles = triangle_count(scene);

@@ -19,15 +19,9 @@ Walker::Walker(device::Renderer& renderer, const std::string& specification)
   const std::size_t at = specification.find("height=");
   row.height = at == std::string::npos ? 0 : static_cast<std::uint32_t>(specification[at + 7] - '0');
   method_ = create_method(culls() ? specification : "simple-grid?height=1", renderer.scene());
-  row.submission = geometry().submission;
-  row.bytes = geometry().bytes;
-  draws_ = std::make_unique<device::TriangleDraws>(renderer, geometry());
-}
-
-TriangleGeometry Walker::geometry() const noexcept {
-  TriangleGeometry geometry = *method_->geometry();
-  geometry.front_faces_only = true;
-  return geometry;
+  row.submission = method_->geometry()->submission;
+  row.bytes = method_->geometry()->bytes;
+  draws_ = std::make_unique<device::TriangleDraws>(renderer, *method_->geometry());
 }
 
 Walker::Times Walker::draw(device::Renderer& renderer, const View& view) {

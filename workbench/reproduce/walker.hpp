@@ -12,8 +12,7 @@ namespace sightline::reproduce {
 
 class Walker {
 public:
-  /// "none" submits all triangles in one call, "nothing" not one. Back faces are culled for every method, so
-  /// that all draw one picture.
+  /// "none" submits all triangles in one call, "nothing" not one.
   Walker(device::Renderer& renderer, const std::string& specification);
 
   /// Culls and draws a frame, and tells the method what it took. Returns what was measured.
@@ -25,7 +24,6 @@ public:
 
   /// What the last frame drew.
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
-  [[nodiscard]] TriangleGeometry geometry() const noexcept;
   [[nodiscard]] Method& method() const noexcept { return *method_; }
   [[nodiscard]] bool culls() const noexcept { return what_ == What::method; }
 

@@ -72,6 +72,18 @@ void check_materials(const Scene& s) {
 
 }  // namespace scene
 
+std::string_view to_string(RasterState state) noexcept {
+  switch (state) {
+    case RasterState::materials:
+      return "materials";
+    case RasterState::both_sides:
+      return "both sides";
+    case RasterState::front_faces:
+      return "front faces";
+  }
+  return "";
+}
+
 void set_raster_state(Scene& s, RasterState state) {
   s.raster_state = state;
   s.sides.resize(s.material_sides.size());

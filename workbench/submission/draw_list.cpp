@@ -21,47 +21,66 @@ void append(const Mesh& mesh, std::uint32_t instances, std::uint32_t first, Fram
 
 }  // namespace
 
-DrawList::DrawList(const Scene& scene) : instances_(scene.meshes.size(), 0) {
-  for (auto* keys : {&opaque_, &transparent_, &scratch_}) keys->reserve(scene.size());
+DrawList::DrawList(const Scene& scene) : states_(scene.size()), instances_(scene.meshes.size(), 0) {
+  std::array<std::size_t, kDrawStates> counts{};
+  for (ObjectId id = 0; id < scene.size(); ++id) {
+    states_[id] = draw_state(scene, id);
+    ++counts[static_cast<std::size_t>(states_[id])];
+  }
+  for (std::size_t state = 0; state < keys_.size(); ++state) keys_[state].reserve(counts[state]);
+  scratch_.reserve(scene.size());
   touched_.reserve(scene.meshes.size());
 }
 
 void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcept {
   const Vec3 eye = eye_position(view), forward = view_direction(view);
-  opaque_.clear(), transparent_.clear();
+  for (auto& keys : keys_) keys.clear();
   for (const ObjectId id : frame.visible) {
     const std::uint32_t near_first = geometry::sortable(geometry::view_depth(scene.bounds[id], eye, forward));
-    const bool blended = scene.surface[id] == Surface::transparent;
-    (blended ? transparent_ : opaque_)
-        .push_back(std::uint64_t{blended ? ~near_first : near_first} << 32 | id);
+    const DrawState state = states_[id];
+    keys_[static_cast<std::size_t>(state)].push_back(
+        std::uint64_t{state == DrawState::blended ? ~near_first : near_first} << 32 | id);
   }
-  geometry::sort_by_high_bits(opaque_, scratch_, 32);
-  geometry::sort_by_high_bits(transparent_, scratch_, 32);
+  frame.draws.clear();
+  std::uint32_t first = 0;
+  for (std::size_t state = 0; state < keys_.size(); ++state) {
+    std::vector<std::uint64_t>& keys = keys_[state];
+    geometry::sort_by_high_bits(keys, scratch_, 32);
+    if (static_cast<DrawState>(state) == DrawState::blended) {
+      draw_in_runs(scene, first, frame);
+    } else {
+      draw_by_mesh(scene, keys, first, frame);
+    }
+    first += static_cast<std::uint32_t>(keys.size());
+  }
+  frame.stats.draw_calls = frame.draws.size();
+}
 
-  // Opaque: meshes in the order of their nearest object, their objects near to far.
+// Meshes in the order of their nearest object, their objects near to far.
+void DrawList::draw_by_mesh(const Scene& scene, std::span<const std::uint64_t> near_first,
+                            std::uint32_t first, Frame& frame) noexcept {
   touched_.clear();
-  for (const std::uint64_t key : opaque_) {
+  for (const std::uint64_t key : near_first) {
     const std::uint32_t mesh = scene.mesh[id_of(key)];
     if (instances_[mesh]++ == 0) touched_.push_back(mesh);
   }
-  std::uint32_t first = 0;
-  frame.draws.clear();
   for (const std::uint32_t mesh : touched_) {
     const std::uint32_t count = std::exchange(instances_[mesh], first);
     append(scene.meshes[mesh], count, first, frame);
     first += count;
   }
-  for (const std::uint64_t key : opaque_) frame.visible[instances_[scene.mesh[id_of(key)]]++] = id_of(key);
+  for (const std::uint64_t key : near_first) frame.visible[instances_[scene.mesh[id_of(key)]]++] = id_of(key);
   for (const std::uint32_t mesh : touched_) instances_[mesh] = 0;
+}
 
-  for (std::size_t i = 0; i < transparent_.size();) {
-    const std::uint32_t mesh = scene.mesh[id_of(transparent_[i])], run = first;
-    for (; i < transparent_.size() && scene.mesh[id_of(transparent_[i])] == mesh; ++i) {
-      frame.visible[first++] = id_of(transparent_[i]);
-    }
+void DrawList::draw_in_runs(const Scene& scene, std::uint32_t first, Frame& frame) const noexcept {
+  const std::vector<std::uint64_t>& far_first = keys_[static_cast<std::size_t>(DrawState::blended)];
+  for (std::size_t i = 0; i < far_first.size();) {
+    const std::uint32_t mesh = scene.mesh[id_of(far_first[i])], run = first;
+    for (; i < far_first.size() && scene.mesh[id_of(far_first[i])] == mesh; ++i)
+      frame.visible[first++] = id_of(far_first[i]);
     append(scene.meshes[mesh], first - run, run, frame);
   }
-  frame.stats.draw_calls = frame.draws.size();
 }
 
 }  // namespace sightline::submission

@@ -1,12 +1,16 @@
-// From visible objects to draw commands, in the order of a frame: opaque front to back, one instanced call a
-// mesh; then transparent back to front, one call a run of equal meshes (Le Hoang Minh et al. 2022, section
-// 2).
+// From visible objects to draw commands, in the order of a frame: state by state, what is not blended front
+// to back with one instanced call a mesh; then transparent back to front, one call a run of equal meshes (Le
+// Hoang Minh et al. 2022, section 2).
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include <sightline/view.hpp>
 #include <sightline/workbench/frame.hpp>
+
+#include "workbench/submission/draw_state.hpp"
 
 namespace sightline::submission {
 
@@ -19,8 +23,14 @@ public:
   void build(const Scene& scene, const View& view, Frame& frame) noexcept;
 
 private:
-  // depth in the high half, id in the low: equal depths still have one order
-  std::vector<std::uint64_t> opaque_, transparent_, scratch_;
+  void draw_by_mesh(const Scene& scene, std::span<const std::uint64_t> near_first, std::uint32_t first,
+                    Frame& frame) noexcept;
+  void draw_in_runs(const Scene& scene, std::uint32_t first, Frame& frame) const noexcept;
+
+  std::vector<DrawState> states_;  // by object
+  // By state; depth in the high half, id in the low: equal depths still have one order.
+  std::array<std::vector<std::uint64_t>, kDrawStates> keys_;
+  std::vector<std::uint64_t> scratch_;
   std::vector<std::uint32_t> instances_;  // by mesh, all 0 between builds
   std::vector<std::uint32_t> touched_;    // meshes of this frame, nearest first
 };

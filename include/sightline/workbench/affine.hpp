@@ -18,6 +18,17 @@ inline Vec3 transform_point(const Affine& affine, const Vec3& p) noexcept {
   return {row(affine.rows[0]), row(affine.rows[1]), row(affine.rows[2])};
 }
 
+/// Of its linear part.
+inline double determinant(const Affine& affine) noexcept {
+  const auto& [x, y, z] = affine.rows;
+  const auto minor = [](double p, double q, double r, double s) { return p * s - q * r; };
+  return x.x * minor(y.y, y.z, z.y, z.z) - x.y * minor(y.x, y.z, z.x, z.z) + x.z * minor(y.x, y.y, z.x, z.y);
+}
+/// Whether it turns triangles the other way.
+inline bool mirrors(const Affine& affine) noexcept {
+  return determinant(affine) < 0;
+}
+
 /// The same as the library takes it, column by column.
 inline Mat4 to_matrix(const Affine& affine) noexcept {
   Mat4 out;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sightline/boxes.hpp>
@@ -62,6 +63,9 @@ enum class RasterState : std::uint8_t {
   both_sides,   ///< all triangles, from wherever they are seen
   front_faces,  ///< only triangles seen from their front
 };
+
+/// "materials", "both sides" or "front faces".
+std::string_view to_string(RasterState state) noexcept;
 
 /// A place in a texture: u to the right, v down; 0 … 1 is the whole image, beyond it repeats.
 struct TextureCoordinate {

@@ -19,8 +19,9 @@ enum class Submission : std::uint8_t {
 
 std::string_view to_string(Submission submission) noexcept;
 
-/// World-space triangles, some perhaps several times. Triangle t of the arrays has the corners
-/// positions[indices[3t]], [3t + 1] and [3t + 2]; triangles share corners only within an object; a draw of
+/// World-space triangles, some perhaps several times, counter-clockwise from their front. Triangle t of the
+/// arrays has the corners positions[indices[3t]], [3t + 1] and [3t + 2]; triangles share corners only within
+/// an object; a draw of
 /// Frame::draws has vertex offset 0, one instance, and covers the triangles first_instance … first_instance +
 /// index_count / 3.
 struct TriangleGeometry {
@@ -30,10 +31,9 @@ struct TriangleGeometry {
   /// One a triangle: its number when the scene's objects are counted through in order, each triangle by
   /// triangle.
   std::span<const std::uint32_t> sources;
-  Submission submission = Submission::calls;  ///< of the last frame: a method may change its way
-  bool front_faces_only =
-      false;                ///< the picture is right where back faces (clockwise in world space) are culled
-  std::uint64_t bytes = 0;  ///< memory that the method holds, these arrays included
+  std::span<const TextureCoordinate> texture_coordinates;  ///< as many as positions, or none
+  Submission submission = Submission::calls;               ///< of the last frame: a method may change its way
+  std::uint64_t bytes = 0;                                 ///< memory that the method holds, these included
 };
 
 }  // namespace sightline

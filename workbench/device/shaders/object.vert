@@ -3,29 +3,14 @@
 
 #include "workbench/device/shaders/view.h"
 
-// Draws an object of the list; every pass that draws objects uses this one shader, so depths agree to the
-// bit.
+// Draws an object of the list.
 layout(push_constant, scalar) uniform Push {
   ObjectBuffer objects;
   WordBuffer list;
 };
 
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 0) out vec3 world_position;
-layout(location = 1) out vec3 world_normal;
-layout(location = 2) out flat uint object;
-layout(location = 3) out flat uint colour;
-invariant gl_Position;
+#include "workbench/device/shaders/object.h"
 
 void main() {
-  object = list.at[gl_InstanceIndex];
-  const ObjectData data = objects.at[object];
-  const vec4 local = vec4(position, 1);
-  world_position = vec3(dot(data.rows[0], local), dot(data.rows[1], local), dot(data.rows[2], local));
-  // The inverse transpose up to scale: cofactors of the linear part.
-  const vec3 a = data.rows[0].xyz, b = data.rows[1].xyz, c = data.rows[2].xyz;
-  world_normal = vec3(dot(cross(b, c), normal), dot(cross(c, a), normal), dot(cross(a, b), normal));
-  colour = data.colour;
-  gl_Position = on_pixel_grid(world_position);
+  place_object();
 }

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 #include "workbench/device/shaders/invocation.h"
 
 // Which slots are listed, and how many before each word of them in its block; the block that ends last adds up
-// the blocks and writes the commands: one a mesh for the opaque objects, then one a transparent object. What costs
+// the blocks and writes the commands: one a batch, then one a transparent object. What costs
 // on llvmpipe is a workgroup with barriers, whatever their number, so all that needs them is done here.
 const uint kRow = 8;  // lanes, and rows of lanes
 shared uvec2 of_lane[kLanes], of_row[kRow];
@@ -37,28 +37,30 @@ uint place_of(uint list, uint slot) {
 }
 
 void write_command(uint list, CommandBuffer commands, WordBuffer objects_of, uint i) {
-  if (i < mesh_count) {
+  if (i < batch_count) {
     const MeshData mesh = meshes.at[i];
     const uint first = place_of(list, mesh.first_slot), next = place_of(list, meshes.at[i + 1].first_slot);
     commands.at[i] = CommandData(mesh.index_count, next - first, mesh.first_index, mesh.first_vertex, first);
     return;
   }
-  i -= mesh_count;
+  i -= batch_count;
   const uint object = transparent_order.at[i];
   const MeshData mesh = meshes.at[objects.at[object].mesh];
-  commands.at[mesh_count + i] = CommandData(mesh.index_count, meets(object, transparent_condition),
-                                            mesh.first_index, mesh.first_vertex, opaque + i);
-  objects_of.at[opaque + i] = object;
+  commands.at[batch_count + i] = CommandData(mesh.index_count, meets(object, rest_condition),
+                                             mesh.first_index, mesh.first_vertex, ordered + i);
+  objects_of.at[ordered + i] = object;
 }
 
 void main() {
   const uint lane = gl_LocalInvocationID.x, block = gl_WorkGroupID.x;
-  const uint word = block * kLanes + lane, first = word * kEach, last = min(first + kEach, opaque);
+  const uint word = block * kLanes + lane, first = word * kEach, last = min(first + kEach, ordered);
   uvec2 met = uvec2(0);  // a bit a slot
   for (uint slot = first; slot < last; ++slot) {
     const uint flag = flags.at[slot_objects.at[slot]], bit = 1u << slot - first;
-    if ((flag & condition_of[0].x) == condition_of[0].y) met.x |= bit;
-    if ((flag & condition_of[1].x) == condition_of[1].y) met.y |= bit;
+    const bool is_solid = slot < solid;
+    const uvec2 condition = is_solid ? condition_of[0] : rest_condition;
+    if ((flag & condition.x) == condition.y) met.x |= bit;
+    if (is_solid && (flag & condition_of[1].x) == condition_of[1].y) met.y |= bit;
   }
   uvec2 before, total;
   add_up(uvec2(bitCount(met.x), bitCount(met.y)), before, total);
@@ -90,16 +92,17 @@ void main() {
       before[list] += here;
     }
   }
-  if (lane == 0) {
-    scan.at[done_at()] = 0;
-    const uvec3 groups = in_rows(total.x / 64 + uint(total.x % 64 != 0), widest);
-    const uint words[4] = uint[](groups.x, groups.y, groups.z, total.x);
-    for (uint i = 0; i < 4; ++i) scan.at[listed_at() + i] = words[i];
-  }
   memoryBarrierBuffer();
   barrier();
-  for (uint i = lane; i < mesh_count + transparent; i += kLanes) {
+  if (lane == 0) {
+    scan.at[done_at()] = 0;
+    const uint count = place_of(0, solid);
+    const uvec3 groups = in_rows(count / 64 + uint(count % 64 != 0), widest);
+    const uint words[4] = uint[](groups.x, groups.y, groups.z, count);
+    for (uint i = 0; i < 4; ++i) scan.at[listed_at() + i] = words[i];
+  }
+  for (uint i = lane; i < batch_count + transparent; i += kLanes) {
     write_command(0, commands_of[0], list_of[0], i);
-    if (list_count > 1 && i < mesh_count) write_command(1, commands_of[1], list_of[1], i);
+    if (list_count > 1 && i < batch_count) write_command(1, commands_of[1], list_of[1], i);
   }
 }

@@ -26,12 +26,16 @@ void Adaptive::gather() {
     bytes += candidate.method->geometry()->bytes;
     TriangleLists lists = candidate.method->give_lists();
     positions_ = std::move(lists.positions);  // all plans have the same
+    texture_coordinates_ = std::move(lists.texture_coordinates);
     indices_.insert(indices_.end(), lists.indices.begin(), lists.indices.end());
     sources_.insert(sources_.end(), lists.sources.begin(), lists.sources.end());
     objects_.insert(objects_.end(), lists.objects.begin(), lists.objects.end());
   }
-  bytes -= (candidates_.size() - 1) * positions_.size() * sizeof(Vec3);
-  geometry_ = {positions_, indices_, objects_, sources_, ways_[trials_.current()].submission, true, bytes};
+  bytes -= (candidates_.size() - 1) *
+           (positions_.size() * sizeof(Vec3) + texture_coordinates_.size() * sizeof(TextureCoordinate));
+  geometry_ = {
+      positions_, indices_, objects_, sources_, texture_coordinates_, ways_[trials_.current()].submission,
+      bytes};
 }
 
 void Adaptive::cull(const View& view, Frame& frame) noexcept {

@@ -45,6 +45,7 @@ private:
   std::vector<Way> ways_;
   Trials trials_;
   std::vector<Vec3> positions_;
+  std::vector<TextureCoordinate> texture_coordinates_;
   std::vector<std::uint32_t> indices_, sources_;
   std::vector<ObjectId> objects_;
   TriangleGeometry geometry_;

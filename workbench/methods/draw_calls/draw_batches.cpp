@@ -55,20 +55,26 @@ DrawBatches batches_of(Strategy strategy, const FlatTriangles& flat,
                        const partition::TrianglePartition& cells, bool with_cones, Add add) {
   DrawBatches batches;
   const partition::TriangleSpan all = flat.span();
-  std::array<std::vector<std::uint32_t>, kParts> parts;
+  // What is drawn from both sides may always face the eye, and is a part of its own.
+  const auto has_back = [&](std::uint32_t t) { return flat.sides[flat.objects[t]] == Sides::both; };
+  const auto cone = [&](Triangles triangles, std::uint32_t cell) {
+    return std::ranges::any_of(triangles, has_back) ? FacingCone{}
+                                                    : cone_of(all, triangles, cells.region(cell));
+  };
+  std::array<std::vector<std::uint32_t>, kParts + 1> parts;
   for (std::uint32_t cell = 0; cell < cells.cells(); ++cell) {
     const Triangles triangles = cells.triangles(cell);
     if (strategy != Strategy::zhang) {
       add(batches, triangles);
-      if (with_cones) batches.cones.push_back(cone_of(all, triangles, cells.region(cell)));
+      if (with_cones) batches.cones.push_back(cone(triangles, cell));
     } else {
       for (auto& part : parts) part.clear();
       for (const std::uint32_t triangle : triangles)
-        parts[part_of(unit_normal(all[triangle]))].push_back(triangle);
+        parts[has_back(triangle) ? kParts : part_of(unit_normal(all[triangle]))].push_back(triangle);
       for (const auto& part : parts) {
         if (part.empty()) continue;
         add(batches, part);
-        batches.cones.push_back(cone_of(all, part, cells.region(cell)));
+        batches.cones.push_back(cone(part, cell));
       }
     }
     batches.cell_start.push_back(static_cast<std::uint32_t>(batches.range_start.size() - 1));

@@ -37,18 +37,18 @@ void DrawCallMethod::rebuild() {
     order.reserve(flat.size() + flat.size() / 4);
   }
   const bool with_cones = plan_.facing != FacingRule::none;
-  for (const Surface surface : {Surface::opaque, Surface::transparent}) {
+  for (const bool blended : {false, true}) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < flat.size(); ++t) {
-      if (scene_.surface[flat.objects[t]] == surface) triangles.push_back(t);
+      if ((scene_.surface[flat.objects[t]] == Surface::transparent) == blended) triangles.push_back(t);
     }
-    Layer& layer = layers_[surface == Surface::transparent];
+    Layer& layer = layers_[blended];
     if (plan_.clusters) {
       layer.partition.build_clusters(flat.span(), triangles, plan_.cluster_size);
     } else {
       layer.partition.build(plan_.structure, flat.span(), triangles, plan_.height);
     }
-    if (surface == Surface::opaque) {
+    if (!blended) {
       layer.batches = make_draw_batches(plan_.strategy, flat, layer.partition, order, with_cones);
     } else {
       std::vector<std::uint32_t> positions = triangles;  // in the global list of `simple`
@@ -73,6 +73,7 @@ void DrawCallMethod::rebuild() {
     }
   }
   lists_.positions = std::move(flat.positions);
+  lists_.texture_coordinates = std::move(flat.texture_coordinates);
   lists_.sources = std::move(order);
   seen_.assign(scene_.size(), 0);
   frame_ = 0;
@@ -83,6 +84,7 @@ void DrawCallMethod::rebuild() {
 
 void DrawCallMethod::describe() {
   std::uint64_t bytes = lists_.positions.size() * sizeof(Vec3) +
+                        lists_.texture_coordinates.size() * sizeof(TextureCoordinate) +
                         4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) +
                         9 * scene_.size();
   for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.batches.bytes();
@@ -90,15 +92,14 @@ void DrawCallMethod::describe() {
                lists_.indices,
                lists_.objects,
                lists_.sources,
+               lists_.texture_coordinates,
                plan_.submission,
-               plan_.facing != FacingRule::none,
                bytes};
 }
 
 TriangleLists DrawCallMethod::give_lists() {
   geometry_ = {};
   geometry_.submission = plan_.submission;
-  geometry_.front_faces_only = plan_.facing != FacingRule::none;
   return std::exchange(lists_, {});
 }
 

@@ -25,6 +25,7 @@ struct DrawCallPlan {
 /// The arrays behind a TriangleGeometry.
 struct TriangleLists {
   std::vector<Vec3> positions;
+  std::vector<TextureCoordinate> texture_coordinates;
   std::vector<std::uint32_t> indices, sources;
   std::vector<ObjectId> objects;
 };

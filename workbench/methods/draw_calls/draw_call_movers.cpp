@@ -44,8 +44,7 @@ void DrawCallMethod::add_mover(ObjectId object) {
     range = blend_order_.range_of(object);
   } else if (plan_.strategy != Strategy::simple) {
     range.first = static_cast<std::uint32_t>(lists_.objects.size());
-    for (std::uint32_t i = 0; i < mesh.index_count; ++i)
-      lists_.indices.push_back(first_corner_[object] + scene_.indices[mesh.first_index + i]);
+    append_indices(scene_, object, first_corner_[object], lists_.indices);
     for (std::uint32_t t = 0; t < range.count; ++t) lists_.sources.push_back(first_source_[object] + t);
     lists_.objects.insert(lists_.objects.end(), range.count, object);
   }

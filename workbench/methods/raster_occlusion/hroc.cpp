@@ -95,7 +95,8 @@ private:
     frame.dispatch(front_, push, tree_.total());
     for (std::uint32_t level = 0; level < tree_.levels(); ++level) {
       frame.begin_rendering({});
-      frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);
+      frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias,
+                 vk::CullModeFlagBits::eBack);
       frame.push(BoxPush{node_boxes_.address(), marks_.address(), lists_[level % 2].address(), 1,
                          tree_.interior(), 1});
       frame.commands.drawIndirect(tests_.handle(), 16 * level, 1, 16);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <sightline/frustum.hpp>
@@ -32,6 +33,10 @@ constexpr std::array kMaskedParameters{
     ParameterInfo{"spheres", "px², the least area of an object that occludes by the sphere inside it", "5", 0,
                   1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
+    ParameterInfo{"solid",
+                  "what occludes: opaque surfaces from the sides that are drawn, or everything, cut-outs "
+                  "and both sides, as many engines have it: loses what is seen through and past them",
+                  "opaque", 0, 0, false, "opaque|all"},
 };
 
 class Masked final : public CpuMethod {
@@ -41,6 +46,7 @@ public:
         most_occluders_(parameters.count("occluders")),
         least_area_(static_cast<float>(parameters.number("pixels"))),
         least_sphere_(static_cast<float>(parameters.number("spheres"))),
+        all_solid_(parameters.word("solid") == "all"),
         draw_list_(scene),
         handles_(scene.size()),
         moved_(scene.size(), 0) {
@@ -57,7 +63,9 @@ public:
     }
   }
 
-  [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
+  [[nodiscard]] Guarantee guarantee() const noexcept override {
+    return all_solid_ ? Guarantee::approximate : Guarantee::conservative;
+  }
 
   void do_update(std::span<const ObjectId> objects) override {
     bool first_time = false;
@@ -131,11 +139,21 @@ private:
     return static_cast<bool>(culled);
   }
 
-  // Three corners a triangle, in world space.
+  [[nodiscard]] bool occludes(ObjectId o) const noexcept {
+    return all_solid_ || scene_.surface[o] == Surface::opaque;
+  }
+  [[nodiscard]] Sides sides_of(ObjectId o) const noexcept {
+    return all_solid_ ? Sides::both : scene_.sides[o];
+  }
+
+  // Three corners a triangle, in world space, counter-clockwise from its front.
   void append_corners(ObjectId o) {
     const Mesh& mesh = scene_.meshes[scene_.mesh[o]];
+    const std::size_t first = corners_.size();
     for (const std::uint32_t i : std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count))
       corners_.push_back(transform_point(scene_.transform[o], scene_.positions[mesh.first_vertex + i]));
+    if (!mirrors(scene_.transform[o])) return;
+    for (std::size_t i = first; i < corners_.size(); i += 3) std::swap(corners_[i + 1], corners_[i + 2]);
   }
 
   bool take_triangles() {
@@ -150,28 +168,35 @@ private:
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
   void build_whole() {
     corners_.clear();
+    std::vector<Sides> sides;
     for (ObjectId o = 0; o < scene_.size(); ++o) {
-      if (!moved_[o] && scene_.surface[o] == Surface::opaque) append_corners(o);
+      if (moved_[o] || !occludes(o)) continue;
+      append_corners(o);
+      sides.resize(corners_.size() / 3, sides_of(o));
     }
     std::vector<std::uint32_t> indices(corners_.size());
     std::iota(indices.begin(), indices.end(), 0u);
-    whole_ = or_throw(OccluderMesh::make(corners_, indices));
+    whole_ = or_throw(OccluderMesh::make(corners_, indices, sides));
   }
 
-  // What the meshes of opaque objects are drawn as.
+  // What an object is drawn as: by its mesh, and the sides of it that are drawn.
+  [[nodiscard]] std::size_t occluder_of(ObjectId o) const noexcept {
+    return 2 * std::size_t{scene_.mesh[o]} + (sides_of(o) == Sides::front);
+  }
+
   void find_occluders() {
-    std::vector<std::uint8_t> occludes(scene_.meshes.size(), 0);
-    for (ObjectId o = 0; o < scene_.size(); ++o)
-      occludes[scene_.mesh[o]] |= scene_.surface[o] == Surface::opaque;
-    occluders_.resize(scene_.meshes.size());
-    for (std::size_t m = 0; m < occluders_.size(); ++m) {
-      if (!occludes[m]) continue;
-      const Mesh& mesh = scene_.meshes[m];
+    std::vector<std::uint8_t> asked(2 * scene_.meshes.size(), 0);
+    for (ObjectId o = 0; o < scene_.size(); ++o) asked[occluder_of(o)] |= occludes(o);
+    occluders_.resize(asked.size());
+    for (std::size_t i = 0; i < occluders_.size(); ++i) {
+      if (!asked[i]) continue;
+      const Mesh& mesh = scene_.meshes[i / 2];
+      const Sides sides = i % 2 == 0 ? Sides::both : Sides::front;
       const auto positions = std::span(scene_.positions).subspan(mesh.first_vertex, mesh.vertex_count);
       const auto indices = std::span(scene_.indices).subspan(mesh.first_index, mesh.index_count);
-      occluders_[m].whole = or_throw(OccluderMesh::make(positions, indices));
-      occluders_[m].sphere = inner_sphere(positions, indices);
-      if (!occluders_[m].sphere) occluders_[m].proxy = occluder_proxy(positions, indices);
+      occluders_[i].whole = or_throw(OccluderMesh::make(positions, indices, sides));
+      occluders_[i].sphere = inner_sphere(positions, indices, sides);
+      if (!occluders_[i].sphere) occluders_[i].proxy = occluder_proxy(positions, indices, sides);
     }
   }
 
@@ -191,7 +216,7 @@ private:
     front.distance -= make_frustum(view, extent_).planes[Frustum::front].distance - front.distance;
     picked_.clear(), near_first_.clear(), drawn_spheres_.clear();
     for (const ObjectId o : candidates) {
-      if (scene_.surface[o] != Surface::opaque) continue;
+      if (!occludes(o)) continue;
       const Sphere sphere = scene_.sphere(o);
       const float area = projected_area(projector, sphere);
       const Vec3 to{sphere.centre.x - projector.eye.x, sphere.centre.y - projector.eye.y,
@@ -199,7 +224,7 @@ private:
       const float distance = to.x * to.x + to.y * to.y + to.z * to.z;
       const bool cut = signed_distance(front, sphere.centre.x, sphere.centre.y, sphere.centre.z) <=
                        sphere.radius * (1 + 1e-4f);
-      if (!cut && occluders_[scene_.mesh[o]].sphere) {
+      if (!cut && occluders_[occluder_of(o)].sphere) {
         if (area >= least_sphere_)
           near_first_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | o);
       } else if (area >= least_area_) {
@@ -212,7 +237,7 @@ private:
     std::sort(near_first_.begin(), near_first_.end());
     for (const std::uint64_t key : near_first_) {
       const auto o = static_cast<ObjectId>(key);
-      drawn_spheres_.push_back(sphere_inside(scene_.transform[o], *occluders_[scene_.mesh[o]].sphere));
+      drawn_spheres_.push_back(sphere_inside(scene_.transform[o], *occluders_[occluder_of(o)].sphere));
     }
     static_cast<void>(buffer_.draw_spheres(std::span<const Sphere>(drawn_spheres_)));
   }
@@ -229,7 +254,7 @@ private:
       return a.distance != b.distance ? a.distance < b.distance : a.object < b.object;
     });
     for (const Picked& picked : picked_) {
-      const Occluder& occluder = occluders_[scene_.mesh[picked.object]];
+      const Occluder& occluder = occluders_[occluder_of(picked.object)];
       // What stands in for a mesh lies inside it, so of one that the near plane cuts it would still show a
       // front where the inside is seen: such a mesh is drawn as it is.
       const bool simply = occluder.proxy && !picked.cut;
@@ -262,6 +287,7 @@ private:
 
   std::uint32_t most_occluders_;
   float least_area_, least_sphere_;
+  bool all_solid_;
   submission::DrawList draw_list_;
   World world_;
   Culler culler_;
@@ -271,7 +297,7 @@ private:
   std::optional<OccluderMesh> whole_;  // where the scene occludes as one
   OccludeeTriangles occludees_;        // of all objects, where it does
   std::vector<Vec3> corners_;          // of the objects at hand
-  std::vector<Occluder> occluders_;    // one a mesh, where it does not
+  std::vector<Occluder> occluders_;    // two a mesh, by its sides, where it does not
   Box extent_;                         // of the scene, as it stands
   std::vector<Picked> picked_;
   std::vector<std::uint64_t> near_first_;  // squared distance and object

@@ -69,13 +69,14 @@ bool JoinedMesh::closed() const {
 }
 
 // The middle of a closed mesh that no vertex of its own stands out of, how far its vertices reach from there,
-// and how deep it lies below the nearest triangle's plane. Nothing where the mesh is not so.
+// and how deep it lies below the nearest triangle's plane. Nothing where the mesh is not so, or where a
+// triangle whose back is not drawn looks inwards: from outside it is not there.
 struct ConvexMiddle {
   glm::dvec3 middle;
   double reach, depth;
 };
 
-std::optional<ConvexMiddle> convex_middle(const JoinedMesh& mesh) {
+std::optional<ConvexMiddle> convex_middle(const JoinedMesh& mesh, Sides sides) {
   if (mesh.positions.size() * mesh.triangles.size() > kMostWork || !mesh.closed()) return {};
   ConvexMiddle out{glm::dvec3(0), 0, 0};
   for (const glm::dvec3& p : mesh.positions) out.middle += p;
@@ -88,7 +89,9 @@ std::optional<ConvexMiddle> convex_middle(const JoinedMesh& mesh) {
     glm::dvec3 normal = glm::cross(mesh.positions[b] - p, mesh.positions[c] - p);
     const double length = glm::length(normal);
     if (!(length > 0)) continue;
-    normal /= glm::dot(normal, out.middle - p) > 0 ? -length : length;
+    const bool inwards = glm::dot(normal, out.middle - p) > 0;
+    if (inwards && sides == Sides::front) return {};
+    normal /= inwards ? -length : length;
     for (const glm::dvec3& v : mesh.positions) {
       if (glm::dot(normal, v - p) > tolerance) return {};
     }
@@ -100,10 +103,10 @@ std::optional<ConvexMiddle> convex_middle(const JoinedMesh& mesh) {
 }  // namespace
 
 std::optional<OccluderMesh> occluder_proxy(std::span<const Vec3> positions,
-                                           std::span<const std::uint32_t> indices) {
+                                           std::span<const std::uint32_t> indices, Sides sides) {
   const JoinedMesh mesh(positions, indices);
   if (mesh.triangles.size() < kManyTriangles) return {};
-  const std::optional<ConvexMiddle> convex = convex_middle(mesh);
+  const std::optional<ConvexMiddle> convex = convex_middle(mesh, sides);
   if (!convex) return {};
   // The mesh's own outermost points in the directions of a coarse sphere, a little inwards.
   scene::Shape proxy = scene::sphere(1);
@@ -117,10 +120,11 @@ std::optional<OccluderMesh> occluder_proxy(std::span<const Vec3> positions,
   return or_throw(OccluderMesh::make(proxy.positions, proxy.indices));
 }
 
-std::optional<Sphere> inner_sphere(std::span<const Vec3> positions, std::span<const std::uint32_t> indices) {
+std::optional<Sphere> inner_sphere(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                                   Sides sides) {
   const JoinedMesh mesh(positions, indices);
   if (mesh.triangles.size() < 8) return {};
-  const std::optional<ConvexMiddle> convex = convex_middle(mesh);
+  const std::optional<ConvexMiddle> convex = convex_middle(mesh, sides);
   if (!convex || !(convex->depth > kRound * convex->reach)) return {};
   // The centre is rounded, and so is what a transform makes of it.
   const double rounding = 1e-6 * (convex->reach + glm::length(convex->middle));

@@ -35,24 +35,24 @@ device::GraphicsPipeline make_box_pipeline(const device::Device& device,
           {.vertex = kBoxVert,
            .fragment = kMarkFrag,
            .constants = shader_constants(contribution),
-           .depth_write = false,
-           .cull_back = true}};
+           .depth_write = false}};
 }
 
 void report_visible(const Renderer& renderer, std::span<const std::uint32_t> flags,
-                    device::VisibleDraws::Condition opaque, device::VisibleDraws::Condition transparent,
+                    device::VisibleDraws::Condition solid, device::VisibleDraws::Condition rest,
                     Frame& frame) {
   const Scene& scene = renderer.scene();
   frame.clear();
-  std::vector<std::uint8_t> drawn(scene.meshes.size());
+  const device::SceneBuffers& buffers = renderer.buffers();
+  std::vector<std::uint8_t> drawn(buffers.batch_count());
   for (ObjectId object = 0; object < scene.size(); ++object) {
     const bool blended = scene.surface[object] == Surface::transparent;
-    const auto& condition = blended ? transparent : opaque;
+    const auto& condition = buffers.is_solid(object) ? solid : rest;
     if ((flags[object] & condition.mask) != condition.value) continue;
     frame.visible.push_back(object);
     frame.stats.triangles += scene.triangles(object);
     frame.stats.draw_calls += blended;
-    if (!blended) drawn[scene.mesh[object]] = 1;
+    if (!blended) drawn[buffers.batch_of(object)] = 1;
   }
   frame.stats.draw_calls += static_cast<std::uint64_t>(std::ranges::count(drawn, 1));
   frame.stats.objects = scene.size();
@@ -68,7 +68,7 @@ void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);
-    renderer_.draw_opaque(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);
+    renderer_.draw_solid(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);
   }
   test(frame);
   {
@@ -78,9 +78,9 @@ void MarkAndDraw::do_record(FrameContext& context) {
   const auto pass = frame.pass("draw", PassKind::draw);
   // An object dropped by area may have laid down depth that nothing would cover.
   const bool dropped = guarantee() == Guarantee::approximate;
-  renderer_.draw_opaque(frame, draws_, Renderer::Style::lit,
-                        dropped ? Renderer::Clear::both : Renderer::Clear::colour);
-  renderer_.draw_transparent(frame, draws_);
+  renderer_.draw_solid(frame, draws_, Renderer::Style::lit,
+                       dropped ? Renderer::Clear::both : Renderer::Clear::colour);
+  renderer_.draw_rest(frame, draws_);
 }
 
 void MarkAndDraw::read_back(Frame& frame) {

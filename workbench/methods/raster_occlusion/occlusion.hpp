@@ -32,7 +32,7 @@ device::GraphicsPipeline make_box_pipeline(const device::Device& device,
 
 /// Lists the objects with (flags[o] & mask) == value, and counts draw calls and triangles.
 void report_visible(const device::Renderer& renderer, std::span<const std::uint32_t> flags,
-                    device::VisibleDraws::Condition opaque, device::VisibleDraws::Condition transparent,
+                    device::VisibleDraws::Condition solid, device::VisibleDraws::Condition rest,
                     Frame& frame);
 
 /// The frame of roc, hroc and vertex-chunk: last frame's visible objects lay down depth for this frame's

@@ -21,7 +21,8 @@ private:
     frame.fill(marks_, 0, marks_.size());
     const device::SceneBuffers& scene = renderer_.buffers();
     frame.begin_rendering({});
-    frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);
+    frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias,
+               vk::CullModeFlagBits::eBack);
     frame.push(BoxPush{scene.box_data.address(), marks_.address(), 0, 0, 0, 1});
     frame.commands.draw(kBoxVertices * scene.objects, 1, 0, 0);
     frame.end_rendering();

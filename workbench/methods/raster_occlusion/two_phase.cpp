@@ -70,7 +70,7 @@ void TwoPhase::do_record(FrameContext& context) {
   begin_frame(frame);
   {
     const auto pass = frame.pass("draw last frame's visible objects", PassKind::draw);
-    renderer_.draw_opaque(frame, early_, Renderer::Style::lit, Renderer::Clear::both);
+    renderer_.draw_solid(frame, early_, Renderer::Style::lit, Renderer::Clear::both);
   }
   {
     const auto pass = frame.pass("occlusion test", PassKind::cull);
@@ -84,10 +84,10 @@ void TwoPhase::do_record(FrameContext& context) {
   }
   {
     const auto pass = frame.pass("draw new objects", PassKind::draw);
-    renderer_.draw_opaque(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
-    renderer_.draw_opaque(frame, again_, equal_depth_pipeline_, tiles_.address(),
-                          device::Recorder::Compare::equal);
-    renderer_.draw_transparent(frame, late_);
+    renderer_.draw_solid(frame, late_, Renderer::Style::lit, Renderer::Clear::nothing);
+    renderer_.draw_solid(frame, again_, equal_depth_pipeline_, tiles_.address(),
+                         device::Recorder::Compare::equal);
+    renderer_.draw_rest(frame, late_);
   }
   std::swap(early_, next_);
 }
@@ -111,7 +111,7 @@ void TwoPhase::list_what_is_new(device::Recorder& frame) {
   const VisibleDraws::List late{among(stamp_, kDrawnEarly | kSeen, kSeen), seen, &late_},
       next{seen, kNever, &next_};
   draws.build(frame, state_.address(), late, renderer_.transparent_order(), &next);
-  // Where nothing new is opaque, what follows has no groups to run.
+  // Where nothing new is solid, what follows has no groups to run.
   const device::Recorder::Groups fresh = draws.listed(), equal_depth{follow_up_, kEqualDepthGroups},
                                  scan{follow_up_, kScanGroups};
   frame.dispatch(new_tiles_,
@@ -135,8 +135,7 @@ void TwoPhase::read_back(Frame& frame) {
     const std::uint32_t stamp = state[i] >> 4, bits = stamp == stamp_ ? state[i] : 0;
     // What was seen last frame was drawn at once, in view or not.
     const bool early = (bits & kDrawnEarly) != 0 || (stamp + 1 == stamp_ && (state[i] & kSeen) != 0);
-    const bool blended = renderer_.scene().surface[i] == Surface::transparent;
-    drawn[i] = (bits & kSeen) != 0 || (early && !blended);
+    drawn[i] = (bits & kSeen) != 0 || (early && renderer_.buffers().is_solid(static_cast<ObjectId>(i)));
     in_view += bits & kInView;
     culled += (bits & kInView) != 0 && !drawn[i];
   }

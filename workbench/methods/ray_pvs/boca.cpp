@@ -11,9 +11,12 @@ constexpr std::array kBocaParameters{kRaysParameter};
 class Boca final : public RayMethod {
 public:
   Boca(const Scene& scene, const Parameters& parameters) : RayMethod(scene, parameters) {
-    bvh_.build(scene.bounds);
+    bvh_.build(targets_.solid());
   }
-  void do_update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+  void do_update(std::span<const ObjectId> objects) override {
+    RayMethod::do_update(objects);
+    bvh_.refit(targets_.solid());
+  }
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {

@@ -34,17 +34,15 @@ public:
         distances_(device, kDistances),
         nearest_(device, kBvhaNearest),
         boxes_(device, scene.size() * sizeof(Box), device::Memory::upload, "boxes") {
-    bvh_.build(scene.bounds);
-    send();
-  }
-  void update() override {
-    bvh_.refit(scene_.bounds);
+    bvh_.build(targets_.solid());
     send();
   }
 
 private:
-  void send() {
-    for (std::size_t i = 0; i < scene_.size(); ++i) boxes_.mapped<Box>()[i] = scene_.bounds[i];
+  void send() override {
+    const Boxes& boxes = targets_.solid();
+    bvh_.refit(boxes);
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes_.mapped<Box>()[i] = boxes[i];
   }
 
   void prepare_more(const rays::RayGrid& grid) override {

@@ -27,10 +27,40 @@ struct Hit {
   float distance;
 };
 
+constexpr std::uint32_t kSeeThroughShader[] =
+#include "shaders/see_through.comp.inc"
+    ;
+
+struct SeeThroughPush {
+  vk::DeviceAddress rays, nodes, hits, slot_objects, slot_marks, marks;
+  std::uint32_t ray_count, node_count, slot_count;
+};
+
 }  // namespace
 
 DeviceRays::DeviceRays(device::Device& device, const Scene& scene)
-    : device_(device), scene_(scene), marks_(device, scene.size() * 4, device::Memory::readback, "marks") {}
+    : device_(device),
+      scene_(scene),
+      targets_(scene),
+      marks_(device, scene.size() * 4, device::Memory::readback, "marks"),
+      see_through_(device, kSeeThroughShader) {
+  if (!targets_.mixed()) return;
+  object_marks_ = device::Buffer(device, scene.size() * 4, device::Memory::readback, "marks");
+  slot_objects_ = upload_bytes(device, std::as_bytes(targets_.solid_ids()), "what stops rays");
+  see_through_nodes_ = device::Buffer(device, targets_.see_through().size_bytes(), device::Memory::upload,
+                                      "what rays go through");
+  send_see_through();
+}
+
+void DeviceRays::send_see_through() {
+  if (targets_.mixed()) std::ranges::copy(targets_.see_through(), see_through_nodes_.mapped<rays::BvhNode>());
+}
+
+void DeviceRays::update() {
+  targets_.update();
+  send_see_through();
+  send();
+}
 
 void DeviceRays::grow(device::Buffer& buffer, std::size_t bytes, device::Memory memory,
                       std::string_view what) {
@@ -54,8 +84,23 @@ void DeviceRays::prepare(const rays::RayGrid& grid) {
 
 void DeviceRays::record(const vk::raii::CommandBuffer& commands) {
   commands.fillBuffer(marks_.handle(), 0, scene_.size() * 4, 0);
+  if (targets_.mixed()) commands.fillBuffer(object_marks_.handle(), 0, scene_.size() * 4, 0);
   device::full_barrier(commands);
-  if (rays_ != 0) record_passes(commands);
+  if (rays_ == 0) return;
+  if (targets_.solid().size() == 0) {
+    commands.fillBuffer(hits_.handle(), 0, rays_ * sizeof(Hit), kNoObject);
+    device::full_barrier(commands);
+  } else {
+    record_passes(commands);
+  }
+  if (!targets_.mixed()) return;
+  const auto count = static_cast<std::uint32_t>(rays_);
+  dispatch(commands, see_through_,
+           SeeThroughPush{ray_buffer_.address(), see_through_nodes_.address(), hits_.address(),
+                          slot_objects_.address(), marks_.address(), object_marks_.address(), count,
+                          static_cast<std::uint32_t>(targets_.see_through().size()),
+                          static_cast<std::uint32_t>(targets_.solid_ids().size())},
+           (count + 255) / 256);
 }
 
 void DeviceRays::cast(const rays::RayGrid& grid, rays::RayHits& hits, DeviceRayTimes* times) {
@@ -68,7 +113,7 @@ void DeviceRays::cast(const rays::RayGrid& grid, rays::RayHits& hits, DeviceRayT
   const Hit* in = hits_.mapped<Hit>();
   for (std::size_t r = 0; r < rays_; ++r) {
     hits.object[r] = in[r].object;
-    hits.distance[r] = in[r].distance;
+    hits.distance[r] = in[r].object == kNoObject ? -1 : in[r].distance;
     hits.stats.hits += in[r].object != kNoObject;
   }
   if (times) *times = {cpu_ms_, upload_ms_, compute_ms, ms_since(read_back)};

@@ -9,6 +9,7 @@
 #include "library/rays/ray_hits.hpp"
 #include "workbench/device/buffer.hpp"
 #include "workbench/device/pipeline.hpp"
+#include "workbench/methods/ray_pvs/ray_targets.hpp"
 
 namespace sightline::methods {
 
@@ -27,21 +28,26 @@ public:
   DeviceRays& operator=(const DeviceRays&) = delete;
 
   /// Takes over moved objects; the device must be idle.
-  virtual void update() = 0;
+  void update();
   /// Sends a grid's rays and what else the method needs of the CPU; the device must be idle.
   void prepare(const rays::RayGrid& grid);
   /// Records the cast of the prepared rays: every pass, with barriers around.
   void record(const vk::raii::CommandBuffer& commands);
-  /// One word an object, 1 where it is some ray's nearest.
-  [[nodiscard]] const device::Buffer& marks() const noexcept { return marks_; }
+  /// One word an object, 1 where a ray met it.
+  [[nodiscard]] const device::Buffer& marks() const noexcept {
+    return targets_.mixed() ? object_marks_ : marks_;
+  }
   [[nodiscard]] std::size_t ray_count() const noexcept { return rays_; }
 
-  /// All of it at once, for whoever wants the hits themselves.
+  /// All of it at once, for whoever wants the hits themselves, at what stops rays: targets() says whose.
   void cast(const rays::RayGrid& grid, rays::RayHits& hits, DeviceRayTimes* times = nullptr);
+  [[nodiscard]] const RayTargets& targets() const noexcept { return targets_; }
 
 protected:
   DeviceRays(device::Device& device, const Scene& scene);
   virtual void prepare_more(const rays::RayGrid&) {}
+  /// Sends targets_.solid() anew, whose numbers hits and marks_ are in.
+  virtual void send() = 0;
   virtual void record_passes(const vk::raii::CommandBuffer& commands) = 0;
 
   /// Makes `buffer` hold at least `bytes`.
@@ -56,11 +62,18 @@ protected:
     device::full_barrier(commands);
   }
 
+  void send_see_through();
+
   device::Device& device_;
   const Scene& scene_;
+  RayTargets targets_;
   std::size_t rays_ = 0;
   double cpu_ms_ = 0, upload_ms_ = 0;
   device::Buffer ray_buffer_, hits_, marks_;
+
+private:
+  device::ComputePipeline see_through_;
+  device::Buffer slot_objects_, see_through_nodes_, object_marks_;  ///< where something hides nothing
 };
 
 std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene);

@@ -37,17 +37,19 @@ public:
         pairs_(device, kPairs),
         nearest_(device, kIwcpaNearest),
         boxes_(device, scene.size() * sizeof(Box), device::Memory::upload, "boxes") {
-    update();
-  }
-  void update() override {
-    for (std::size_t i = 0; i < scene_.size(); ++i) boxes_.mapped<Box>()[i] = scene_.bounds[i];
+    send();
   }
 
 private:
+  void send() override {
+    const Boxes& boxes = targets_.solid();
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes_.mapped<Box>()[i] = boxes[i];
+  }
+
   [[nodiscard]] std::uint32_t strips_a_round() const {
     const std::size_t a_strip = kGroup * kHitBytes * std::max<std::size_t>(rays_, 1);
     const std::size_t fit = std::max<std::size_t>(1, kRoundBytes / a_strip);
-    const std::size_t all = (scene_.size() + kStrip - 1) / kStrip;
+    const std::size_t all = (targets_.solid().size() + kStrip - 1) / kStrip;
     return static_cast<std::uint32_t>(std::min({fit, all, std::size_t{65535}}));
   }
   void prepare_more(const rays::RayGrid&) override {
@@ -55,7 +57,8 @@ private:
   }
 
   void record_passes(const vk::raii::CommandBuffer& commands) override {
-    const auto rays = static_cast<std::uint32_t>(rays_), boxes = static_cast<std::uint32_t>(scene_.size());
+    const auto rays = static_cast<std::uint32_t>(rays_),
+               boxes = static_cast<std::uint32_t>(targets_.solid().size());
     const std::uint32_t step = strips_a_round() * kStrip, across = kGroup * kRaysALane;
     for (std::uint32_t first = 0; first < boxes; first += step) {
       const std::uint32_t strips = (std::min(step, boxes - first) + kStrip - 1) / kStrip;

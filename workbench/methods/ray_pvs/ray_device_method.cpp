@@ -26,8 +26,8 @@ public:
       renderer_.draws().build(frame, rays_->marks().address(), {}, renderer_.transparent_order(), draws_);
     }
     const auto pass = frame.pass("draw", device::PassKind::draw);
-    renderer_.draw_opaque(frame, draws_, device::Renderer::Style::lit, device::Renderer::Clear::both);
-    renderer_.draw_transparent(frame, draws_);
+    renderer_.draw_solid(frame, draws_, device::Renderer::Style::lit, device::Renderer::Clear::both);
+    renderer_.draw_rest(frame, draws_);
   }
 
   void read_back(Frame& frame) override {

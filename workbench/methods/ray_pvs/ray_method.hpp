@@ -1,5 +1,5 @@
 // What the methods of Ye et al. 2023 share: a grid of rays through the viewport, the objects that are a ray's
-// nearest, and the draw list of those.
+// nearest or that it passes through, and the draw list of those.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include "library/rays/ray_grid.hpp"
 #include "library/rays/ray_hits.hpp"
 #include "workbench/methods/methods.hpp"
+#include "workbench/methods/ray_pvs/ray_targets.hpp"
 #include "workbench/submission/draw_list.hpp"
 
 namespace sightline::methods {
@@ -21,16 +22,16 @@ inline constexpr ParameterInfo kRaysParameter{"rays", "along each side of the vi
 class RayMethod : public CpuMethod {
 public:
   RayMethod(const Scene& scene, const Parameters& parameters)
-      : CpuMethod(scene), side_(parameters.count(kRaysParameter.name)), draw_list_(scene) {}
+      : CpuMethod(scene), targets_(scene), side_(parameters.count(kRaysParameter.name)), draw_list_(scene) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept final { return Guarantee::approximate; }
-  void do_update(std::span<const ObjectId>) override {}
+  void do_update(std::span<const ObjectId>) override { targets_.update(); }
 
   void cull(const View& view, Frame& frame) noexcept final {
     frame.clear();
     grid_.make(view, side_, side_);
     cast(grid_, hits_);
-    collect_visible(hits_, scene_.size(), seen_, frame.visible);
+    targets_.collect(grid_.prepared, hits_, seen_, frame.visible);
     frame.stats.objects = scene_.size();
     frame.stats.rays = hits_.stats.rays;
     frame.stats.nodes_visited = hits_.stats.nodes;
@@ -40,7 +41,10 @@ public:
   }
 
 protected:
+  /// Casts at targets_.solid(), and tells hits by its numbers.
   virtual void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept = 0;
+
+  RayTargets targets_;
 
 private:
   std::uint32_t side_;

@@ -21,17 +21,16 @@ struct SaaPush {
 class Saa final : public DeviceRays {
 public:
   Saa(device::Device& device, const Scene& scene) : DeviceRays(device, scene), pipeline_(device, kSaaShader) {
-    bvh_.build(scene.bounds);
+    bvh_.build(targets_.solid());
     nodes_ = device::Buffer(device, bvh_.nodes().size_bytes(), device::Memory::upload, "the flattened tree");
-    send();
-  }
-  void update() override {
-    bvh_.refit(scene_.bounds);
     send();
   }
 
 private:
-  void send() { std::ranges::copy(bvh_.nodes(), nodes_.mapped<rays::BvhNode>()); }
+  void send() override {
+    bvh_.refit(targets_.solid());
+    std::ranges::copy(bvh_.nodes(), nodes_.mapped<rays::BvhNode>());
+  }
 
   void record_passes(const vk::raii::CommandBuffer& commands) override {
     const auto rays = static_cast<std::uint32_t>(rays_);

@@ -14,7 +14,7 @@ public:
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {
-    methods::cast_at_all_boxes(scene_.bounds, grid.prepared, hits);
+    methods::cast_at_all_boxes(targets_.solid(), grid.prepared, hits);
   }
 };
 

@@ -17,9 +17,12 @@ public:
       : RayMethod(scene, parameters),
         jobs_(tbb_jobs(static_cast<std::uint32_t>(parameters.count(kThreads.name)))),
         stacks_(jobs_.threads) {
-    bvh_.build(scene.bounds);
+    bvh_.build(targets_.solid());
   }
-  void do_update(std::span<const ObjectId>) override { bvh_.refit(scene_.bounds); }
+  void do_update(std::span<const ObjectId> objects) override {
+    RayMethod::do_update(objects);
+    bvh_.refit(targets_.solid());
+  }
 
 private:
   void cast(const rays::RayGrid& grid, rays::RayHits& hits) noexcept override {

@@ -1,6 +1,9 @@
 #version 460
 #include "workbench/device/shared.h"
-// Only what passes the depth test may say that it is seen.
+
+#include "workbench/device/shaders/tested.h"
+// Only what passes the depth test may say that it is seen: whatever its alpha, for nobody need know it who
+// decides what to draw.
 layout(early_fragment_tests) in;
 
 layout(push_constant, scalar) uniform Push {
@@ -12,5 +15,5 @@ layout(push_constant, scalar) uniform Push {
 layout(location = 2) in flat uint object;
 
 void main() {
-  seen.at[object] = 1;
+  if (shows_side(objects.at[object].look)) seen.at[object] = 1;
 }

@@ -20,7 +20,7 @@ void main() {
   const uint object = invocation();
   if (object >= objects) return;
   const uint bits = state_bits(frame, state.at[object]);
-  if ((bits & (kDrawnEarly | kSeen)) == 0 || data.at[object].transparent != 0) return;
+  if ((bits & (kDrawnEarly | kSeen)) == 0 || (data.at[object].look & kSeeThrough) != 0) return;
   uvec2 first, last;
   tile_range(footprint(boxes.at[object].centre_radius.xyz, boxes.at[object].half_extent.xyz), first, last);
   const uint columns = tile_count().x;

@@ -2,7 +2,7 @@
 // another frame counts as 0, so that nothing need be cleared. Tiles after the first word hold the frame
 // alone.
 const uint kInView = 1;      // passed the frustum and contribution tests
-const uint kDrawnEarly = 2;  // was seen last frame: drawn before the occlusion test, unless transparent
+const uint kDrawnEarly = 2;  // was seen last frame: drawn before the occlusion test, if solid
 const uint kSeen = 4;        // passed the occlusion test
 const uint kEqualDepth = 8;  // shares a tile with an object that was drawn late
 
