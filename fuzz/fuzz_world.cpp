@@ -242,7 +242,8 @@ private:
     for (std::uint8_t& s : sides) s = in_.rarely() ? in_.byte() : in_.byte() & 1;
     sightline_occluder_mesh* made = nullptr;
     (void)done(sightline_occluder_mesh_create(positions.data(), in_.rarely() ? kTooMuch : count_,
-                                              indices.data(), indices.size(), sides.data(), sides.size(), &made));
+                                              indices.data(), indices.size(), sides.data(), sides.size(),
+                                              &made));
     const Owned<sightline_occluder_mesh, sightline_occluder_mesh_destroy> mesh(made);
     require(sightline_occluder_mesh_triangles(made) <= indices.size() / 3);
     (void)done(sightline_occlusion_draw_mesh(occlusion_.get(), made, in_.byte() & 1 ? transform : nullptr));

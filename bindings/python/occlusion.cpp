@@ -128,12 +128,14 @@ std::uint32_t objects_of(const SharedTriangles& triangles) {
 void add_triangles(py::module_& m) {
   py::class_<OccluderMesh>(m, "OccluderMesh",
                            "Triangles that occlude: what can be looked through must not be among them.")
-      .def(py::init(&make_mesh),
-           "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat; sides: 'both', 'front', from\n"
-           "where corners turn counter-clockwise, or (m,) whether only a triangle's front is drawn and so\n"
-           "occludes. Refused: positions that are not finite, indices that are out of range or no multiple of\n"
-           "three, another number of sides.",
-           py::arg("positions"), py::arg("indices"), py::arg("sides") = "both")
+      .def(
+          py::init(&make_mesh),
+          "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat; sides: 'both', 'front', from\n"
+          "where corners turn counter-clockwise, or (m,) whether only a triangle's front is drawn and so\n"
+          "occludes. Refused: positions that are not finite, indices that are out of range or no multiple "
+          "of\n"
+          "three, another number of sides.",
+          py::arg("positions"), py::arg("indices"), py::arg("sides") = "both")
       .def_property_readonly("triangles", &OccluderMesh::triangles);
 
   py::class_<SharedTriangles>(m, "OccludeeTriangles",

@@ -58,9 +58,9 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTrans
   s.known[group] = s.turn;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
     const auto corners = corners_about_eye(tiles.projection, mesh, transform, group, lane);
-    hn::Store(facing_of(tiles, corners, on_image(tiles.projection, corners),
-                        mesh.groups[group].one_sided >> lane),
-              f, &s.facing[group * kGroup + lane]);
+    hn::Store(
+        facing_of(tiles, corners, on_image(tiles.projection, corners), mesh.groups[group].one_sided >> lane),
+        f, &s.facing[group * kGroup + lane]);
   }
 }
 

@@ -189,8 +189,10 @@ static void refuse_meshes(sightline_occlusion* occlusion) {
   EXPECT_REFUSED(sightline_occluder_mesh_create(NULL, 4, indices, 6, NULL, 0, &mesh), bad, none);
   EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, NULL, 6, NULL, 0, &mesh), bad, none);
   EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 0, NULL), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], TOO_MUCH, indices, 6, NULL, 0, &mesh), bad, none);
-  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, TOO_MUCH, NULL, 0, &mesh), bad, none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], TOO_MUCH, indices, 6, NULL, 0, &mesh), bad,
+                 none);
+  EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, TOO_MUCH, NULL, 0, &mesh), bad,
+                 none);
   EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, NULL, 2, &mesh), bad, none);
   EXPECT_REFUSED(sightline_occluder_mesh_create(positions[0], 4, indices, 6, sides, 3, &mesh), bad_mesh, 3);
   sides[1] = 2;

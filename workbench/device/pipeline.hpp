@@ -38,8 +38,8 @@ struct GraphicsState {
   bool depth_write = true;
 };
 
-/// Draws with a depth attachment. Viewport, scissor, the depth comparison, the depth bias and the side that is
-/// culled are dynamic; Recorder::bind sets them.
+/// Draws with a depth attachment. Viewport, scissor, the depth comparison, the depth bias and the side that
+/// is culled are dynamic; Recorder::bind sets them.
 class GraphicsPipeline {
 public:
   GraphicsPipeline(const Device& device, const GraphicsState& state);

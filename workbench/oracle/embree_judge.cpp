@@ -30,8 +30,8 @@ struct LayerContext {
   std::vector<ObjectId>* through = nullptr;  ///< set: every object passed is noted and the ray goes on
 };
 
-// Refuses sides that are not drawn, and in a pass through what hides nothing notes each object met and lets the
-// ray go on.
+// Refuses sides that are not drawn, and in a pass through what hides nothing notes each object met and lets
+// the ray go on.
 void filter(const RTCFilterFunctionNArguments* call) {
   auto* context = reinterpret_cast<LayerContext*>(call->context);
   const EmbreeLayer& layer = *context->layer;

@@ -22,7 +22,7 @@ public:
 private:
   std::vector<glm::dvec3> corners_;  ///< three a triangle, counter-clockwise from its front
   Sides sides_;
-  glm::dvec3 centre_;                ///< of a sphere around them, which most rays miss
+  glm::dvec3 centre_;  ///< of a sphere around them, which most rays miss
   double radius_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// A corner of a world-space triangle. It knows its object, so that fragments need no triangle numbers: a software
-// rasteriser takes every triangle apart to hand those over.
+// A corner of a world-space triangle. It knows its object, so that fragments need no triangle numbers: a
+// software rasteriser takes every triangle apart to hand those over.
 layout(location = 0) in vec3 position;
 layout(location = 1) in uint object;
 layout(location = 2) in uint colour;

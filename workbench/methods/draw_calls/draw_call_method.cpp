@@ -83,18 +83,12 @@ void DrawCallMethod::rebuild() {
 }
 
 void DrawCallMethod::describe() {
-  std::uint64_t bytes = lists_.positions.size() * sizeof(Vec3) +
-                        lists_.texture_coordinates.size() * sizeof(TextureCoordinate) +
-                        4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) +
-                        9 * scene_.size();
+  std::uint64_t bytes =
+      lists_.positions.size() * sizeof(Vec3) + lists_.texture_coordinates.size() * sizeof(TextureCoordinate) +
+      4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 9 * scene_.size();
   for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.batches.bytes();
-  geometry_ = {lists_.positions,
-               lists_.indices,
-               lists_.objects,
-               lists_.sources,
-               lists_.texture_coordinates,
-               plan_.submission,
-               bytes};
+  geometry_ = {lists_.positions,           lists_.indices,   lists_.objects, lists_.sources,
+               lists_.texture_coordinates, plan_.submission, bytes};
 }
 
 TriangleLists DrawCallMethod::give_lists() {
