@@ -26,7 +26,8 @@ struct VerifyOptions {
 };
 
 // What the level's own visibility denies and rays see all the same, reason by reason.
-void print_level_evidence(const Scene& scene, std::uint64_t seed) {
+void print_level_evidence(Scene scene, std::uint64_t seed) {
+  set_raster_state(scene, RasterState::both_sides);  // walls are solid, whichever side is drawn
   constexpr std::size_t kEyes = 100;
   constexpr std::uint32_t kSide = 96;
   const oracle::EmbreeJudge judge(scene);

@@ -178,7 +178,7 @@ std::vector<std::uint32_t> numbers_of(const py::object& given, const char* name)
 
 std::vector<bool> truths_of(const py::object& given, const std::string& what) {
   const auto array = contiguous<bool>(given, what);
-  return {array.data(), array.data() + array.size()};
+  return std::vector<bool>(array.data(), array.data() + array.size());
 }
 
 WorldPoint world_point_of(const py::object& given, const char* name) {

@@ -149,6 +149,7 @@ TEST_F(BenchTest, LetsAnyOfTheSurfacesAtOneDepthShow) {
 
 TEST_F(BenchTest, FindsOutWhatThePrintedFacingRuleLoses) {
   Scene scene = generate_world("soup?triangles=2000&per-object=1&size=60");
+  set_raster_state(scene, RasterState::front_faces);
   const std::vector<std::string> names{"zhang-octree?facing=printed"};
   measure::Bench bench(scene, names, &device());
   const auto result = measure::verify(bench, camera::random_cameras(scene, 20, 23), 96, 64, 0);

@@ -22,6 +22,7 @@ protected:
 };
 
 TEST_P(RealLevel, EveryObjectSeenIsInThePvsButForAnExplainedRemainder) {
+  set_raster_state(scene, RasterState::both_sides);  // walls are solid, whichever side is drawn
   const oracle::EmbreeJudge judge(scene);
   const LevelEvidence evidence = gather_level_evidence(scene, judge, 40, 48, 7);
   EXPECT_EQ(evidence.eyes, 40u);

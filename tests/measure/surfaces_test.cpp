@@ -47,14 +47,6 @@ TEST_F(SurfacesTest, NoMethodLosesAPixelOnTheCpu) {
   }
 }
 
-// An image without texture coordinates to look it up by is looked up at its corner.
-TEST_F(SurfacesTest, AnImageNeedsNoTextureCoordinates) {
-  Scene scene = test::leaf_cards();
-  scene.texture_coordinates.clear();
-  measure::Bench bench(scene, std::vector<std::string>{"none", "simple-octree", "roc"}, &device());
-  expect_all_hold(measure::verify(bench, cameras_of(scene, 4), 80, 60));
-}
-
 TEST_F(SurfacesTest, NoMethodLosesAPixelOnADeviceAndPicturesAreEqual) {
   for (Scene& scene : scenes()) {
     measure::Bench bench(scene, measure::promising_methods(scene, true), &device());

@@ -144,14 +144,10 @@ void SceneBuffers::upload_looks(Device& device, const Scene& scene) {
   texels.resize((texels.size() + 3) / 4 * 4);
   images = upload(device, table, "alpha images");
   alpha = upload(device, texels, "alpha images");
-  if (!table.empty()) {
-    std::vector<TextureCoordinate> all = scene.texture_coordinates;
-    all.resize(scene.positions.size());
-    coordinates = upload(device, all, "texture coordinates");
-  }
-  const std::array addresses{object_data.address(), table.empty() ? 0 : coordinates.address(),
-                             table.empty() ? 0 : images.address(), table.empty() ? 0 : alpha.address()};
-  looks = upload(device, std::vector(addresses.begin(), addresses.end()), "what cut-outs are tested by");
+  coordinates = upload(device, scene.texture_coordinates, "texture coordinates");
+  looks = upload(device,
+                 std::vector{object_data.address(), coordinates.address(), images.address(), alpha.address()},
+                 "what cut-outs are tested by");
 }
 
 void SceneBuffers::update(Device& device, const Scene& scene, std::span<const ObjectId> moved) {

@@ -41,14 +41,6 @@ std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const 
   return out;
 }
 
-// One a position where the scene has alpha images, which need some.
-std::vector<TextureCoordinate> coordinates(const TriangleGeometry& geometry, const Scene& scene) {
-  std::vector<TextureCoordinate> out(geometry.texture_coordinates.begin(),
-                                     geometry.texture_coordinates.end());
-  if (!scene.alpha_images.empty()) out.resize(geometry.positions.size());
-  return out;
-}
-
 }  // namespace
 
 TriangleDraws::Pipelines::Pipelines(const Device& device)
@@ -77,8 +69,8 @@ TriangleDraws::TriangleDraws(Renderer& renderer, const TriangleGeometry& geometr
     : renderer_(renderer),
       objects_(geometry.objects),
       corners_(upload(renderer.device(), corners(geometry, renderer.scene()), "triangle corners")),
-      coordinates_(
-          upload(renderer.device(), coordinates(geometry, renderer.scene()), "triangle texture coordinates")),
+      coordinates_(upload_bytes(renderer.device(), std::as_bytes(geometry.texture_coordinates),
+                                "triangle texture coordinates")),
       indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")),
       pipelines_(renderer.device()) {
   const Scene& scene = renderer.scene();
