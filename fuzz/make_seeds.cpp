@@ -1,5 +1,6 @@
 // make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf, fuzz_image, fuzz_shaders and fuzz_pvs with
 // a few whole files each.
+#include <algorithm>
 #include <cstdio>
 #include <numeric>
 
@@ -11,20 +12,12 @@
 #include "support/cards.hpp"
 #include "workbench/io/alpha_png.hpp"
 
-int main(int argc, char** argv) try {
-  using namespace sightline;
-  using namespace sightline::samples;
-  if (argc != 2) return std::fputs("usage: fuzz_seeds FOLDER\n", stderr), 2;
-  const std::filesystem::path folder = argv[1];
-  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_image", "fuzz_shaders", "fuzz_pvs"})
-    std::filesystem::create_directories(folder / target);
+namespace {
 
-  Level level = two_rooms();
-  write(folder / "fuzz_bsp/two_rooms.bsp", to_bsp(level));
-  write(folder / "fuzz_pk3/two_rooms.pk3", to_pk3("maps/sample.bsp", to_bsp(level)));
-  level.visibility.clear();
-  write(folder / "fuzz_bsp/no_visibility.bsp", to_bsp(level));
+using namespace sightline;
+using namespace sightline::samples;
 
+void write_scenes_and_images(const std::filesystem::path& folder) {
   write(folder / "fuzz_gltf/one_triangle.gltf", to_bytes(one_triangle()));
   write_glb(load_scene("world:forest?trees=3"), folder / "fuzz_gltf/forest.glb");
   write_glb(read_bsp(to_bsp(two_rooms()), "two rooms"), folder / "fuzz_gltf/two_rooms.glb");
@@ -32,6 +25,10 @@ int main(int argc, char** argv) try {
   write_glb(test::grate_before_a_room(), folder / "fuzz_gltf/grate.glb");
   write(folder / "fuzz_image/leaves.png", io::write_alpha(scene::leaves_pattern(16, 0.5f, 1)));
   write(folder / "fuzz_image/grate.png", io::write_alpha(scene::grate_pattern(5, 2, 1)));
+  Blob targa(18 + 5, std::byte{0x81});  // one run of two texels
+  std::fill_n(targa.begin(), 18, std::byte{});
+  targa[2] = std::byte{10}, targa[12] = std::byte{2}, targa[14] = std::byte{1}, targa[16] = std::byte{32};
+  write(folder / "fuzz_image/run.tga", targa);
   write(folder / "fuzz_shaders/two.shader",
         to_bytes(std::string(
             "textures/a\n{\ncull none\nsurfaceparm trans // seen\n{\nmap a.tga\nalphaFunc GE128\n}\n}\n\f"
@@ -44,6 +41,23 @@ int main(int argc, char** argv) try {
       R"([{"children": [1], "rotation": [0, 0, 0, 1]}, {"mesh": 0, "scale": [1, 2, 3]}])");
   sparse["meshes"][0]["primitives"][0]["mode"] = 5;
   write(folder / "fuzz_gltf/sparse_strip.gltf", to_bytes(sparse));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2) return std::fputs("usage: fuzz_seeds FOLDER\n", stderr), 2;
+  const std::filesystem::path folder = argv[1];
+  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_image", "fuzz_shaders", "fuzz_pvs"})
+    std::filesystem::create_directories(folder / target);
+
+  Level level = two_rooms();
+  write(folder / "fuzz_bsp/two_rooms.bsp", to_bsp(level));
+  write(folder / "fuzz_pk3/two_rooms.pk3", to_pk3("maps/sample.bsp", to_bsp(level)));
+  level.visibility.clear();
+  write(folder / "fuzz_bsp/no_visibility.bsp", to_bsp(level));
+
+  write_scenes_and_images(folder);
 
   // Twelve cells of sixty objects, as fuzz_pvs reads them: the file, each layout, and lone sets.
   CellPvs cells;

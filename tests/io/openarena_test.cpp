@@ -132,6 +132,49 @@ TEST_F(OpenArena, PlayersSeeTheFrontsOfWalls) {
   EXPECT_LT(backs, fronts / 20);
 }
 
+/// Whether it is as large as a tessellated patch, of six segments a quadratic curve.
+bool is_patch(const Mesh& mesh) {
+  for (std::uint32_t across = 6; across <= 48; across += 6) {
+    for (std::uint32_t down = 6; down <= 48; down += 6) {
+      if (mesh.vertex_count == (across + 1) * (down + 1) && mesh.index_count == 6 * across * down)
+        return true;
+    }
+  }
+  return false;
+}
+
+/// The stored normals had no say in how triangles are wound: they are the evidence. A compiler makes them of
+/// the winding, but those of some models' parts point inwards.
+TEST_F(OpenArena, TrianglesTurnAgainstTheClockSeenFromTheirNormals) {
+  std::size_t good = 0, bad = 0, patches = 0, bad_patches = 0;
+  for (const char* name : {"oa_dm1", "oasago2", "islandctf", "czest2ctf", "ctf_inyard", "am_galmevish"}) {
+    const Scene scene = load_scene("pak1-maps.pk3:maps/" + std::string(name) + ".bsp");
+    for (const Mesh& mesh : scene.meshes) {
+      double agreement = 0;
+      for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
+        const auto at = [&](std::uint32_t k) {
+          return mesh.first_vertex + scene.indices[mesh.first_index + i + k];
+        };
+        const Vec3 a = scene.positions[at(0)], b = scene.positions[at(1)], c = scene.positions[at(2)];
+        const Vec3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const Vec3 n = scene.normals[at(k)];
+          agreement += double{n.x} * (u.y * v.z - u.z * v.y) + double{n.y} * (u.z * v.x - u.x * v.z) +
+                       double{n.z} * (u.x * v.y - u.y * v.x);
+        }
+      }
+      good += agreement > 0;
+      bad += agreement < 0;
+      patches += is_patch(mesh);
+      bad_patches += agreement < 0 && is_patch(mesh);
+    }
+  }
+  EXPECT_GT(good, 10000u);
+  EXPECT_LT(bad * 50, good);
+  EXPECT_GT(patches, 100u);
+  EXPECT_EQ(bad_patches, 0u);
+}
+
 /// A level with doors and lifts, whose faces belong to no leaf.
 TEST_F(OpenArena, WhatPlayersSeeIsInTheReferencePvs) {
   const Scene scene = load_scene("pak1-maps.pk3:maps/ce1m7.bsp");

@@ -52,13 +52,15 @@ void check_materials(const Scene& s) {
     throw Error("scene '" + s.name + "': object arrays differ in length");
   }
   for (std::size_t object = 0; object < n; ++object) {
-    const std::string name = "scene '" + s.name + "': object " + std::to_string(object) + ": ";
-    if (s.surface[object] > Surface::transparent) throw Error(name + "its surface is of no known kind");
+    const auto refuse = [&](const char* expected) {
+      throw Error("scene '" + s.name + "': object " + std::to_string(object) + ": " + expected);
+    };
+    if (s.surface[object] > Surface::transparent) refuse("its surface is of no known kind");
     if (s.sides[object] > Sides::front || s.material_sides[object] > Sides::front) {
-      throw Error(name + "its sides are of no known kind");
+      refuse("its sides are of no known kind");
     }
     if (s.alpha_image[object] != kNoAlphaImage && s.alpha_image[object] >= s.alpha_images.size()) {
-      throw Error(name + "its alpha image is out of range");
+      refuse("its alpha image is out of range");
     }
   }
   check_images(s);
