@@ -35,11 +35,10 @@ Scene load_scene(std::string_view specification, const LoadOptions& options = {}
 /// - 1 Quake unit is 0.0254 m; axes (x, y, z) become (x, z, -y), which is y up and still right-handed.
 /// - Triangles are wound counter-clockwise as seen from the side the stored normals point to.
 /// - Patches (type 2) are tessellated with LoadOptions::patch_level.
-/// - Flares (type 4) have no geometry, the game draws a sprite; they become a small octahedron, 0.1 m from
-/// tip
-///   to centre, at the flare's origin, transparent.
-/// - A face without a triangle stays an object of its vertices, or of one point, so that ids stay face
-/// indices.
+/// - Flares (type 4) have no geometry, the game draws a sprite; they become a small octahedron, 0.1 m
+///   from tip to centre, at the flare's origin, transparent.
+/// - A face without a triangle stays an object of its vertices, or of one point, so that ids
+///   stay face indices.
 /// - Faces whose shader has translucent or fog contents or the flag 'no draw' are transparent.
 /// - Moving parts (doors, lifts) stand at the origin of the entity that shows them, and belong to no leaf.
 /// Scene::level holds the tree, the leaves' faces and the visibility lump (without one: all see all).
