@@ -2,8 +2,8 @@
 # The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
 # test: the suite in a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what
 # uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
-# clang-tidy's findings, the installed packages as their users see them, and what the library answers on ARM and
-# WebAssembly. --full adds what takes longer: its tests there, and its build on a bare Debian; and writes
+# clang-tidy's findings, what the documents show, the installed packages as their users see them, and what the library
+# answers on ARM and WebAssembly. --full adds what takes longer: its tests there, and its build on a bare Debian; and writes
 # build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -30,6 +30,8 @@ tests/structure/planted_face.sh
 scripts/check-format.sh
 scripts/check-clones.sh
 tests/structure/planted_clones.sh
+scripts/check-figures.sh
+tests/structure/planted_figures.sh
 
 stage "release build and tests"
 cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null
@@ -42,8 +44,12 @@ scripts/check-tidy.sh build/release
 stage "command line"
 scripts/check-command-line.sh build/release/sightline
 build/release/sightline methods --json build/methods.json >/dev/null
-scripts/check-method-pages.py build/methods.json
+scripts/make-method-pages.py --check build/methods.json
 tests/structure/add_a_method.sh build/release
+
+stage "documents"
+scripts/check-docs.py build/release
+tests/structure/planted_docs.sh build/release
 
 stage "installed packages"
 scripts/check-package.sh build/release

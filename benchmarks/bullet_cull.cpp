@@ -1,7 +1,8 @@
 // Bullet's dynamic bounding volume tree: btDbvt::collideKDOP with the six planes of the frustum.
-#include <BulletCollision/BroadphaseCollision/btDbvt.h>
 #include <benchmark/benchmark.h>
 
+#include "bullet_tree.hpp"
+#include "judged.hpp"
 #include "world_case.hpp"
 
 namespace sightline::benchmarks {
@@ -15,14 +16,10 @@ struct Collect : btDbvt::ICollide {
 void bullet_dbvt(benchmark::State& state) {
   const Case& c = case_of(1'000'000);
   btDbvt tree;
-  for (std::size_t i = 0; i < c.flat.size(); ++i) {
-    const Box b = c.flat[i];
-    tree.insert(btDbvtVolume::FromMM({b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}), nullptr)
-        ->dataAsInt = static_cast<int>(i);
-  }
+  fill(tree, c.flat);
   tree.optimizeIncremental(static_cast<int>(c.flat.size()) / 4);
-  const Frustum frustum =
-      make_frustum(looking(0.3f, tenth_of_view()), {{-2000, -60, -2000}, {2000, 60, 2000}});
+  const View view = looking(0.3f, tenth_of_view());
+  const Frustum frustum = make_frustum(view, {{-2000, -60, -2000}, {2000, 60, 2000}});
   std::array<btVector3, 6> normals;
   std::array<btScalar, 6> offsets;
   for (std::size_t p = 0; p < 6; ++p) {
@@ -35,7 +32,7 @@ void bullet_dbvt(benchmark::State& state) {
     collect.ids.clear();
     btDbvt::collideKDOP(tree.m_root, normals.data(), offsets.data(), 6, collect);
   }
-  state.counters["visible"] = static_cast<double>(collect.ids.size());
+  judge(state, c.flat, {&view, 1}, collect.ids);
 }
 BENCHMARK(bullet_dbvt)->Unit(benchmark::kMicrosecond);
 

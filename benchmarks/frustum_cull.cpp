@@ -7,6 +7,7 @@
 
 #include <sightline/frustum.hpp>
 
+#include "judged.hpp"
 #include "scalar_cull.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -62,21 +63,24 @@ const Boxes& boxes_of(std::size_t count) {
   return boxes;
 }
 
-// About a tenth of the boxes is in view.
-Frustum frustum() {
-  return make_frustum(*make_view({.eye = {0, 5, 0}, .forward = {0.3f, 0, -1}}, 1280, 720), kExtent);
+// About a quarter of the boxes is in view.
+View view() {
+  return *make_view({.eye = {0, 5, 0}, .forward = {0.3f, 0, -1}}, 1280, 720);
 }
 
-void report(benchmark::State& state, std::size_t count, std::size_t visible) {
+Frustum frustum() {
+  return make_frustum(view(), kExtent);
+}
+
+void report(benchmark::State& state, std::size_t count) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(count * 6 * sizeof(float)));
-  state.counters["visible"] = static_cast<double>(visible);
 }
 
 void BM_BareRead(benchmark::State& state) {
   const Boxes& boxes = boxes_of(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(HWY_DYNAMIC_DISPATCH(read_all)(boxes));
-  report(state, boxes.size(), 0);
+  report(state, boxes.size());
 }
 
 template <class Cull>
@@ -90,7 +94,9 @@ void run(benchmark::State& state, const Cull& cull) {
     return;
   }
   for (auto _ : state) benchmark::DoNotOptimize(cull(boxes, visible));
-  report(state, boxes.size(), count);
+  report(state, boxes.size());
+  const View seen_by = view();
+  judge(state, boxes, {&seen_by, 1}, std::span(visible).first(count));
 }
 
 void BM_FlatSimd(benchmark::State& state) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "judged.hpp"
 #include "world_case.hpp"
 
 namespace sightline::benchmarks {
@@ -31,11 +32,12 @@ private:
 
 class Thing : public osg::Drawable {
 public:
-  explicit Thing(const osg::BoundingBox& bounds) {
+  Thing(ObjectId id, const osg::BoundingBox& bounds) : id(id) {
     setInitialBound(bounds);
     setUseDisplayList(false);
   }
   void drawImplementation(osg::RenderInfo&) const override {}
+  const ObjectId id;
 };
 
 enum class Kind { note, drawable, transformed };
@@ -43,10 +45,10 @@ enum class Kind { note, drawable, transformed };
 osg::ref_ptr<osg::Node> leaf_of(ObjectId id, const Box& box, Kind kind) {
   if (kind == Kind::note) return new Leaf(id, box);
   const osg::Vec3 low(box.min.x, box.min.y, box.min.z), high(box.max.x, box.max.y, box.max.z);
-  if (kind == Kind::drawable) return new Thing(osg::BoundingBox(low, high));
+  if (kind == Kind::drawable) return new Thing(id, osg::BoundingBox(low, high));
   const osg::Vec3 centre = (low + high) * 0.5f;
   osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(osg::Matrix::translate(centre));
-  transform->addChild(new Thing(osg::BoundingBox(low - centre, high - centre)));
+  transform->addChild(new Thing(id, osg::BoundingBox(low - centre, high - centre)));
   return transform;
 }
 
@@ -73,6 +75,12 @@ osg::ref_ptr<osg::Node> tree_of(const Boxes& boxes, std::span<ObjectId> ids, Kin
   group->addChild(tree_of(boxes, ids.first(half), kind));
   group->addChild(tree_of(boxes, ids.subspan(half), kind));
   return group;
+}
+
+void take_things(const osgUtil::StateGraph& graph) {
+  for (const auto& leaf : graph._leaves) {
+    collected.push_back(static_cast<const Thing*>(leaf->_drawable.get())->id);
+  }
 }
 
 void openscenegraph(benchmark::State& state, Kind kind) {
@@ -110,12 +118,11 @@ void openscenegraph(benchmark::State& state, Kind kind) {
     visitor->popProjectionMatrix();
     visitor->popViewport();
   }
-  std::size_t visible = collected.size();
   if (kind != Kind::note) {
-    visible = graph->_leaves.size();
-    for (const auto& [set, child] : graph->_children) visible += child->_leaves.size();
+    take_things(*graph);
+    for (const auto& [set, child] : graph->_children) take_things(*child);
   }
-  state.counters["visible"] = static_cast<double>(visible);
+  judge(state, c.flat, {&view, 1}, collected);
 }
 BENCHMARK_CAPTURE(openscenegraph, nodes_that_note_their_id, Kind::note)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(openscenegraph, drawables, Kind::drawable)->Unit(benchmark::kMicrosecond);

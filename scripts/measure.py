@@ -2,6 +2,7 @@
 """What scripts/measure.sh runs once everything is built: see there."""
 import argparse
 import datetime
+import os
 import resource
 import sys
 import time
@@ -26,7 +27,7 @@ def main():
     if unknown:
         parser.error(f"no topic '{unknown[0]}': expected {', '.join(TOPICS)}")
 
-    facts = machine_facts()
+    facts = machine_facts() | {"load": f"{os.getloadavg()[0]:.1f}"}
     folder = RESULTS / slug_of(facts)
     today, commit = datetime.datetime.now(datetime.timezone.utc).date().isoformat(), commit_now()
     began = time.monotonic()

@@ -1,4 +1,4 @@
-# Sourced by demo.sh and test.sh: makes sure that Debian's packages are there.
+# Sourced by demo.sh, test.sh and scripts/measure.sh: makes sure that Debian's packages are there.
 
 run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libtbb-dev libembree-dev libmeshoptimizer-dev \
 libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libpng-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
@@ -9,6 +9,9 @@ python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14
 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc"
 # Node is often there from elsewhere, whose package stands in the way of Debian's.
 command -v node >/dev/null || test_packages+=" nodejs"
+
+# What scripts/measure.sh needs: peers are other libraries.
+measure_packages="$run_packages libbenchmark-dev libbullet-dev libopenscenegraph-dev"
 
 # What `test.sh --full` needs besides.
 full_packages="mmdebstrap"

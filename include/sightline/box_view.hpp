@@ -3,8 +3,8 @@
 //
 //   struct Thing { float position[3]; float half[3]; … };
 //   std::vector<Thing> things;
-//   const auto boxes = sightline::BoxView::centre_half(things[0].position, things[0].half, sizeof(Thing),
-//   things.size());
+//   const auto boxes = sightline::BoxView::centre_half(things[0].position, things[0].half,
+//                                                      sizeof(Thing), things.size());
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 namespace sightline {
 
 /// `size` elements of type T, `stride` bytes from one to the next, anywhere in the caller's memory: a member
-/// of his structs, a column of his table. Elements need no alignment. T is a plain type; const T is for
+/// of a struct, a column of a table. Elements need no alignment. T is a plain type; const T is for
 /// reading only.
 ///
 /// Unless a function of it says otherwise: Errors: none. Cost: constant. Threads: as the memory behind it.

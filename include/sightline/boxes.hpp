@@ -1,4 +1,4 @@
-// Boxes of one's own in structure of arrays, for who has no arrays yet.
+// Boxes as a structure of arrays, for callers who have no arrays of their own yet.
 #pragma once
 
 #include <cstddef>

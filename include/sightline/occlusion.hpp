@@ -84,8 +84,8 @@ public:
   /// ns a tile it covers.
   Status draw_boxes(const BoxView& boxes) noexcept;
   /// Draws solid spheres; every point inside a sphere must be solid. Cheaper than anything else that fills as
-  /// much of the image. Spheres that are not valid or reach behind the near plane are left out; leave out
-  /// yourself those of things that do, for there the inside is seen. Errors, Cost: as draw_boxes.
+  /// much of the image. Spheres that are not valid or reach behind the near plane are left out. Leave out,
+  /// too, those of things that reach behind it, as their inside shows. Errors, Cost: as draw_boxes.
   Status draw_spheres(const SphereView& spheres) noexcept;
   /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1).
   /// Errors: stale_buffer before begin(); bad_argument for a transform that is not finite or not affine.
@@ -100,8 +100,8 @@ public:
   /// Errors: bad_argument for boxes that are not sound; buffer_too_small. Cost: linear, some 10 ns a box; an
   /// array a coordinate (BoxView::arrays) costs least.
   Status may_see(const BoxView& boxes, std::span<std::uint8_t> visible) const noexcept;
-  /// Whether some pixel centre may see each sphere. Of a thing whose box and sphere are both known, both must
-  /// say so. Errors, Cost: the same.
+  /// Whether some pixel centre may see each sphere. A thing whose box and sphere are both known may be seen
+  /// only if both may. Errors, Cost: the same.
   Status may_see(const SphereView& spheres, std::span<std::uint8_t> visible) const noexcept;
 
   /// Whether some pixel centre may see one of the triangles, three corners each: pixel by pixel, so closer to

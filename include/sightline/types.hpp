@@ -68,8 +68,8 @@ struct Plane {
   bool operator==(const Plane&) const = default;
 };
 
-/// A rectangle of the image in pixels, x to the right, y down, origin at the top left corner; half open
-/// in spirit: the samples it holds are the pixel centres c with min < c < max.
+/// A rectangle of the image in pixels, x to the right, y down, origin at the top left corner. Its samples
+/// are the pixel centres c with min < c < max.
 struct Rect {
   float min_x = 0, min_y = 0, max_x = 0, max_y = 0;  ///< pixels
   bool operator==(const Rect&) const = default;

@@ -63,12 +63,12 @@ public:
   /// objects). Cost: linear, some 200 ns an object. Allocates: about 60 bytes an object; less for ids used
   /// again.
   Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns = {});
-  /// Gives each object a new box; one that stands there twice keeps the last.
+  /// Gives each object a new box; one that is listed twice keeps the last.
   /// Errors: bad_argument, bad_box, stale_handle. Cost: linear, 50 to 200 ns an object, more the farther it
   /// moves. Allocates: where objects gather as never before.
   Status move(Strided<const Handle> handles, const BoxView& boxes);
   /// Takes the objects out.
-  /// Errors: bad_argument; stale_handle, also for one that stands there twice. Cost: linear. Allocates: a
+  /// Errors: bad_argument; stale_handle, also for one that is listed twice. Cost: linear. Allocates: a
   /// list of free ids.
   Status remove(Strided<const Handle> handles);
   /// Gives each object new layers; see ObjectColumns.
@@ -89,7 +89,7 @@ public:
   [[nodiscard]] Handle handle(ObjectId id) const noexcept;
   /// How many objects there are.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// All ids lie below this: the length of a caller's array by id. Ids of removed objects are given again.
+  /// All ids lie below this: the length of a caller's array by id. Ids of removed objects are reused.
   [[nodiscard]] std::size_t id_limit() const noexcept;
 
 private:
@@ -98,7 +98,7 @@ private:
   State* state_;
 };
 
-/// Views that one call culls together.
+/// The most views that one call culls together.
 inline constexpr std::size_t kMaxViews = 8;
 
 /// A camera, an eye, a shadow cascade: whatever sees the world.

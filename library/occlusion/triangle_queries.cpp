@@ -48,8 +48,8 @@ HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach,
   const VF scale = dot(normal, q[0]);
   const VF across = hn::Div(dot(normal, rays.across), scale), down = hn::Div(dot(normal, rays.down), scale),
            start = hn::Div(dot(normal, rays.at), scale);
-  // The normal's direction is as uncertain as the triangle is thin, and that tells the more the more the
-  // plane is seen edge on.
+  // The thinner the triangle, the less certain its normal; and the more the plane is seen edge on, the more
+  // that matters.
   const VF doubt = hn::Div(hn::Mul(edges, reach), hn::Abs(scale));
   const VF slack = hn::Mul(
       nearest, hn::Add(hn::Set(f, kNearnessRounding), hn::Mul(hn::Set(f, kAskedNormalRounding), doubt)));

@@ -1,10 +1,11 @@
-"""What docs/methods says of each method by the registry's own words, between markers, and what people write around it."""
+"""What docs/methods says of each method by the registry's own words, between markers, and what people write around it. A
+section may speak of several methods, "## one, another", of which the registry says the same."""
 import re
 
 from figures.results import ROOT, Wrong
 
 PAGES = ROOT / "docs" / "methods"
-SECTION = re.compile(r"^## (\S+)\n(.*?)(?=^## |\Z)", re.M | re.S)
+SECTION = re.compile(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", re.M | re.S)
 BLOCK = re.compile(r"<!--registry-->\n.*?<!--/registry-->\n", re.S)
 
 
@@ -73,34 +74,29 @@ def renewed(text, registry):
     methods, papers = forms_of(registry), papers_of(registry)
 
     def renew(match):
-        name, body = match.groups()
-        if name not in methods:
-            return match.group()
-        block = block_of(methods[name], papers)
+        heading, body = match.groups()
+        blocks = {block_of(methods[name], papers) for name in heading.split(", ") if name in methods}
         rest = BLOCK.sub("", body).strip("\n")
-        return f"## {name}\n\n{block}\n{rest}\n\n"
+        return f"## {heading}\n\n" + "\n".join([*sorted(blocks), rest]) + "\n\n"
     return SECTION.sub(renew, text).rstrip("\n") + "\n"
 
 
 def complaints(registry):
     """Methods without a section, sections without a method, parts that are not current or that say nothing."""
-    methods, found = forms_of(registry), {}
-    for page in sorted(PAGES.glob("*.md")):
-        text = page.read_text(encoding="utf-8")
-        for name, body in SECTION.findall(text):
-            found[name] = page.name
-            if name not in methods:
-                yield f"docs/methods/{page.name}: no method '{name}'"
-                continue
-            prose = BLOCK.sub("", body).strip()
-            if not re.search(r"^\*\*Cost:\*\* \S", prose, re.M):
-                yield f"docs/methods/{page.name}: {name} does not say its cost"
-            if len(prose.split("**Cost:**")[0].split()) < 5:
-                yield f"docs/methods/{page.name}: {name} does not say what it does"
+    methods, found = forms_of(registry), set()
+    for page in pages():
+        text, name = page.read_text(encoding="utf-8"), page.relative_to(ROOT)
+        for heading, body in SECTION.findall(text):
+            found.update(heading.split(", "))
+            prose, _, cost = BLOCK.sub("", body).partition("**Cost:**")
+            if not cost.strip():
+                yield f"{name}: {heading} does not say its cost"
+            if len(prose.split()) < 5:
+                yield f"{name}: {heading} does not say what it does"
+            yield from (f"{name}: no method '{one}'" for one in heading.split(", ") if one not in methods)
         if renewed(text, registry) != text:
-            yield f"docs/methods/{page.name}: not as the registry has it: run scripts/make-method-pages.py"
-    for name in methods.keys() - found.keys():
-        yield f"{name}: no section in docs/methods/"
+            yield f"{name}: not as the registry has it: run scripts/make-method-pages.py"
+    yield from (f"{name}: no section in docs/methods" for name in methods if name not in found)
 
 
 def pages():

@@ -15,7 +15,7 @@ NUMBER = r"\d(?:[\d,]*\d)?(?:\.\d+)?"
 UNITS = ("ns", "µs", "ms", "s", "%", "×", "B", "bytes", "KiB", "MiB", "GiB", "kB", "MB", "GB", "fps", "M triangles/s",
          "M boxes/s", "objects", "rays", "calls", "triangles", "vertices", "frames", "views")
 UNIT = "|".join(sorted(map(re.escape, UNITS), key=len, reverse=True))
-MARK = re.compile(r"<!--(fig|paper|given)( [^>]*?)?-->")
+MARK = re.compile(r"(?<!`)<!--(fig|paper|given)( [^>]*?)?-->")
 FIGURE = re.compile(rf"({NUMBER})(?: ({UNIT})(?![\w/]))?")
 # What reads like a measured figure: a number with a unit of time, memory or rate, a share, or so many times something.
 MEASURED = re.compile(
@@ -75,7 +75,7 @@ class Documents:
         self.wrong = []
 
     def files(self):
-        found = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+        found = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
         return [file for file in found if file.name != "measurements.md"]
 
     def filled(self, file):

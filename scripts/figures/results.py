@@ -160,12 +160,13 @@ def write_facts(folder, facts):
 
 
 def page_machine():
-    """The folder that documents quote: the one measured last."""
-    folders = sorted((read_facts(file.parent).get("measured", ""), file.parent.name, file.parent)
-                     for file in RESULTS.glob("*/machine.csv"))
+    """The folder that documents quote: the one measured last of those that hold all topics."""
+    topics = {file.name for file in RESULTS.glob("*/*.csv")}
+    folders = [folder for folder in RESULTS.iterdir()
+               if folder.is_dir() and all((folder / topic).exists() for topic in topics)]
     if not folders:
-        raise Wrong("benchmarks/results holds no machine's figures: run scripts/measure.sh")
-    return folders[-1][2]
+        raise Wrong("benchmarks/results holds no machine with all topics: run scripts/measure.sh")
+    return max(folders, key=lambda folder: (read_facts(folder).get("measured", ""), folder.name))
 
 
 def read_all(folder):

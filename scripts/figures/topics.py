@@ -15,13 +15,10 @@ def repeats(quick):
 
 def world(quick):
     """One world and its peers on the same million boxes; views at once; sectors far apart."""
-    only = r"-^(build|move_|insert_|far_sectors/move)"
-    if quick:
-        only = r"-^(build|move_|insert_|far_sectors/move|openscenegraph/d|.*/10000000)"
-    views = {name: "one_view" for name in
-             ("four_views_sharing_half", "four_views_in_two_pairs", "four_views_in_a_fan")}
-    return compare_with(google_benchmark("world", 3, 0.02 if quick else 0.1, only),
-                        lambda name: None if name in ("one_view", "far_sectors/cull") else views.get(name, "world/1000000"))
+    only = "-^(build|move_|far_sectors/move" + ("|openscenegraph/d|.*/10000000)" if quick else ")")
+    rows = google_benchmark("world", 3, 0.02 if quick else 0.1, only)
+    return compare_with(rows, lambda name: None if name in ("far_sectors/cull", "one_view") else
+                        "one_view" if name.startswith("four_views") else "world/1000000")
 
 
 def movers(quick):

@@ -83,7 +83,7 @@ SIGHTLINE_API sightline_status sightline_occlusion_view(const sightline_occlusio
 SIGHTLINE_API sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
                                                               const sightline_box_view* boxes);
 /** Draws solid spheres about the view's origin. Those that are not valid or reach behind the near plane are
- * left out; leave out yourself those of things that do. Errors, Cost: the same. */
+ * left out. Leave out, too, those of things that do. Errors, Cost: the same. */
 SIGHTLINE_API sightline_status sightline_occlusion_draw_spheres(sightline_occlusion* occlusion,
                                                                 const sightline_sphere_view* spheres);
 /** Draws the mesh moved by `transform`, a column-major affine matrix, about the view's origin; NULL: where it
@@ -100,8 +100,8 @@ SIGHTLINE_API sightline_status sightline_occlusion_draw_mesh(sightline_occlusion
 SIGHTLINE_API sightline_status sightline_occlusion_may_see_boxes(const sightline_occlusion* occlusion,
                                                                  const sightline_box_view* boxes,
                                                                  uint8_t* visible, size_t capacity);
-/** The same for spheres about the view's origin. Of a thing whose box and sphere are both known, both must
- * say so. Errors, Cost: the same. */
+/** The same for spheres about the view's origin. A thing whose box and sphere are both known may be seen only
+ * if both may. Errors, Cost: the same. */
 SIGHTLINE_API sightline_status sightline_occlusion_may_see_spheres(const sightline_occlusion* occlusion,
                                                                    const sightline_sphere_view* spheres,
                                                                    uint8_t* visible, size_t capacity);

@@ -30,7 +30,7 @@ typedef struct sightline_pvs_cells {
   size_t visible_count;    /**< first[cells] */
 } sightline_pvs_cells;
 
-/** Nothing. */
+/** No cells. */
 static inline sightline_pvs_cells sightline_pvs_cells_default(void) {
   sightline_pvs_cells cells;
   int i;

@@ -173,7 +173,7 @@ typedef struct sightline_camera {
   float vertical_fov;        /**< radians, above 0 and below pi */
   float orthographic_height; /**< metres; above 0: an orthographic view, which has no field of view */
   float near_plane;          /**< metres; above 0 for perspective */
-  float far_plane;           /**< metres; beyond near_plane; INFINITY is one for perspective */
+  float far_plane;           /**< metres; beyond near_plane; may be INFINITY for perspective */
   float shift[2];            /**< off-centre projection: the image's shift in half image sizes */
 } sightline_camera;
 

@@ -12,11 +12,11 @@
 extern "C" {
 #endif
 
-/** An id, index or value that is none. */
+/** No id, index or value. */
 #define SIGHTLINE_NO_OBJECT 0xffffffffu
 /** In all layers. */
 #define SIGHTLINE_ALL_LAYERS 0xffffffffu
-/** Views that one call culls together. */
+/** The most views that one call culls together. */
 #define SIGHTLINE_MAX_VIEWS 8
 
 /* --- the world: read by many threads at once, each culling with a culler of its own, while none changes it;
@@ -53,11 +53,11 @@ SIGHTLINE_API void sightline_world_destroy(sightline_world* world);
 SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box_view* boxes,
                                                       const sightline_handles* handles,
                                                       const sightline_object_columns* columns);
-/** Gives each object a new box; one that stands there twice keeps the last. Errors: BAD_ARGUMENT, BAD_BOX,
+/** Gives each object a new box; one that is listed twice keeps the last. Errors: BAD_ARGUMENT, BAD_BOX,
  * STALE_HANDLE. Cost: linear, 50 to 200 ns an object. Allocates: where objects gather as never before. */
 SIGHTLINE_API sightline_status sightline_world_move(sightline_world* world, const sightline_handles* handles,
                                                     const sightline_box_view* boxes);
-/** Takes the objects out. Errors: BAD_ARGUMENT; STALE_HANDLE, also for one that stands there twice. Cost:
+/** Takes the objects out. Errors: BAD_ARGUMENT; STALE_HANDLE, also for one that is listed twice. Cost:
  * linear. Allocates: a list of free ids. */
 SIGHTLINE_API sightline_status sightline_world_remove(sightline_world* world,
                                                       const sightline_handles* handles);
@@ -73,11 +73,11 @@ SIGHTLINE_API sightline_status sightline_world_set_values(sightline_world* world
 
 /** Objects; 0 for NULL. */
 SIGHTLINE_API size_t sightline_world_size(const sightline_world* world);
-/** All ids lie below this; those of removed objects are given again. 0 for NULL. */
+/** All ids lie below this; those of removed objects are reused. 0 for NULL. */
 SIGHTLINE_API size_t sightline_world_id_limit(const sightline_world* world);
 /** 1 or 0; 0 for NULL. */
 SIGHTLINE_API int sightline_world_contains(const sightline_world* world, sightline_handle handle);
-/** The handle of the object that has this id now; one of which no world contains where none has. */
+/** The handle of the object that has this id now; where none has, one that no world contains. */
 SIGHTLINE_API sightline_handle sightline_world_handle(const sightline_world* world, uint32_t id);
 /** The box as it is kept: it holds what was given, and is at most a millimetre larger.
  * Errors: BAD_ARGUMENT, STALE_HANDLE. */
@@ -172,7 +172,7 @@ SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
  * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
- * is left out, but by `layers` and `min_area`. The views' struct_size is one. `options` may be NULL.
+ * is left out, but by `layers` and `min_area`. All views have the same struct_size. `options` may be NULL.
  * Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost: grows with
  * what is visible and with the boundary of the views, not with the world. Threads: only reads the world and
  * the occlusions. Allocates: nothing once the culler has grown to the world's size. */

@@ -45,20 +45,17 @@ Scene load_scene(std::string_view specification, const LoadOptions& options = {}
 /// - 1 Quake unit is 0.0254 m; axes (x, y, z) become (x, z, -y), which is y up and still right-handed.
 /// - Triangles turn counter-clockwise as seen from the side that the game draws.
 /// - Patches (type 2) are tessellated with LoadOptions::patch_level.
-/// - Flares (type 4) have no geometry, the game draws a sprite; they become a small octahedron, 0.1 m from
-/// tip
-///   to centre, at the flare's origin, transparent.
+/// - Flares (type 4) have no geometry, the game draws a sprite; they become a small octahedron, 0.1 m
+///   from tip to centre, at the flare's origin, transparent.
 /// - A face without a triangle stays an object of its vertices, or of one point, so that ids stay face
-/// indices.
-/// - Shader scripts say what is cut out (alphaFunc in the first stage), what is transparent (a first stage
-/// that blends,
-///   or a late sort), and which sides are drawn (cull). Cut-outs have the alpha of the first stage's image,
-///   .tga or .png, where the game has it, it can be read, and its texture does not move; else they are drawn
-///   whole.
-/// - Without a script the flags do: translucent contents are transparent; shadows by alpha, filtered light
-/// and
-///   contents that are not solid may have holes, so they are cut out, drawn on both sides. Fog and the flag
-///   'no draw' are transparent. All else is opaque and drawn from its front.
+///   indices.
+/// - Shader scripts say what is cut out (alphaFunc in the first stage), what is transparent (a first
+///   stage that blends, or a late sort), and which sides are drawn (cull). Cut-outs have the alpha of the
+///   first stage's image, .tga or .png, where the game has it, it can be read, and its texture does not
+///   move; else they are drawn whole.
+/// - Without a script the flags do: translucent contents are transparent; shadows by alpha, filtered
+///   light and contents that are not solid may have holes, so they are cut out, drawn on both sides. Fog
+///   and the flag 'no draw' are transparent. All else is opaque and drawn from its front.
 /// - `_farplanedist` of the world's entity is LevelPvs::far_plane.
 /// - Moving parts (doors, lifts) stand at the origin of the entity that shows them, and belong to no leaf.
 /// Scene::level holds the tree, the leaves' faces and the visibility lump (without one: all see all).

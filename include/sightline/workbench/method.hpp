@@ -52,15 +52,15 @@ public:
   /// bounds.
   void update(std::span<const ObjectId> objects);
   /// Culls the view. On the CPU fills the output with what to draw; on a device records culling and drawing
-  /// in named passes, and what is left in the targets is the picture. Same view and scene, and the same times
-  /// told by report_frame_time(), same answer, in the same order. Allocates nothing once output and method
+  /// in named passes, and what is left in the targets is the picture. The same view, scene and times told by
+  /// report_frame_time() give the same answer, in the same order. Allocates nothing once output and method
   /// have grown to their sizes. Throws Error for a view that does not pass check().
   void record(FrameContext& context);
   /// Fills in what only the device knows once the last frame is finished: what it drew, ascending by id, and
   /// its counts. Not part of a frame, for checking. Does nothing where record() has said it all.
   virtual void read_back([[maybe_unused]] Frame& output) {}
-  /// Told, where the caller knows, what the last frame took from the beginning of culling to the finished
-  /// picture: methods that choose among ways of drawing do so by it. Allocates nothing.
+  /// Told, where the caller knows, how long the last frame took, from the beginning of culling to the
+  /// finished picture: methods that choose among ways of drawing go by it. Allocates nothing.
   virtual void report_frame_time([[maybe_unused]] double milliseconds) noexcept {}
   /// The triangles that the output's draws are ranges of, for a method that draws triangles instead of
   /// objects; null where draws are ranges of the scene's own meshes. Valid until update() or the method's

@@ -1,4 +1,4 @@
-// How long work tells how far it is.
+// How work that takes long reports its progress.
 #pragma once
 
 #include <cstddef>
