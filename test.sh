@@ -47,6 +47,9 @@ build/release/sightline methods --json build/methods.json >/dev/null
 scripts/make-method-pages.py --check build/methods.json
 tests/structure/add_a_method.sh build/release
 
+stage "surfaces"
+scripts/check-surfaces.sh build/release
+
 stage "documents"
 scripts/check-docs.py build/release
 tests/structure/planted_docs.sh build/release

@@ -26,6 +26,7 @@ line() {
 }
 
 line sanitizers ctest --preset asan -j"$(nproc)" -R "$2"
+line surfaces scripts/check-surfaces.sh build/release --full
 line ports scripts/check-ports.sh build/release --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh

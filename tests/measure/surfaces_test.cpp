@@ -41,8 +41,8 @@ TEST_F(SurfacesTest, NoMethodLosesAPixelOnTheCpu) {
          {RasterState::materials, RasterState::both_sides, RasterState::front_faces}) {
       set_raster_state(scene, state);
       measure::Bench bench(scene, measure::promising_methods(scene));
-      expect_all_hold(measure::verify(bench, cameras_of(scene, 40), 128, 96));
-      expect_all_hold(measure::verify(bench, cameras_of(scene, 6), 128, 96, 0.1));
+      expect_all_hold(measure::verify(bench, cameras_of(scene, 12), 96, 72));
+      expect_all_hold(measure::verify(bench, cameras_of(scene, 4), 96, 72, 0.1));
     }
   }
 }
@@ -50,11 +50,11 @@ TEST_F(SurfacesTest, NoMethodLosesAPixelOnTheCpu) {
 TEST_F(SurfacesTest, NoMethodLosesAPixelOnADeviceAndPicturesAreEqual) {
   for (Scene& scene : scenes()) {
     measure::Bench bench(scene, measure::promising_methods(scene, true), &device());
-    expect_all_hold(measure::verify(bench, cameras_of(scene, 12), 160, 120));
-    expect_all_hold(measure::verify(bench, cameras_of(scene, 4), 160, 120, 0.1));
+    expect_all_hold(measure::verify(bench, cameras_of(scene, 4), 96, 72));
+    expect_all_hold(measure::verify(bench, cameras_of(scene, 2), 96, 72, 0.1));
     measure::Bench handed(
         scene, std::vector<std::string>{"masked", "zhang-octree", "cluster-cone", "adaptive"}, &device());
-    expect_all_hold(measure::verify(handed, cameras_of(scene, 6), 160, 120));
+    expect_all_hold(measure::verify(handed, cameras_of(scene, 2), 96, 72));
   }
 }
 
@@ -69,7 +69,7 @@ std::vector<ObjectId> kept(const Scene& scene, const std::string& method, const 
 // Three cards, each before a box: seen from behind a single-sided one shows what is beyond it, a double-sided
 // one does not; a mirrored one has its front where its mesh has it.
 TEST_F(SurfacesTest, ACardHidesWhatItIsDrawnOver) {
-  const Scene scene = test::sided_cards();
+  const Scene scene = generate_world("cards?show=sides");
   const auto has = [](const std::vector<ObjectId>& ids, ObjectId id) {
     return std::ranges::binary_search(ids, id);
   };
@@ -94,7 +94,7 @@ TEST_F(SurfacesTest, WhatIsTakenForSolidCostsPixels) {
 
 // Rays at boxes and at triangles go on through what hides nothing.
 TEST_F(SurfacesTest, RaysGoOnThroughLeaves) {
-  const Scene scene = test::leaf_cards();
+  const Scene scene = generate_world("cards");
   for (const char* method : {"toca", "boca", "wide-rays", "triangle-pvs", "guided"}) {
     const std::vector<ObjectId> seen = kept(scene, method, scene.viewpoints[0]);
     for (ObjectId object = 1; object < scene.size(); ++object)

@@ -26,7 +26,7 @@ std::vector<ParameterInfo> parameters_of(const WorldInfo& world) {
 std::span<const WorldInfo> worlds() noexcept {
   using namespace scene;
   static const std::array kOwn{kRegularWorld, kIrregularWorld, kForestWorld, kSoupWorld,
-                               kStrataWorld,  kFoliageWorld,   kCityWorld};
+                               kStrataWorld,  kFoliageWorld,   kCityWorld,   kCardsWorld};
   static const auto kTables = [] {
     std::array<std::vector<ParameterInfo>, kOwn.size()> tables;
     for (std::size_t i = 0; i < kOwn.size(); ++i) tables[i] = parameters_of(kOwn[i]);

@@ -12,6 +12,7 @@ extern const WorldInfo kSoupWorld;
 extern const WorldInfo kStrataWorld;
 extern const WorldInfo kFoliageWorld;
 extern const WorldInfo kCityWorld;
+extern const WorldInfo kCardsWorld;
 
 /// A transform that scales, turns about y, and moves.
 Affine place(const Vec3& position, float scale, float heading = 0) noexcept;

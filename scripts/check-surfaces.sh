@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# check-surfaces.sh BUILD [--full]: no exact or conservative method loses a pixel of scenes with cut-outs and single-sided
+# surfaces, on the CPU and on a Vulkan device, still and with a tenth of the objects moving; and pictures are those of
+# everything drawn. 300 views each, a thousand with --full, which adds other worlds, one far from the origin, and levels.
+set -euo pipefail
+build=$(realpath "$1")
+full=${2:-}
+cd "$(dirname "$0")/.."
+folder=$build/surfaces
+mkdir -p "$folder"
+
+views=300
+scenes=(world:foliage)
+for show in leaves grate sides; do
+  "$build/sightline" generate "world:cards?show=$show" --output "$folder/$show.glb" >/dev/null
+  scenes+=("$folder/$show.glb")
+done
+level() { scenes+=("pak1-maps.pk3:maps/$1.bsp"); }
+level islandctf
+if [ "$full" = --full ]; then
+  views=1000
+  scenes+=('world:regular?columns=60&rows=60&detail=1' 'world:irregular?spheres=3000&detail=1' 'world:forest?trees=3000&size=300'
+           'world:city?objects=10000' 'world:city?objects=3000&offset=1e7' 'world:foliage?offset=-1e7')
+  for name in oasago2 oa_dm1 kaos2 ctf_inyard czest2ctf; do level $name; done
+fi
+
+failed=0
+for scene in "${scenes[@]}"; do
+  for way in '' '--moving 0.1' '--device any' '--device any --moving 0.1'; do
+    if ! "$build/sightline" verify "$scene" --views $views --seed 7 $way >"$folder/log" 2>&1; then
+      echo "$scene $way:"; cat "$folder/log"; failed=1
+    fi
+  done
+  echo "$scene: $(grep -c holds "$folder/log") methods on a device hold in $views views"
+done
+exit $failed
