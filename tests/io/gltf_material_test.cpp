@@ -135,6 +135,7 @@ TEST(GltfMaterial, WhatHasNoAlphaIsDrawnWhole) {
   json document = with_image(png());
   document["textures"][0] = json::parse(R"({"extensions": {"EXT_texture_webp": {"source": 0}}})");
   EXPECT_EQ(read_document(document).alpha_image[0], kNoAlphaImage);
+  EXPECT_THAT(read_document(document).ignored, testing::ElementsAre(HasSubstr("the images of 1 materials")));
   document = with_image(png());
   document["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   EXPECT_EQ(read_document(document).alpha_image[0], kNoAlphaImage);

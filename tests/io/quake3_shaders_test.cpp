@@ -7,7 +7,7 @@
 #include <sightline/workbench/io.hpp>
 
 #include "sample_files.hpp"
-#include "workbench/io/pk3.hpp"
+#include "workbench/io/alpha_png.hpp"
 #include "workbench/io/quake3_faces.hpp"
 #include "workbench/io/quake3_tga.hpp"
 
@@ -201,6 +201,21 @@ TEST(Quake3Shaders, CutOutsHaveTheAlphaOfTheFirstStagesImage) {
   scene = image_of("map textures/leaf.tga\nalphaFunc GE128", cut);
   EXPECT_EQ(scene.alpha_image[0], kNoAlphaImage);
   EXPECT_THAT(scene.ignored, ElementsAre(testing::HasSubstr("image textures/leaf.tga is a Targa that ends")));
+}
+
+TEST(Quake3Shaders, AnArchiveBringsItsOwnScriptsAndImages) {
+  const auto script = [](const char* text) { return to_bytes(std::string(text)); };
+  const Blob archive =
+      to_pk3({{"maps/sample.bsp", to_bsp(two_rooms())},
+              {"Scripts/A.Shader", script("textures/wall\n{\n{\nmap TEXTURES/b.tga\nalphaFunc GT0\n}\n}\n")},
+              {"scripts/deeper/b.shader", script("textures/glass\n{\n{\nmap a\n}\n}\n")},
+              {"scripts/broken.shader", script("textures/wall\n{\n")},
+              {"Textures/B.png", io::write_alpha({1, 1, {7}})}});
+  const Scene scene = read_pk3(archive, "maps/sample.bsp", "a.pk3");
+  EXPECT_EQ(scene.material(0), Material(Surface::cut_out, Sides::front, 0, 1));
+  EXPECT_EQ(scene.alpha_images, (std::vector{AlphaImage{1, 1, {7}}}));
+  EXPECT_EQ(scene.surface[2], Surface::transparent) << "scripts lie in no folder below";
+  EXPECT_THAT(scene.ignored, ElementsAre(testing::HasSubstr("1 shader scripts whose braces do not match")));
 }
 
 TEST(Quake3Shaders, BrokenTargasAreOneSentence) {

@@ -117,15 +117,21 @@ Blob to_bsp(const Level& level) {
 }
 
 Blob to_pk3(const std::string& entry, std::span<const std::byte> content) {
+  return to_pk3({{entry, Blob(content.begin(), content.end())}});
+}
+
+Blob to_pk3(const std::vector<std::pair<std::string, Blob>>& entries) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* memory = zip_source_buffer_create(nullptr, 0, 0, &error);
   zip_source_keep(memory);
   zip_t* archive = zip_open_from_source(memory, ZIP_TRUNCATE, &error);
-  zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
-  if (zip_file_add(archive, entry.c_str(), source, 0) < 0 || zip_close(archive) != 0) {
-    throw std::runtime_error("cannot make the sample archive");
+  bool good = true;
+  for (const auto& [name, content] : entries) {
+    zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
+    good = good && zip_file_add(archive, name.c_str(), source, 0) >= 0;
   }
+  if (!good || zip_close(archive) != 0) throw std::runtime_error("cannot make the sample archive");
   zip_stat_t stat;
   zip_source_stat(memory, &stat);
   Blob out(stat.size);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -39,7 +40,8 @@ struct Level {
 Level two_rooms();
 Blob to_bsp(const Level& level);
 
-/// A zip archive of one entry, deflated.
+/// A zip archive, its entries deflated; or of one entry.
+Blob to_pk3(const std::vector<std::pair<std::string, Blob>>& entries);
 Blob to_pk3(const std::string& entry, std::span<const std::byte> content);
 
 /// A glTF of one triangle (0,0,0) (1,0,0) (0,1,0), in one buffer as data URI: 36 bytes of positions, then the

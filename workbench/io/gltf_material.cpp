@@ -55,6 +55,11 @@ MaterialReader::MaterialReader(Document& document, Scene& scene) : document_(doc
     }
   }
   read_images();
+  if (unread_ != 0) {
+    scene.ignored.push_back(fmt::format(
+        "the images of {} materials, in formats that are not read: what they cut out is drawn whole",
+        unread_));
+  }
 }
 
 const Look& MaterialReader::look_of(const Json& primitive) const {
@@ -84,6 +89,7 @@ void MaterialReader::read_cut_out(const Json& material, std::uint64_t index, Loo
     factor = colour[3];
     if (const Json* texture = find(*base, "baseColorTexture")) {
       image = image_of(*texture);
+      unread_ += image == kNone;
       look.coordinate_set = whole_of(*texture, "texCoord", 0);
       const Json* extensions = find(*texture, "extensions");
       const Json* move = extensions != nullptr ? find(*extensions, "KHR_texture_transform") : nullptr;

@@ -40,6 +40,7 @@ private:
   Look default_;
   std::vector<Look> looks_;
   std::map<std::uint64_t, std::vector<std::size_t>> of_image_;  ///< cut-outs by the image they show
+  std::size_t unread_ = 0;                                      ///< cut-outs whose image is an extension's
   std::uint32_t nothing_ = kNoAlphaImage;  ///< an image of one clear texel, once one is needed
 };
 

@@ -363,7 +363,7 @@ Scene read_gltf(std::span<const std::byte> bytes, std::string name, const std::f
       const WorldPoint origin = scene::far_origin(extent(scene));
       if (origin != WorldPoint{}) scene = read_relative_to(origin, document, bytes.size(), name);
     }
-    scene.ignored = ignored_parts(document);
+    for (std::string& part : ignored_parts(document)) scene.ignored.push_back(std::move(part));
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }
