@@ -128,6 +128,16 @@ def scenes(quick):
                            "--methods=roc,hroc,vertex-chunk,resident-chunk,hiz", "--moving=0.1")
 
 
+def surfaces(quick):
+    """What is lost where cut-outs and backs that are not drawn are taken for solid, and where they are not."""
+    views = 60 if quick else 300
+    rows = []
+    for key, scene in (("islandctf", LEVEL.format("islandctf")), ("foliage", "world:foliage"),
+                       ("city", "world:city?objects=3000")):
+        rows += verified(key, scene, views, "--methods=masked,masked?solid=all")
+    return rows
+
+
 def draw_calls(quick):
     """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, and what adaptive's
     frames cost beside the quickest method's. Minutes long, so not in a quick run."""
@@ -231,4 +241,5 @@ def startup(quick):
 
 
 TOPICS = {"world": world, "movers": movers, "frustum": frustum, "occlusion": occlusion, "rays": rays,
-          "scenes": scenes, "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls}
+          "scenes": scenes, "surfaces": surfaces, "memory": memory, "startup": startup, "large": large, "bake": bake,
+          "draw-calls": draw_calls}
