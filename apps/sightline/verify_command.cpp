@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
@@ -57,8 +58,10 @@ int run_verify(const VerifyOptions& options) {
   if (device) fmt::print(", on {}", result.device);
   fmt::print("; {}\n\n{}", report::sides_drawn(scene.raster_state),
              report::render(report::verification_table(result)));
+  const char* separator = "\n";
   for (const measure::MethodVerdict& m : result.methods) {
-    for (const measure::LostObject& lost : m.examples) fmt::print("{}\n", measure::describe(m, lost));
+    for (const measure::LostObject& lost : m.examples)
+      fmt::print("{}{}\n", std::exchange(separator, ""), measure::describe(m, lost));
   }
   if (scene.level && !device) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
