@@ -72,7 +72,7 @@ cmake --build --preset tsan --target world_tests
 build/tsan/tests/world_tests --gtest_brief=1
 
 stage "fuzzers"
-fuzz/run.sh "${FUZZ_SECONDS:-10}" build/asan
+fuzz/run.sh "${FUZZ_SECONDS:-6}" build/asan
 
 stage "ports"
 if [ -z "$full" ]; then
