@@ -9,8 +9,8 @@
 #include "library/pvs/cell_coding.hpp"
 #include "library/pvs/set_coding.hpp"
 #include "sample_files.hpp"
-#include "support/cards.hpp"
 #include "workbench/io/alpha_png.hpp"
+#include "workbench/scene/patterns.hpp"
 
 namespace {
 
@@ -21,8 +21,8 @@ void write_scenes_and_images(const std::filesystem::path& folder) {
   write(folder / "fuzz_gltf/one_triangle.gltf", to_bytes(one_triangle()));
   write_glb(load_scene("world:forest?trees=3"), folder / "fuzz_gltf/forest.glb");
   write_glb(read_bsp(to_bsp(two_rooms()), "two rooms"), folder / "fuzz_gltf/two_rooms.glb");
-  write_glb(test::leaf_cards(), folder / "fuzz_gltf/leaf_cards.glb");
-  write_glb(test::grate_before_a_room(), folder / "fuzz_gltf/grate.glb");
+  write_glb(load_scene("world:cards?show=leaves"), folder / "fuzz_gltf/leaf_cards.glb");
+  write_glb(load_scene("world:cards?show=grate"), folder / "fuzz_gltf/grate.glb");
   write(folder / "fuzz_image/leaves.png", io::write_alpha(scene::leaves_pattern(16, 0.5f, 1)));
   write(folder / "fuzz_image/grate.png", io::write_alpha(scene::grate_pattern(5, 2, 1)));
   Blob targa(18 + 5, std::byte{0x81});  // one run of two texels
