@@ -58,6 +58,29 @@ TEST_F(SurfacesTest, NoMethodLosesAPixelOnADeviceAndPicturesAreEqual) {
   }
 }
 
+// Where leaves are, the card is drawn; where none are, what is behind it.
+TEST_F(SurfacesTest, CutOutsAreDrawnByTheirAlpha) {
+  const auto picture = [&](std::uint8_t of_all, bool as_it_is) {
+    Scene scene = generate_world("cards?show=leaves");
+    for (AlphaImage& image : scene.alpha_images) {
+      if (!as_it_is) std::ranges::fill(image.alpha, of_all);
+    }
+    measure::Bench bench(scene, std::vector<std::string>{"none"}, &device());
+    const Viewpoint& from = scene.viewpoints[0];
+    bench.run(bench.subjects()[0], view_of({.eye = from.eye, .forward = from.forward}, 160, 120));
+    return bench.renderer()->picture().pixels;
+  };
+  const auto leaves = picture(0, true), whole = picture(255, false), nothing = picture(0, false);
+  std::size_t drawn = 0, open = 0;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    ASSERT_TRUE(leaves[i] == whole[i] || leaves[i] == nothing[i]) << i;
+    if (whole[i] == nothing[i]) continue;
+    ++(leaves[i] == whole[i] ? drawn : open);
+  }
+  EXPECT_GT(drawn, 500u);
+  EXPECT_GT(open, 500u);
+}
+
 std::vector<ObjectId> kept(const Scene& scene, const std::string& method, const Viewpoint& from) {
   Frame frame;
   cull(*create_method(method, scene), view_of({.eye = from.eye, .forward = from.forward}, 320, 240), frame);
