@@ -7,7 +7,7 @@ make_bare() {
   trap 'rm -rf "$root"' EXIT
   chmod 755 "$root"
   mmdebstrap --variant=apt --mode=root --quiet --aptopt='APT::Install-Recommends "false"' \
-    --include="$(IFS=,; echo "$*")" bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+    ${1:+--include="$(IFS=,; echo "$*")"} bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   mkdir "$root/sightline"
   git archive HEAD | tar -x -C "$root/sightline"
