@@ -19,7 +19,7 @@ void bullet_dbvt(benchmark::State& state) {
   fill(tree, c.flat);
   tree.optimizeIncremental(static_cast<int>(c.flat.size()) / 4);
   const View view = looking(0.3f, tenth_of_view());
-  const Frustum frustum = make_frustum(view, {{-2000, -60, -2000}, {2000, 60, 2000}});
+  const Frustum frustum = make_frustum(view);
   std::array<btVector3, 6> normals;
   std::array<btScalar, 6> offsets;
   for (std::size_t p = 0; p < 6; ++p) {

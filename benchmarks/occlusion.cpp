@@ -127,7 +127,7 @@ void query(benchmark::State& state, bool from_above) {
   or_throw(buffer.draw_boxes(std::span<const Box>(occluders)));
   scene::Random random(2);
   Boxes boxes;
-  const Frustum frustum = make_frustum(view, {{-700, -700, -700}, {700, 700, 700}});
+  const Frustum frustum = make_frustum(view);
   while (boxes.size() < 100'000) {
     const Vec3 at = random.inside({{-300, 0, -300}, {300, 8, 300}}),
                half = random.inside({{0.2f, 0.2f, 0.2f}, {1.5f, 1.5f, 1.5f}});

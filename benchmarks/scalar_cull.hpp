@@ -6,7 +6,7 @@
 
 namespace sightline::benchmarks {
 
-/// As cull_boxes, in scalar code, for boxes within the frustum's extent.
+/// As cull_boxes, in scalar code.
 std::size_t cull_boxes_scalar(const Frustum& frustum, const Boxes& boxes,
                               std::span<ObjectId> visible) noexcept;
 

@@ -15,13 +15,11 @@
 namespace sightline::benchmarks {
 namespace {
 
-constexpr Box kExtent{{-2000, -60, -2000}, {2000, 60, 12000}};
-
 template <class Cull>
 void flat(benchmark::State& state, const Cull& cull) {
   const Case& c = case_of(1'000'000);
   const View view = looking(0.3f, tenth_of_view());
-  const Frustum frustum = make_frustum(view, kExtent);
+  const Frustum frustum = make_frustum(view);
   std::vector<ObjectId> visible(c.flat.size() + kCullPadding);
   std::size_t count = 0;
   for (auto _ : state) benchmark::DoNotOptimize(count = cull(frustum, c.flat, visible));

@@ -61,7 +61,7 @@ inline float tenth_of_view() {
     float low = 0.05f, high = 2.5f;
     for (int i = 0; i < 30; ++i) {
       const float middle = 0.5f * (low + high);
-      const Frustum frustum = make_frustum(looking(0.3f, middle), {{-2000, -60, -2000}, {2000, 60, 2000}});
+      const Frustum frustum = make_frustum(looking(0.3f, middle));
       (*cull_boxes(frustum, c.flat.view(), visible) < c.flat.size() / 10 ? low : high) = middle;
     }
     return high;

@@ -123,7 +123,7 @@ SphereView view_of_spheres(Numbers& in, Scenery& from, bool& right) {
 
 void flat(Numbers& in, const View& view, Scenery& from) {
   const Box around = box_of(in);
-  const Frustum frustum = make_frustum(view, around);
+  const Frustum frustum = make_frustum(view);
   const Projector projector = make_projector(view, around);
   bool right = false;
   const BoxView boxes = view_of_boxes(in, from, right);
@@ -150,7 +150,7 @@ void flat(Numbers& in, const View& view, Scenery& from) {
 
 // Flat culling of valid boxes keeps what testing one by one keeps, in any layout.
 void flat_is_exact(Numbers& in, const View& view) {
-  const Frustum frustum = make_frustum(view, box_of(in));
+  const Frustum frustum = make_frustum(view);
   Boxes boxes;
   for (std::size_t i = in.byte() % 80; i > 0; --i) boxes.push_back(box_of(in));
   std::vector<Box> structs;

@@ -19,7 +19,6 @@ using namespace sightline::c_api;
 namespace {
 
 static_assert(sizeof(sightline_frustum) == sizeof(Frustum) &&
-              offsetof(sightline_frustum, extent) == offsetof(Frustum, extent) &&
               offsetof(sightline_frustum, origin) == offsetof(Frustum, origin));
 static_assert(SIGHTLINE_CULL_PADDING == kCullPadding);
 static_assert(SIGHTLINE_OUTSIDE == static_cast<int>(Overlap::outside) &&
@@ -38,22 +37,15 @@ Status check_extent(const float extent[6]) {
   return {};
 }
 
-// What frusta and projectors are made of.
-Status take(const sightline_view& given, const float extent[6], WorldView& view) {
-  const Status ok = c_api::take(given, view);
-  return ok ? check_extent(extent) : ok;
-}
-
 }  // namespace
 
 extern "C" {
 
-sightline_status sightline_frustum_make(const sightline_view* view, const float extent[6],
-                                        sightline_frustum* frustum) {
-  if (!view || !extent || !frustum) return refuse("frustum: the view, the extent or the frustum is NULL");
+sightline_status sightline_frustum_make(const sightline_view* view, sightline_frustum* frustum) {
+  if (!view || !frustum) return refuse("frustum: the view or the frustum is NULL");
   WorldView given;
-  if (const Status ok = take(*view, extent, given); !ok) return keep(ok);
-  *frustum = std::bit_cast<sightline_frustum>(make_frustum(given, box_of(extent)));
+  if (const Status ok = take(*view, given); !ok) return keep(ok);
+  *frustum = std::bit_cast<sightline_frustum>(make_frustum(given));
   return SIGHTLINE_OK;
 }
 
@@ -94,7 +86,8 @@ sightline_status sightline_projector_create(const sightline_view* view, const fl
   if (!view || !extent || !projector)
     return refuse("projector: the view, the extent or what to write to is NULL");
   WorldView given;
-  if (const Status ok = take(*view, extent, given); !ok) return keep(ok);
+  if (const Status ok = take(*view, given); !ok) return keep(ok);
+  if (const Status ok = check_extent(extent); !ok) return keep(ok);
   *projector = new sightline_projector{make_projector(given.view, box_of(extent))};
   return SIGHTLINE_OK;
 }

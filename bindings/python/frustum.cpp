@@ -38,13 +38,8 @@ py::array_t<float> planes_of(const Frustum& frustum) {
 
 void add_frustum(py::module_& m) {
   py::class_<Frustum>(m, "Frustum", "A view's frustum, for culling arrays without a World.")
-      .def(py::init([](const WorldView& view, const py::object& extent) {
-             return make_frustum(view, box_of(extent, "extent"));
-           }),
-           "extent: (2, 3), minimum and maximum of what will be tested, metres about the view's origin, and "
-           "no\n"
-           "larger than needed. What reaches beyond it is kept.",
-           py::arg("view"), py::arg("extent"))
+      .def(py::init([](const WorldView& view) { return make_frustum(view); }),
+           "Its planes are moved outwards by the rounding error of a test.", py::arg("view"))
       .def_property_readonly(
           "planes", &planes_of,
           "float32 (6, 4): left, right, bottom, top, near, far; inward normal and distance.")

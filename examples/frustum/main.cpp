@@ -16,9 +16,7 @@ int main() {
   const auto view = sightline::make_view({.eye = {0, 8.9f, 0}, .forward = {0, 0, -1}}, 1280, 720);
   if (!view) return std::fprintf(stderr, "%s\n", view.error().message()), 2;
 
-  // The planes allow for the rounding of every coordinate within these bounds; what reaches beyond is kept.
-  const sightline::Box extent{{-502, 0, -452}, {502, 8, 452}};
-  const sightline::Frustum frustum = sightline::make_frustum(*view, extent);
+  const sightline::Frustum frustum = sightline::make_frustum(*view);
   std::vector<sightline::ObjectId> visible(trees.size() + sightline::kCullPadding);
   const auto count = sightline::cull_boxes(frustum, trees.view(), visible);
   if (!count) return std::fprintf(stderr, "%s\n", count.error().message()), 2;

@@ -24,21 +24,19 @@ struct Frustum {
   /// The order of the planes; front is near and back is far.
   enum Side : std::size_t { left, right, bottom, top, front, back, sides };
   std::array<Plane, sides> planes;  ///< their normals point inwards
-  Box extent;         ///< what the planes are rounded for; what reaches beyond it is never outside
-  WorldPoint origin;  ///< planes and extent are relative to it
+  WorldPoint origin;                ///< the planes are relative to it
 };
 
 /// How a box lies to a frustum: surely outside, across its border or near it, wholly inside.
 enum class Overlap : std::uint8_t { outside, crossing, inside };
 
-/// The frustum of a view, its planes normalised and moved outwards by the rounding error of a test within
-/// `extent` (metres, about the view's origin), so that no test ever rejects what exact arithmetic keeps. A
-/// box that reaches beyond the extent is kept, always: give an extent that holds what will be tested, and no
-/// larger than needed, for at 10 km the planes move by some 5 mm. Errors: none; the view is one that check()
-/// finds sound. Cost: constant. Threads: any. Allocates: nothing.
-Frustum make_frustum(const WorldView& view, const Box& extent) noexcept;
+/// The frustum of a view, its planes normalised and moved outwards by the rounding error of a test, wherever
+/// in the frustum that happens: no test ever rejects what exact arithmetic keeps. They move by some 1e-6 of
+/// the distance from the eye and of the eye's from the origin: give a far eye an origin near it (WorldView).
+/// Errors: none; the view is one that check() finds sound. Cost: constant. Threads: any. Allocates: nothing.
+Frustum make_frustum(const WorldView& view) noexcept;
 /// The same about the world's origin. Errors, Cost, Threads, Allocates: the same.
-Frustum make_frustum(const View& view, const Box& extent) noexcept;
+Frustum make_frustum(const View& view) noexcept;
 
 /// Signed distance in metres in the one evaluation order that all tests share.
 /// Errors: none. Cost: constant. Threads: any. Allocates: nothing.
@@ -47,16 +45,16 @@ inline float signed_distance(const Plane& plane, float x, float y, float z) noex
 }
 
 /// p-vertex / n-vertex test (Greene 1994) of a box in metres about the frustum's origin. `outside` is
-/// certain; `crossing` may be outside near an edge. Boxes that reach beyond the extent are
-/// crossing. Errors: none. Cost: constant. Threads: any. Allocates: nothing.
+/// certain; `crossing` may be outside near an edge. Errors: none. Cost: constant. Threads: any. Allocates:
+/// nothing.
 Overlap classify(const Frustum& frustum, const Box& box) noexcept;
 
 /// Whether classify() says anything but `outside`.
 /// Errors: none. Cost: constant. Threads: any. Allocates: nothing.
 bool overlaps(const Frustum& frustum, const Box& box) noexcept;
 
-/// Whether the centre lies no deeper than -radius behind every plane, or the sphere beyond the extent.
-/// Errors: none. Cost: constant. Threads: any. Allocates: nothing.
+/// Whether the centre lies no deeper than a radius behind every plane. Errors: none. Cost: constant. Threads:
+/// any. Allocates: nothing.
 bool overlaps(const Frustum& frustum, const Sphere& sphere) noexcept;
 
 /// Room that an output of the functions below needs beyond the input's count.

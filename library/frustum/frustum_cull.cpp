@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "library/geometry/box_reader.hpp"
+#include "library/geometry/error_bounds.hpp"
 #include "library/geometry/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -79,23 +80,6 @@ struct Nearest {
         z(plane.normal.z >= 0 ? b.max_z : b.min_z) {}
 };
 
-// What a frustum's planes are rounded for, spread over the lanes.
-struct Extent {
-  Points min, max;
-
-  explicit Extent(const Box& box)
-      : min{hn::Set(F(), box.min.x), hn::Set(F(), box.min.y), hn::Set(F(), box.min.z)},
-        max{hn::Set(F(), box.max.x), hn::Set(F(), box.max.y), hn::Set(F(), box.max.z)} {}
-
-  // How far a box reaches beyond it, along whichever axis it does so most: positive where it does.
-  HWY_INLINE VF beyond(const Points& low, const Points& high) const {
-    const VF x = hn::Max(hn::Sub(min.x, low.x), hn::Sub(high.x, max.x)),
-             y = hn::Max(hn::Sub(min.y, low.y), hn::Sub(high.y, max.y)),
-             z = hn::Max(hn::Sub(min.z, low.z), hn::Sub(high.z, max.z));
-    return hn::Max(hn::Max(x, y), z);
-  }
-};
-
 std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
   const F f;
   const auto& p = frustum.planes;
@@ -103,7 +87,6 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
                   p4 = spread(p[4]), p5 = spread(p[5]);
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
-  const Extent extent(frustum.extent);
   const auto at = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
     return distance(plane, {hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)});
   };
@@ -113,12 +96,7 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
         // The smallest distance of all planes decides: one comparison instead of six.
         const VF a = hn::Min(at(p0, n0, i), at(p1, n1, i)), b = hn::Min(at(p2, n2, i), at(p3, n3, i)),
                  c = hn::Min(at(p4, n4, i), at(p5, n5, i));
-        const Points low{hn::LoadU(f, boxes.min_x + i), hn::LoadU(f, boxes.min_y + i),
-                         hn::LoadU(f, boxes.min_z + i)};
-        const Points high{hn::LoadU(f, boxes.max_x + i), hn::LoadU(f, boxes.max_y + i),
-                          hn::LoadU(f, boxes.max_z + i)};
-        const VF zero = hn::Zero(f);
-        return hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Gt(extent.beyond(low, high), zero));
+        return hn::Not(hn::Lt(hn::Min(hn::Min(a, b), c), hn::Zero(f)));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Box{{boxes.min_x[i], boxes.min_y[i], boxes.min_z[i]},
@@ -131,17 +109,15 @@ std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* 
   const auto& p = frustum.planes;
   const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
                   p4 = spread(p[4]), p5 = spread(p[5]);
-  const Extent extent(frustum.extent);
   return pack(
       s.count, s.x, out,
       [&](std::size_t i) HWY_ATTR {
         const Points at{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
-        const VF radius = hn::LoadU(f, s.radius + i);
+        const VF deepest = hn::Neg(hn::Mul(hn::LoadU(f, s.radius + i), hn::Set(f, geometry::kRadiusGrowth)));
         const VF a = hn::Min(distance(p0, at), distance(p1, at)),
                  b = hn::Min(distance(p2, at), distance(p3, at)),
                  c = hn::Min(distance(p4, at), distance(p5, at));
-        const auto inside = hn::Ge(hn::Min(hn::Min(a, b), c), hn::Neg(radius));
-        return hn::Or(inside, hn::Gt(extent.beyond(at, at), hn::Zero(f)));
+        return hn::Not(hn::Lt(hn::Min(hn::Min(a, b), c), deepest));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Sphere{{s.x[i], s.y[i], s.z[i]}, s.radius[i]});

@@ -17,6 +17,9 @@ inline constexpr double kUnit = 0x1p-24;  ///< u
 /// ((a·x + b·y) + c·z) + d, coefficients rounded once: of a·x the coefficient, the product and three sums
 /// round, of d the coefficient and a sum: at most 5 u of Σ. Needs 0.6.
 inline constexpr double kPlaneRounding = 8 * kUnit;
+/// A sphere's centre lies up to a radius beyond what planes are rounded for: 5 u of the radius, the product
+/// with this rounds once more, and this itself.
+inline constexpr float kRadiusGrowth = 1 + 8 * static_cast<float>(kUnit);
 /// A plane whose normal is this small beside its distance lies at infinity: what is left of a normal that
 /// cancels in double precision is some 2^-53 of it. Decides no more than which planes never reject.
 inline constexpr double kPlaneAtInfinity = 1e-12;

@@ -11,31 +11,42 @@ using namespace geometry;
 
 namespace {
 
+// How far from the origin points may lie: |q_i| <= at_eye_i + per_w_i · w(q), where w is at least 0.
+struct Reach {
+  glm::dvec3 at_eye, per_w{0};
+  glm::dvec4 w{0};
+};
+
+// Clip space maps back linearly: q = eye + A⁻¹·(x, y, w), of which |x| and |y| are at most w within the
+// frustum. Where w is 1 everywhere, the third coordinate is z, at most w as well.
+Reach reach_of(const glm::dmat4& rows) {
+  const bool perspective = glm::length(glm::dvec3(rows[3])) > kPlaneAtInfinity * std::fabs(rows[3].w);
+  const glm::dvec4& third = perspective ? rows[3] : rows[2];
+  const glm::dmat3 inverse =
+      glm::inverse(glm::transpose(glm::dmat3(glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(third))));
+  const glm::dvec3 eye = -(inverse * glm::dvec3(rows[0].w, rows[1].w, third.w));
+  return {glm::abs(eye), glm::abs(inverse[0]) + glm::abs(inverse[1]) + glm::abs(inverse[2]), rows[3]};
+}
+
 // A plane a·x + b·y + c·z + d >= 0 in double precision, normalised, rounded, and moved outwards by what
-// rounding the coefficients and evaluating signed_distance() within the extent can lose.
-Plane round_outwards(const glm::dvec4& plane, const Vec3& largest) {
+// rounding the coefficients and evaluating signed_distance() within reach can lose: turned a little, where
+// reach grows with w.
+Plane round_outwards(const glm::dvec4& plane, const Reach& reach) {
+  constexpr Plane at_infinity{{0, 0, 0}, std::numeric_limits<float>::max()};  // never rejects
   const double length = glm::length(glm::dvec3(plane));
-  if (!(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0) {
-    return {{0, 0, 0}, std::numeric_limits<float>::max()};  // at infinity: never rejects
-  }
+  if (!(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0) return at_infinity;
   const glm::dvec4 unit = plane / length;
-  const double magnitude = std::fabs(unit.x) * largest.x + std::fabs(unit.y) * largest.y +
-                           std::fabs(unit.z) * largest.z + std::fabs(unit.w);
-  return {to_vec3(glm::dvec3(unit)), static_cast<float>(unit.w + kPlaneRounding * magnitude)};
+  const glm::dvec3 size = glm::abs(glm::dvec3(unit));
+  const double least = glm::dot(size, reach.at_eye) + std::fabs(unit.w);
+  glm::dvec4 moved =
+      unit + kPlaneRounding * (glm::dot(size, reach.per_w) * reach.w + glm::dvec4(0, 0, 0, least));
+  moved /= glm::length(glm::dvec3(moved));  // spheres compare it with their radius
+  if (!std::isfinite(moved.x + moved.y + moved.z + moved.w)) return at_infinity;
+  return {to_vec3(glm::dvec3(moved)), static_cast<float>(moved.w)};
 }
 
-bool reaches_beyond(const Box& extent, const Box& box) {
-  return box.min.x < extent.min.x || box.min.y < extent.min.y || box.min.z < extent.min.z ||
-         box.max.x > extent.max.x || box.max.y > extent.max.y || box.max.z > extent.max.z;
-}
-
-}  // namespace
-
-Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept {
-  const glm::dmat4 rows = glm::transpose(clip);
-  const Vec3 reach = largest(extent);
+Frustum frustum_within(const glm::dmat4& rows, const Vec3& forward, const Reach& reach) {
   Frustum frustum;
-  frustum.extent = extent;
   frustum.planes[Frustum::left] = round_outwards(rows[3] + rows[0], reach);
   frustum.planes[Frustum::right] = round_outwards(rows[3] - rows[0], reach);
   frustum.planes[Frustum::bottom] = round_outwards(rows[3] + rows[1], reach);
@@ -51,18 +62,32 @@ Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const 
   return frustum;
 }
 
-Frustum make_frustum(const View& view, const Box& extent) noexcept {
-  return frustum_of(to_double(view.eye_to_clip) * to_double(view.world_to_eye), view_direction(view), extent);
+glm::dmat4 clip_rows(const View& view) {
+  return glm::transpose(to_double(view.eye_to_clip) * to_double(view.world_to_eye));
 }
 
-Frustum make_frustum(const WorldView& view, const Box& extent) noexcept {
-  Frustum frustum = make_frustum(view.view, extent);
+}  // namespace
+
+Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept {
+  return frustum_within(glm::transpose(clip), forward, {to_double(largest(extent))});
+}
+
+Plane geometry::near_plane(const View& view) noexcept {
+  return frustum_within(clip_rows(view), view_direction(view), {glm::dvec3(0)}).planes[Frustum::front];
+}
+
+Frustum make_frustum(const View& view) noexcept {
+  const glm::dmat4 rows = clip_rows(view);
+  return frustum_within(rows, view_direction(view), reach_of(rows));
+}
+
+Frustum make_frustum(const WorldView& view) noexcept {
+  Frustum frustum = make_frustum(view.view);
   frustum.origin = view.origin;
   return frustum;
 }
 
 Overlap classify(const Frustum& frustum, const Box& box) noexcept {
-  if (reaches_beyond(frustum.extent, box)) return Overlap::crossing;
   bool inside = true;
   for (const Plane& plane : frustum.planes) {
     const bool x = plane.normal.x >= 0, y = plane.normal.y >= 0, z = plane.normal.z >= 0;
@@ -82,9 +107,9 @@ bool overlaps(const Frustum& frustum, const Box& box) noexcept {
 
 bool overlaps(const Frustum& frustum, const Sphere& sphere) noexcept {
   const Vec3& c = sphere.centre;
-  if (reaches_beyond(frustum.extent, {c, c})) return true;
+  const float deepest = -sphere.radius * kRadiusGrowth;
   for (const Plane& plane : frustum.planes) {
-    if (signed_distance(plane, c.x, c.y, c.z) < -sphere.radius) return false;
+    if (signed_distance(plane, c.x, c.y, c.z) < deepest) return false;
   }
   return true;
 }

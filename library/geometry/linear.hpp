@@ -84,7 +84,10 @@ inline Vec3 largest(const Box& box) noexcept {
           std::fmax(std::fabs(box.min.z), std::fabs(box.max.z))};
 }
 
-/// make_frustum for any matrix to clip space, still in double precision; `forward` tells front from back.
+/// make_frustum for any matrix to clip space, still in double precision, and for what lies within `extent`
+/// alone; `forward` tells front from back.
 Frustum frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept;
+/// The front plane rounded where it stands, without what evaluating it elsewhere loses.
+Plane near_plane(const View& view) noexcept;
 
 }  // namespace sightline::geometry

@@ -79,7 +79,7 @@ PixelRays pixel_rays(const View& view) noexcept {
   }
   const double turn = glm::determinant(glm::dmat3(rows.x, rows.y, last));
   out.turns_right = turn * scale < 0;
-  const Plane front = make_frustum(view, {}).planes[Frustum::front];
+  const Plane front = geometry::near_plane(view);
   const glm::dvec3 normal(front.normal.x, front.normal.y, front.normal.z);
   if (glm::length(normal) > 0.5) {
     const double at_eye = glm::dot(normal, rows.eye) + front.distance;

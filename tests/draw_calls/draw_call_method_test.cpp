@@ -108,7 +108,7 @@ TEST(DrawCalls, EveryTriangleWithACornerInViewIsSubmitted) {
         scene::Random random(61);
         for (int v = 0; v < 12; ++v) {
           const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
-          const Frustum frustum = make_frustum(view, extent(scene));
+          const Frustum frustum = make_frustum(view);
           std::vector<std::set<std::uint32_t>> drawn;
           std::vector<Frame> frames(methods.size());
           for (std::size_t m = 0; m < methods.size(); ++m) {

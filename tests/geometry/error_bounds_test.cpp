@@ -24,6 +24,19 @@ TEST(ErrorBounds, Planes) {
   expect_share(worst(7, part), 0.6);
 }
 
+// How much too deep a sphere's centre seems behind a plane that touches it, of the growth of its radius.
+TEST(ErrorBounds, RadiusGrowth) {
+  const auto part = [](Draws& d) {
+    const glm::dvec3 n = direction(d);
+    const float radius = d.any_float(1e-3, 1e3);
+    const Vec3 centre = rounded(n * -std::fabs(double{radius}));
+    const double depth = -(n.x * centre.x + n.y * centre.y + n.z * centre.z);
+    const double seems = -double{signed_distance({rounded(n), 0}, centre.x, centre.y, centre.z)};
+    return (seems - depth) / ((double{kRadiusGrowth} - 1 - 0x1p-24) * depth);
+  };
+  expect_share(worst(3, part), 0.4);
+}
+
 TEST(ErrorBounds, SplitsKeepTheDigitsThatRoundingDrops) {
   const auto lost = [](Draws& d) {
     const glm::dvec3 v(d.any_size(1e-3, 1e6), d.any_size(1e-3, 1e6), d.any_size(1e-3, 1e6));

@@ -81,7 +81,7 @@ public:
   void do_record(FrameContext& context) override {
     Frame& frame = context.output;
     frame.clear();
-    Frustum frustum = make_frustum(context.view, extent(scene_));
+    Frustum frustum = make_frustum(context.view);
     frustum.planes[Frustum::left].distance -= metres_;
     for (ObjectId object = 0; object < scene_.size(); ++object) {
       if (overlaps(frustum, scene_.bounds[object])) frame.visible.push_back(object);

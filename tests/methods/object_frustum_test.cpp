@@ -155,7 +155,7 @@ TEST(ObjectFrustum, SortsCellsLikeThePapersWalkOnAGridTurnedToTheView) {
           .vertical_fov = random.between(0.3f, 1.2f),
           .far_plane = random.between(100, 1500)};
       const View view = *make_view(camera, 1600, 900);
-      const Frustum frustum = make_frustum(view, extent(scene));
+      const Frustum frustum = make_frustum(view);
       std::vector<partition::ObjectGrid::Run> runs;
       grid.classify(frustum, runs);
       Lists found;

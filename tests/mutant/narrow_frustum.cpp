@@ -7,13 +7,11 @@
 namespace sightline {
 
 // The names that ld gives the wrapped function and what it wraps.
-Frustum real_make_frustum(const View&,
-                          const Box&) asm("__real__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
-Frustum narrow_frustum(const View&,
-                       const Box&) asm("__wrap__ZN9sightline12make_frustumERKNS_4ViewERKNS_3BoxE");
+Frustum real_make_frustum(const View&) asm("__real__ZN9sightline12make_frustumERKNS_4ViewE");
+Frustum narrow_frustum(const View&) asm("__wrap__ZN9sightline12make_frustumERKNS_4ViewE");
 
-Frustum narrow_frustum(const View& view, const Box& extent) {
-  Frustum frustum = real_make_frustum(view, extent);
+Frustum narrow_frustum(const View& view) {
+  Frustum frustum = real_make_frustum(view);
   Plane& left = frustum.planes[Frustum::left];
   const Vec3 eye = eye_position(view), forward = view_direction(view);
   const float tilt = std::sin(0.17f);

@@ -69,7 +69,7 @@ TEST(Occlusion, NeverHidesWhatAPixelCentreSees) {
     ASSERT_TRUE(buffer.begin({view, {}}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     const ExactRays rays(view);
-    const Frustum frustum = make_frustum(view, {{-60, -30, -60}, {60, 30, 60}});
+    const Frustum frustum = make_frustum(view);
     const std::vector<double> exact = exact_depths(rays, view, occluders);
     const std::vector<double> front = exact_depths(rays, view, occluders, true);
     Boxes queries;

@@ -18,7 +18,7 @@ using test::ExactRays;
 // Of those that the near plane does not cut.
 std::vector<double> exact_depths(const ExactRays& rays, const View& view, std::span<const Sphere> spheres) {
   std::vector<double> nearness(std::size_t{view.width} * view.height, ExactRays::kMiss);
-  const Plane front = make_frustum(view, test::kRoom).planes[Frustum::front];
+  const Plane front = make_frustum(view).planes[Frustum::front];
   for (const Sphere& sphere : spheres) {
     if (signed_distance(front, sphere.centre.x, sphere.centre.y, sphere.centre.z) < sphere.radius) continue;
     for (std::uint32_t i = 0; i < nearness.size(); ++i) {
@@ -79,7 +79,7 @@ TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
     EXPECT_TRUE(buffer.may_see(
         SphereView::arrays(lanes[0].data(), lanes[1].data(), lanes[2].data(), lanes[3].data(), 21), visible));
     EXPECT_TRUE(buffer.may_see(boxes.view(), by_box));
-    const Frustum frustum = make_frustum(view, test::kRoom);
+    const Frustum frustum = make_frustum(view);
     for (std::size_t q = 0; q < queries.size(); ++q) {
       bool seen = false;
       for (std::uint32_t i = 0; i < exact.size() && !seen; ++i) {

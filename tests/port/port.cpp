@@ -120,7 +120,7 @@ void print_geometry(const std::vector<NamedView>& views) {
   Hash planes, points, areas, rects;
   scene::Random random(2);
   for (const NamedView& named : views) {
-    const Frustum frustum = make_frustum(named.view, kReach);
+    const Frustum frustum = make_frustum(named.view);
     for (const Plane& plane : frustum.planes) planes.add_plane(plane);
     points.add_vec(eye_position(named.view)), points.add_vec(view_direction(named.view));
     const Mat4 to_clip = world_to_clip(named.view);
@@ -153,7 +153,7 @@ void print_frustum(const std::vector<NamedView>& views) {
   }
   std::vector<ObjectId> visible(boxes.size() + kCullPadding);
   for (const NamedView& named : views) {
-    const Frustum planes = make_frustum(named.view, kReach);
+    const Frustum planes = make_frustum(named.view);
     const std::size_t seen = *cull_boxes(planes, boxes.view(), visible);
     print("frustum.boxes." + named.name, std::span(visible).first(seen));
     const std::size_t round = *cull_spheres(

@@ -3,6 +3,8 @@
 #include <sightline/frustum.hpp>
 #include <sightline/projection.hpp>
 
+#include "library/geometry/linear.hpp"
+
 namespace sightline::device {
 
 bool has_reversed_depth(const View& view) noexcept {
@@ -13,17 +15,31 @@ bool has_reversed_depth(const View& view) noexcept {
   return slope > 0;
 }
 
+namespace {
+
+// How far one plane may lie before another within `extent`: of a linear function the farthest corner's.
+float most_between(const Plane& before, const Plane& behind, const Box& extent) {
+  const auto most = [](float a, float b, float low, float high) {
+    const double slope = double{a} - double{b};
+    return slope * double{slope >= 0 ? high : low};
+  };
+  return static_cast<float>(most(before.normal.x, behind.normal.x, extent.min.x, extent.max.x) +
+                            most(before.normal.y, behind.normal.y, extent.min.y, extent.max.y) +
+                            most(before.normal.z, behind.normal.z, extent.min.z, extent.max.z) +
+                            (double{before.distance} - double{behind.distance}));
+}
+
+}  // namespace
+
 shared::ViewData view_data(const View& view, const Box& extent) noexcept {
   shared::ViewData out{};
   out.world_to_clip = world_to_clip(view);
-  const Frustum frustum = make_frustum(view, extent);
+  const Frustum frustum = make_frustum(view);
   for (std::size_t i = 0; i < Frustum::sides; ++i) {
     const Plane& plane = frustum.planes[i];
     out.planes[i] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.distance};
   }
-  // The same planes, but for the push that the scene's size asks for.
-  const Frustum tight = make_frustum(view, {});
-  out.near_push = 1.01f * (frustum.planes[Frustum::front].distance - tight.planes[Frustum::front].distance);
+  out.near_push = 1.01f * most_between(frustum.planes[Frustum::front], geometry::near_plane(view), extent);
   const Projector projector = make_projector(view, extent);
   const Vec3 forward = view_direction(view);
   out.eye = {projector.eye.x, projector.eye.y, projector.eye.z, projector.orthographic ? 1.0f : 0.0f};

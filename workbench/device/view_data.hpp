@@ -7,7 +7,7 @@
 
 namespace sightline::device {
 
-/// `extent` bounds all coordinates, as in make_frustum. Contribution is off.
+/// `extent` bounds all coordinates, as in make_projector. Contribution is off.
 shared::ViewData view_data(const View& view, const Box& extent) noexcept;
 
 /// Whether the near plane lies at depth 1.

@@ -42,7 +42,7 @@ private:
 };
 
 /// The box that holds the scene's objects' volumes of either kind, and cells around them that are rounded
-/// outwards a little: what make_frustum wants as extent.
+/// outwards a little.
 Box volume_extent(const Scene& scene) noexcept;
 
 }  // namespace sightline::submission

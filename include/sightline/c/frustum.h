@@ -14,8 +14,7 @@ extern "C" {
 /** Six inward planes about `origin`, normal and distance each: left, right, bottom, top, near, far. */
 typedef struct sightline_frustum {
   float planes[6][4]; /**< their normals point inwards */
-  float extent[6];    /**< minimum and maximum of what they are rounded for; what reaches beyond is kept */
-  double origin[3];   /**< metres; planes and extent are about it */
+  double origin[3];   /**< metres; the planes are about it */
 } sightline_frustum;
 
 /** How a box lies to a frustum: surely outside, across its border or near it, wholly inside. */
@@ -24,11 +23,9 @@ enum { SIGHTLINE_OUTSIDE = 0, SIGHTLINE_CROSSING = 1, SIGHTLINE_INSIDE = 2 };
 /** Room that an output of flat culling needs beyond the input's count. */
 #define SIGHTLINE_CULL_PADDING 64
 
-/** The view's frustum, its planes moved outwards by the rounding error of a test within `extent`: minimum and
- * maximum, in metres about the view's origin. Give one that holds what will be tested, and no larger than
- * needed. Errors: BAD_ARGUMENT, BAD_VIEW; BAD_BOX for an extent that is not finite or turned inside out. */
-SIGHTLINE_API sightline_status sightline_frustum_make(const sightline_view* view, const float extent[6],
-                                                      sightline_frustum* frustum);
+/** The view's frustum, its planes moved outwards by the rounding error of a test: some 1e-6 of the distance
+ * from the eye and of the eye's from the view's origin. Errors: BAD_ARGUMENT, BAD_VIEW. */
+SIGHTLINE_API sightline_status sightline_frustum_make(const sightline_view* view, sightline_frustum* frustum);
 /** SIGHTLINE_OUTSIDE, which is certain, SIGHTLINE_CROSSING or SIGHTLINE_INSIDE of a box, minimum and maximum
  * in metres about the frustum's origin. SIGHTLINE_CROSSING for NULL. */
 SIGHTLINE_API int sightline_frustum_classify(const sightline_frustum* frustum, const float box[6]);
@@ -49,7 +46,8 @@ SIGHTLINE_API sightline_status sightline_cull_spheres(const sightline_frustum* f
 /** A view prepared for projecting many things. */
 typedef struct sightline_projector sightline_projector;
 
-/** `extent` as sightline_frustum_make() has it. Errors: BAD_ARGUMENT, BAD_VIEW, BAD_BOX. Allocates: itself.
+/** `extent`: minimum and maximum, in metres about the view's origin, of what will be projected. Errors:
+ * BAD_ARGUMENT, BAD_VIEW; BAD_BOX for an extent that is not finite or turned inside out. Allocates: itself.
  */
 SIGHTLINE_API sightline_status sightline_projector_create(const sightline_view* view, const float extent[6],
                                                           sightline_projector** projector);

@@ -28,7 +28,6 @@ DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : C
 
 void DrawCallMethod::rebuild() {
   FlatTriangles flat = flatten(scene_);
-  extent_ = extent(scene_);
   TriangleOrder order;
   if (plan_.strategy == Strategy::simple) {
     order.resize(flat.size());
@@ -101,7 +100,7 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
   frame.clear();
   ++frame_;
   touched_ = 0;
-  const Frustum frustum = make_frustum(view, extent_);
+  const Frustum frustum = make_frustum(view);
   const Facing facing(view, plan_.facing);
   frame.stats.objects = scene_.size();
   for (const Layer& layer : layers_) {

@@ -74,7 +74,6 @@ private:
   void submit(Frame& frame) const noexcept;
 
   DrawCallPlan plan_;
-  Box extent_;
   std::array<Layer, 2> layers_;
   BlendOrder blend_order_;
   TriangleLists lists_;

@@ -34,7 +34,6 @@ void DrawCallMethod::place(ObjectId object) {
     lists_.positions[first_corner_[object] + v] =
         transform_point(scene_.transform[object], scene_.positions[mesh.first_vertex + v]);
   }
-  extent_ = partition::united(extent_, scene_.bounds[object]);
 }
 
 void DrawCallMethod::add_mover(ObjectId object) {

@@ -21,7 +21,6 @@ public:
         regions_(scene),
         bounds_(submission::Volume::box),
         draw_list_(scene),
-        extent_(extent(scene)),
         mask_(scene.size()) {
     std::vector<ObjectId> order(scene.size());
     std::iota(order.begin(), order.end(), ObjectId{0});
@@ -31,7 +30,6 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::approximate; }
   void do_update(std::span<const ObjectId> objects) override {
     for (const ObjectId object : objects) bounds_.refresh(scene_, object);
-    extent_ = extent(scene_);
   }
 
   void cull(const View& view, Frame& frame) noexcept override {
@@ -42,7 +40,7 @@ public:
     region_ = region;
 
     frame.visible.resize(scene_.size() + kCullPadding);
-    const std::size_t in_view = bounds_.cull(make_frustum(view, extent_), 0, scene_.size(), frame.visible);
+    const std::size_t in_view = bounds_.cull(make_frustum(view), 0, scene_.size(), frame.visible);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < in_view; ++i) {
       const ObjectId id = frame.visible[i];
@@ -60,7 +58,6 @@ private:
   Regions regions_;
   submission::ObjectBounds bounds_;
   submission::DrawList draw_list_;
-  Box extent_;
   std::vector<std::uint8_t> mask_;  // of the region the eye was in last
   std::optional<std::uint32_t> region_;
 };

@@ -23,7 +23,7 @@ public:
   void cull(const View& view, Frame& frame) noexcept override {
     frame.clear();
     const partition::ObjectGrid& grid = objects_.grid;
-    const Frustum frustum = make_frustum(view, objects_.extent);
+    const Frustum frustum = make_frustum(view);
     for (std::uint32_t row = 0; row < grid.rows(); ++row) {
       for (std::uint32_t column = 0; column < grid.columns(); ++column) {
         const auto [begin, end] = grid.slots(row, column, column + 1);

@@ -27,7 +27,7 @@ GridObjects::GridObjects(const Scene& of, const Parameters& parameters)
 }
 
 void GridObjects::rebuild() {
-  extent = submission::volume_extent(scene);
+  const Box extent = submission::volume_extent(scene);
   std::vector<ObjectId> order(scene.size());
   std::iota(order.begin(), order.end(), ObjectId{0});
   bounds.assign(scene, order);

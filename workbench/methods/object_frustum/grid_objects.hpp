@@ -18,7 +18,6 @@ struct GridObjects {
   const Scene& scene;
   submission::ObjectBounds bounds;  ///< in grid order
   partition::ObjectGrid grid;
-  Box extent;
 
   GridObjects(const Scene& scene, const Parameters& parameters);
 

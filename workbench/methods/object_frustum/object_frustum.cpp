@@ -32,7 +32,7 @@ public:
   void cull(const View& view, Frame& frame) noexcept override {
     frame.clear();
     const partition::ObjectGrid& grid = objects_.grid;
-    const Frustum frustum = make_frustum(view, objects_.extent);
+    const Frustum frustum = make_frustum(view);
     runs_.clear();
     grid.classify(frustum, runs_);
 

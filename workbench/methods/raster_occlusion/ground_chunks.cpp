@@ -35,7 +35,7 @@ void GroundChunks::update(const Scene& scene, std::span<const ObjectId> moved) {
 }
 
 void GroundChunks::select(const View& view, const submission::Contribution& contribution) {
-  world::walk(map_, make_frustum(view, extent_), walk_);
+  world::walk(map_, make_frustum(view), walk_);
   if (contribution.test == submission::Contribution::Test::off) return;
   const Projector projector = make_projector(view, extent_);
   for (auto* list : {&walk_.inside, &walk_.crossing}) {

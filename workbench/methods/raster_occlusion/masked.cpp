@@ -210,10 +210,11 @@ private:
 
   void pick_occluders(const View& view, std::span<const ObjectId> candidates) {
     const Projector projector = make_projector(view, extent_);
-    // The frustum's planes are pushed outwards with the scene's size; here as far inwards, for what the true
-    // near plane cuts must not pass for whole.
-    Plane front = make_frustum(view, {}).planes[Frustum::front];
-    front.distance -= make_frustum(view, extent_).planes[Frustum::front].distance - front.distance;
+    // The frustum's planes are moved outwards by some 1e-6 of the distances from the eye and the origin; what
+    // the true near plane cuts must not pass for whole.
+    const Plane front = make_frustum(view).planes[Frustum::front];
+    const float eye_reach =
+        std::fabs(projector.eye.x) + std::fabs(projector.eye.y) + std::fabs(projector.eye.z);
     picked_.clear(), near_first_.clear(), drawn_spheres_.clear();
     for (const ObjectId o : candidates) {
       if (!occludes(o)) continue;
@@ -222,8 +223,9 @@ private:
       const Vec3 to{sphere.centre.x - projector.eye.x, sphere.centre.y - projector.eye.y,
                     sphere.centre.z - projector.eye.z};
       const float distance = to.x * to.x + to.y * to.y + to.z * to.z;
+      const float moved = 1e-5f * (eye_reach + std::fabs(to.x) + std::fabs(to.y) + std::fabs(to.z));
       const bool cut = signed_distance(front, sphere.centre.x, sphere.centre.y, sphere.centre.z) <=
-                       sphere.radius * (1 + 1e-4f);
+                       sphere.radius * (1 + 1e-4f) + moved;
       if (!cut && occluders_[occluder_of(o)].sphere) {
         if (area >= least_sphere_)
           near_first_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | o);

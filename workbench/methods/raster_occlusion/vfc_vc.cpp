@@ -48,7 +48,7 @@ public:
     stats.objects = stats.tested = stats.cull_vertices = scene_.size();
     frame.visible.resize(scene_.size() + kCullPadding);
 
-    const std::size_t in_view = bounds_.cull(make_frustum(view, extent_), 0, scene_.size(), frame.visible);
+    const std::size_t in_view = bounds_.cull(make_frustum(view), 0, scene_.size(), frame.visible);
     stats.culled_frustum = scene_.size() - in_view;
     const std::size_t kept =
         contribution_.filter(scene_, make_projector(view, extent_), std::span(frame.visible).first(in_view));
