@@ -16,6 +16,30 @@ struct sightline_occludees {
 using namespace sightline;
 using namespace sightline::c_api;
 
+namespace {
+
+// What boxes and spheres have in common: View is BoxView or SphereView, Given the C struct for it.
+template <class View, class Given>
+sightline_status draw(sightline_occlusion* occlusion, const Given* volumes,
+                      Status (OcclusionBuffer::*draw_them)(const View&) noexcept) {
+  if (!occlusion || !volumes) return refuse("occlusion: the occlusion or what to draw is NULL");
+  View view;
+  if (const Status ok = take(*volumes, view); !ok) return keep(ok);
+  return keep((occlusion->buffer.*draw_them)(view));
+}
+
+template <class View, class Given>
+sightline_status may_see(const sightline_occlusion* occlusion, const Given* volumes, uint8_t* visible,
+                         size_t capacity) {
+  if (!occlusion || !volumes || !can_hold(visible, capacity))
+    return refuse("occlusion: a pointer is NULL, or the capacity more than memory holds");
+  View view;
+  if (const Status ok = take(*volumes, view); !ok) return keep(ok);
+  return keep(occlusion->buffer.may_see(view, {visible, capacity}));
+}
+
+}  // namespace
+
 extern "C" {
 
 sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
@@ -98,18 +122,12 @@ sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion, 
 
 sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
                                                 const sightline_box_view* boxes) {
-  if (!occlusion || !boxes) return refuse("occlusion: the occlusion or the boxes are NULL");
-  BoxView given;
-  if (const Status ok = take(*boxes, given); !ok) return keep(ok);
-  return keep(occlusion->buffer.draw_boxes(given));
+  return draw<BoxView>(occlusion, boxes, &OcclusionBuffer::draw_boxes);
 }
 
 sightline_status sightline_occlusion_draw_spheres(sightline_occlusion* occlusion,
                                                   const sightline_sphere_view* spheres) {
-  if (!occlusion || !spheres) return refuse("occlusion: the occlusion or the spheres are NULL");
-  SphereView given;
-  if (const Status ok = take(*spheres, given); !ok) return keep(ok);
-  return keep(occlusion->buffer.draw_spheres(given));
+  return draw<SphereView>(occlusion, spheres, &OcclusionBuffer::draw_spheres);
 }
 
 sightline_status sightline_occlusion_draw_mesh(sightline_occlusion* occlusion,
@@ -124,21 +142,13 @@ sightline_status sightline_occlusion_draw_mesh(sightline_occlusion* occlusion,
 sightline_status sightline_occlusion_may_see_boxes(const sightline_occlusion* occlusion,
                                                    const sightline_box_view* boxes, uint8_t* visible,
                                                    size_t capacity) {
-  if (!occlusion || !boxes || !can_hold(visible, capacity))
-    return refuse("occlusion: a pointer is NULL, or the capacity more than memory holds");
-  BoxView given;
-  if (const Status ok = take(*boxes, given); !ok) return keep(ok);
-  return keep(occlusion->buffer.may_see(given, {visible, capacity}));
+  return may_see<BoxView>(occlusion, boxes, visible, capacity);
 }
 
 sightline_status sightline_occlusion_may_see_spheres(const sightline_occlusion* occlusion,
                                                      const sightline_sphere_view* spheres, uint8_t* visible,
                                                      size_t capacity) {
-  if (!occlusion || !spheres || !can_hold(visible, capacity))
-    return refuse("occlusion: a pointer is NULL, or the capacity more than memory holds");
-  SphereView given;
-  if (const Status ok = take(*spheres, given); !ok) return keep(ok);
-  return keep(occlusion->buffer.may_see(given, {visible, capacity}));
+  return may_see<SphereView>(occlusion, spheres, visible, capacity);
 }
 
 sightline_status sightline_occlusion_may_see_triangles(const sightline_occlusion* occlusion,

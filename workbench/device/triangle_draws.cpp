@@ -41,24 +41,35 @@ std::vector<shared::CornerData> corners(const TriangleGeometry& geometry, const 
   return out;
 }
 
+// Shaded; `tested`: by alpha and side, as materials ask.
+GraphicsPipeline opaque_pipeline(const Device& device, bool tested) {
+  if (!tested)
+    return {device,
+            {.vertex = kTriangleVert,
+             .fragment = kTriangleShadeFrag,
+             .input = Input::corner,
+             .colour = kColourFormat}};
+  return {device,
+          {.vertex = kTriangleTestedVert,
+           .fragment = kTriangleTestedFrag,
+           .input = Input::corner,
+           .colour = kColourFormat}};
+}
+
+GraphicsPipeline blended_pipeline(const Device& device) {
+  return {device,
+          {.vertex = kTriangleTestedVert,
+           .fragment = kTriangleTestedFrag,
+           .input = Input::corner,
+           .colour = kColourFormat,
+           .blend = true,
+           .depth_write = false}};
+}
+
 }  // namespace
 
-TriangleDraws::Pipelines::Pipelines(const Device& device)
-    : lit(device, {.vertex = kTriangleVert,
-                   .fragment = kTriangleShadeFrag,
-                   .input = Input::corner,
-                   .colour = kColourFormat}),
-      tested(device, {.vertex = kTriangleTestedVert,
-                      .fragment = kTriangleTestedFrag,
-                      .input = Input::corner,
-                      .colour = kColourFormat}),
-      blended(device, {.vertex = kTriangleTestedVert,
-                       .fragment = kTriangleTestedFrag,
-                       .input = Input::corner,
-                       .colour = kColourFormat,
-                       .blend = true,
-                       .depth_write = false}),
-      ids(device,
+TriangleDraws::ItemPipelines::ItemPipelines(const Device& device)
+    : ids(device,
           {.vertex = kTriangleVert, .fragment = kIdFrag, .input = Input::corner, .colour = kIdFormat}),
       seen(device, {.vertex = kTriangleVert,
                     .fragment = kTriangleSeenFrag,
@@ -71,16 +82,19 @@ TriangleDraws::TriangleDraws(Renderer& renderer, const TriangleGeometry& geometr
       corners_(upload(renderer.device(), corners(geometry, renderer.scene()), "triangle corners")),
       coordinates_(upload_bytes(renderer.device(), std::as_bytes(geometry.texture_coordinates),
                                 "triangle texture coordinates")),
-      indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")),
-      pipelines_(renderer.device()) {
+      indices_(upload_bytes(renderer.device(), std::as_bytes(geometry.indices), "triangle indices")) {
   const Scene& scene = renderer.scene();
+  bool tested = false;
   for (const Surface surface : scene.surface) {
     is_transparent_.push_back(surface == Surface::transparent);
-    tested_ = tested_ || surface == Surface::cut_out;
+    tested = tested || surface == Surface::cut_out;
   }
   sides_ = scene.sides.front();
-  if (std::ranges::any_of(scene.sides, [&](Sides sides) { return sides != sides_; })) tested_ = true;
-  if (tested_) sides_ = Sides::both;
+  if (std::ranges::any_of(scene.sides, [&](Sides sides) { return sides != sides_; })) tested = true;
+  if (tested) sides_ = Sides::both;
+  opaque_.emplace(opaque_pipeline(renderer.device(), tested));
+  if (std::ranges::find(is_transparent_, 1) != is_transparent_.end())
+    blended_.emplace(blended_pipeline(renderer.device()));
 }
 
 std::uint64_t TriangleDraws::bytes() const noexcept {
@@ -132,8 +146,8 @@ void TriangleDraws::draw(const Recorder& frame, std::span<const DrawCommand> dra
        .clear_depth = true,
        .clear_value = {std::bit_cast<std::uint32_t>(0.62f), std::bit_cast<std::uint32_t>(0.70f),
                        std::bit_cast<std::uint32_t>(0.80f), std::bit_cast<std::uint32_t>(1.0f)}});
-  submit(frame, tested_ ? pipelines_.tested : pipelines_.lit, draws.first(unblended), 0, submission, sides_);
-  submit(frame, pipelines_.blended, draws.subspan(unblended), unblended, submission);
+  submit(frame, *opaque_, draws.first(unblended), 0, submission, sides_);
+  if (blended_) submit(frame, *blended_, draws.subspan(unblended), unblended, submission);
   frame.end_rendering();
 }
 
@@ -141,6 +155,7 @@ TriangleDraws::Items TriangleDraws::items(const View& view, std::span<const Draw
                                           Submission submission, std::span<const DrawCommand> see_through) {
   if (submission == Submission::multi_draw) copy_commands(opaque);
   Device& device = renderer_.device();
+  if (!item_pipelines_) item_pipelines_.emplace(device);
   if (!ids_ || ids_->width() != view.width || ids_->height() != view.height) {
     ids_.reset();
     ids_.emplace(device, kIdFormat, view.width, view.height, "the item buffer");
@@ -153,11 +168,11 @@ TriangleDraws::Items TriangleDraws::items(const View& view, std::span<const Draw
                            .clear_colour = true,
                            .clear_depth = true,
                            .clear_value = {kNoObject, kNoObject, kNoObject, kNoObject}});
-    submit(frame, pipelines_.ids, opaque.first(unblended_count(opaque)), 0, submission);
+    submit(frame, item_pipelines_->ids, opaque.first(unblended_count(opaque)), 0, submission);
     frame.end_rendering();
     full_barrier(frame.commands);
     frame.begin_rendering({});
-    submit(frame, pipelines_.seen, see_through, 0, Submission::calls);
+    submit(frame, item_pipelines_->seen, see_through, 0, Submission::calls);
     frame.end_rendering();
   });
   return {ids_->read(), read_words(device, seen_, objects)};

@@ -31,9 +31,10 @@ public:
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
 private:
-  struct Pipelines {
-    GraphicsPipeline lit, tested, blended, ids, seen;
-    explicit Pipelines(const Device& device);
+  /// Of items() alone.
+  struct ItemPipelines {
+    GraphicsPipeline ids, seen;
+    explicit ItemPipelines(const Device& device);
   };
 
   void submit(const Recorder& frame, const GraphicsPipeline& pipeline, std::span<const DrawCommand> draws,
@@ -43,11 +44,11 @@ private:
 
   Renderer& renderer_;
   std::vector<std::uint8_t> is_transparent_;  ///< one an object
-  bool tested_ = false;        ///< cut-outs, or objects of which one has sides and another none
-  Sides sides_ = Sides::both;  ///< of all, else
+  Sides sides_ = Sides::both;  ///< of all; both where they differ, or some are cut out: tested a fragment
   std::span<const ObjectId> objects_;
   Buffer corners_, coordinates_, indices_, commands_, seen_;
-  Pipelines pipelines_;
+  std::optional<GraphicsPipeline> opaque_, blended_;
+  std::optional<ItemPipelines> item_pipelines_;
   std::optional<Image> ids_;
 };
 
