@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
-# test: the suite in a release build (g++), the same under AddressSanitizer and UndefinedBehaviorSanitizer (clang), what
-# uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
+# test: the suite in a release build (g++), what others feed under AddressSanitizer and UndefinedBehaviorSanitizer (clang),
+# what uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
 # clang-tidy's findings, what the documents show, the installed packages as their users see them, and what the library
-# answers on ARM and WebAssembly. --full adds what takes longer: its tests there, and its build on a bare Debian; and writes
-# build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
+# answers on ARM and WebAssembly. --full adds what takes longer: every test under the sanitizers, a thousand views of more
+# scenes, the library's tests on the ports, and its build on a bare Debian; and writes build/full/RESULTS.csv, a row a
+# line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -59,12 +60,12 @@ scripts/check-package.sh build/release
 
 stage "sanitizers"
 cmake --preset asan >/dev/null
-cmake --build --preset asan
-# The rest are large rather than tricky: minutes under the sanitizers, where smaller ones run the same code; --full runs
-# them there, too.
-large='AMillionObjects|(VerifyWorld|Conformance|Exactness).*(forest|irregular)|Conformance.*regular|RayScenes.LoseNo|'
-large+='FiveModels|DispatchesWider|OfOtherOptions|moving_on_the_cpu'
-ctest --preset asan -j"$(nproc)" -E "$large"
+cmake --build --preset asan --target tests_of_input fuzzers
+# Of these the ones that are large rather than tricky run there in --full, too: they take minutes, and smaller ones run
+# the same code.
+checked='^(geometry|frustum|rays|occlusion|world|c|pvs|scene|submission|partition|io|camera|methods)[.]'
+large='AMillionObjects|Conformance.*(forest|irregular|regular)|FiveModels'
+ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
 
 stage "threads"
 cmake --preset tsan >/dev/null
@@ -78,7 +79,7 @@ stage "ports"
 if [ -z "$full" ]; then
   scripts/check-ports.sh build/release
 else
-  scripts/run-full.sh "$start" "$large"
+  scripts/run-full.sh "$start"
 fi
 
 echo "All tests passed in $(elapsed "$start")."

@@ -57,7 +57,7 @@ workbench/methods: workbench/method.hpp
 # workbench takes through the public headers. What nobody needs any more must go from here.
 shared="
 library/geometry/linear.hpp: workbench/scene/scene.cpp workbench/methods/draw_calls/facing.cpp
-library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_reader.cpp
+library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_reader.cpp workbench/device/view_data.cpp
 library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
 library/geometry/radix_sort.hpp: workbench/submission/draw_list.cpp
 library/pvs/byte_reader.hpp: workbench/io/byte_reader.hpp
