@@ -1,12 +1,16 @@
 // sightline reproduce: a paper's tables, ours beside the published.
 #include <fmt/format.h>
 
+#include <array>
+#include <filesystem>
 #include <memory>
 
 #include "command.hpp"
 #include "device.hpp"
 #include "page.hpp"
 #include "reproduce_ray_pvs.hpp"
+#include "workbench/device/renderer.hpp"
+#include "workbench/io/text_file.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
@@ -18,7 +22,7 @@ namespace {
 
 struct ReproduceOptions {
   bool quick = false;
-  std::string report, device;
+  std::string report, device, json;
 };
 
 // Frame times of both methods, drawn by a device.
@@ -58,38 +62,25 @@ int run_object_frustum(const ReproduceOptions& options) {
   return Exit::done;
 }
 
+// What a reproduction gives, as text and where it was asked for; pictures lie in the report's folder already.
+void give(const reproduce::Reproduction& reproduction, const ReproduceOptions& options) {
+  fmt::print("{}", reproduce::text(reproduction));
+  if (!options.json.empty()) io::write_file(options.json, reproduce::json(reproduction));
+  if (!options.report.empty()) reproduce::write_reproduction(options.report, reproduction);
+}
+
 int run_vertex_chunk(const ReproduceOptions& options) {
   const auto device = open_device(options.device.empty() ? "any" : options.device);
   std::vector<reproduce::VertexChunkWorld> worlds;
   for (const char* name : {"regular", "irregular"}) {
-    worlds.push_back(reproduce::reproduce_vertex_chunk(
-        *device, name, {options.quick, !options.report.empty()}, progress(name)));
-    const reproduce::VertexChunkWorld& world = worlds.back();
-    fmt::print(
-        "Lee & Shin 2023, world {}: {} objects, {}x{} on {}; each cell is ours (ratio to vertex-chunk / "
-        "published ratio)\n\n",
-        name, world.near.rows.front().stats.objects, world.near.width, world.near.height, world.near.device);
-    for (const report::Table& table : world.tables) fmt::print("{}\n", report::render(table));
-    fmt::print("Figure 7\n{}\n", report::render(world.rising_fps));
-    for (const measure::Comparison* view : {&world.near, &world.far}) {
-      fmt::print("{} view\n{}\n", view->path, report::render(report::summary_table(*view)));
-    }
+    worlds.push_back(reproduce::measure_vertex_chunk(*device, name, {options.quick, !options.report.empty()},
+                                                     progress(name)));
+    for (const auto& picture : worlds.back().pictures)
+      device::save_png(picture.pixels, (std::filesystem::path(options.report) / picture.file).string());
   }
   expect_silence(device.get());
-  if (!options.report.empty()) reproduce::write_vertex_chunk_report(options.report, worlds);
+  give(reproduce::vertex_chunk_reproduction(worlds), options);
   return Exit::done;
-}
-
-void add_ray_pvs(CLI::App& command, int& exit) {
-  CLI::App& paper = *command.add_subcommand("ray-pvs", "Ye et al. 2023: toca, boca, iwcpa, bvha and saa");
-  auto quick = std::make_shared<bool>(false);
-  auto device = std::make_shared<std::string>("any"), report = std::make_shared<std::string>();
-  paper.add_flag("--quick", *quick, "fewer repeats");
-  paper.add_option("--device", *device, "the Vulkan device")->capture_default_str();
-  paper.add_option("--report", *report, "also write an HTML page with figure 12's pictures to DIR")
-      ->check(page_folder())
-      ->type_name("DIR");
-  on_run(paper, exit, [quick, device, report] { return run_ray_pvs(*quick, *device, *report); });
 }
 
 int run_draw_calls(const ReproduceOptions& options) {
@@ -117,46 +108,49 @@ int run_draw_calls(const ReproduceOptions& options) {
   return Exit::done;
 }
 
+int run_rays(const ReproduceOptions& options) {
+  return run_ray_pvs(options.quick, options.device.empty() ? "any" : options.device, options.report);
+}
+
+struct Paper {
+  const char *name, *what, *quick;
+  int (*run)(const ReproduceOptions&);
+};
+constexpr std::array kPapers{
+    Paper{"object-frustum", "Le Hoang Minh et al. 2022: grid-cell and object-frustum", "fewer repeats",
+          run_object_frustum},
+    Paper{"vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion",
+          "smaller pictures, fewer triangles, fewer repeats", run_vertex_chunk},
+    Paper{"ray-pvs", "Ye et al. 2023: toca, boca, iwcpa, bvha and saa", "fewer repeats", run_rays},
+    Paper{"draw-calls",
+          "Serpa, Serpa & Rodrigues: triangles x draw calls, and walks through three game levels",
+          "fewer views and repeats", run_draw_calls},
+};
+
 }  // namespace
 
 void add_reproduce(CLI::App& app, int& exit) {
   CLI::App& command =
-      *app.add_subcommand("reproduce", "Print a paper's tables, ours beside the published, as ratios");
+      *app.add_subcommand("reproduce", "Print a paper's tables, ours beside the published, and their ratios");
   command.require_subcommand(1);
-  CLI::App& paper =
-      *command.add_subcommand("object-frustum", "Le Hoang Minh et al. 2022: grid-cell and object-frustum");
-  auto options = std::make_shared<ReproduceOptions>();
-  paper.add_flag("--quick", options->quick, "fewer repeats");
-  paper.add_option("--report", options->report, "also write an HTML page to DIR")
-      ->check(page_folder())
-      ->type_name("DIR");
-  paper.add_option("--device", options->device, "where frames are drawn; cpu draws none (default: any)")
-      ->check(not_empty())
-      ->type_name("cpu|NAME");
-  on_run(paper, exit, [options] { return run_object_frustum(*options); });
-
-  CLI::App& chunks =
-      *command.add_subcommand("vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion");
-  chunks.add_flag("--quick", options->quick, "smaller pictures, fewer triangles, fewer repeats");
-  chunks.add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
-      ->check(page_folder())
-      ->type_name("DIR");
-  chunks
-      .add_option("--device", options->device, "a Vulkan device by index or part of its name (default: any)")
-      ->check(not_empty())
-      ->type_name("NAME");
-  on_run(chunks, exit, [options] { return run_vertex_chunk(*options); });
-  add_ray_pvs(command, exit);
-  CLI::App& calls = *command.add_subcommand(
-      "draw-calls", "Serpa, Serpa & Rodrigues: triangles x draw calls, and walks through three game levels");
-  calls.add_flag("--quick", options->quick, "fewer views and repeats");
-  calls.add_option("--report", options->report, "also write an HTML page to DIR")
-      ->check(page_folder())
-      ->type_name("DIR");
-  calls.add_option("--device", options->device, "Vulkan device: its number or part of its name")
-      ->check(not_empty())
-      ->type_name("NAME");
-  on_run(calls, exit, [options] { return run_draw_calls(*options); });
+  for (const Paper& paper : kPapers) {
+    CLI::App& of_paper = *command.add_subcommand(paper.name, paper.what);
+    auto options = std::make_shared<ReproduceOptions>();
+    of_paper.add_flag("--quick", options->quick, paper.quick);
+    of_paper.add_option("--json", options->json, "also write every table as JSON to FILE")
+        ->check(output_file())
+        ->type_name("FILE");
+    of_paper
+        .add_option("--report", options->report, "also write an HTML page with charts and pictures to DIR")
+        ->check(page_folder())
+        ->type_name("DIR");
+    of_paper
+        .add_option("--device", options->device,
+                    "a Vulkan device by index or part of its name (default: any)")
+        ->check(not_empty())
+        ->type_name("NAME");
+    on_run(of_paper, exit, [options, run = paper.run] { return run(*options); });
+  }
 }
 
 }  // namespace sightline::app

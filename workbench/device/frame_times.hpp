@@ -10,7 +10,11 @@ namespace sightline::device {
 class Device;
 class Renderer;
 
-enum class PassKind : std::uint8_t { cull, draw };
+enum class PassKind : std::uint8_t {
+  occluders,  ///< depth that nothing but culling reads
+  cull,
+  draw,
+};
 
 struct PassTime {
   std::string name;

@@ -11,7 +11,7 @@ namespace {
 
 /// What one subject's frames of one view took.
 struct Samples {
-  std::vector<double> cpu, gpu, frame;
+  std::vector<double> cpu, gpu, occluders, frame;
   double spent = 0;  ///< milliseconds, warm-up included
 };
 
@@ -62,6 +62,7 @@ private:
 void take(Samples& samples, const device::FrameTimes& times, bool drawn, device::Timed timed) {
   if (timed == device::Timed::passes) {
     samples.gpu.push_back(times.gpu_ms(device::PassKind::cull));
+    samples.occluders.push_back(times.gpu_ms(device::PassKind::occluders));
     return;
   }
   samples.cpu.push_back(times.record_ms);
@@ -105,7 +106,10 @@ Row row_of(Bench& bench, Subject& subject, const View& view, std::size_t index, 
   row.kept = subject.frame.visible.size();
   row.truly_visible = judged.truly_visible;
   row.cull = timing_of(samples.cpu);
-  if (bench.renderer()) row.cull_gpu = timing_of(samples.gpu), row.frame = timing_of(samples.frame);
+  if (bench.renderer()) {
+    row.cull_gpu = timing_of(samples.gpu), row.frame = timing_of(samples.frame);
+    row.occluders = timing_of(samples.occluders);
+  }
   row.lost_objects = judged.loss.lost.size();
   row.lost_pixels = judged.loss.lost_pixels;
   row.excess_objects = judged.loss.excess.size();

@@ -25,8 +25,8 @@ struct Row {
   std::uint64_t kept = 0;           ///< objects in the method's visible set
   std::uint64_t truly_visible = 0;  ///< objects with a pixel in the item buffer
   Timing cull;                      ///< on the CPU
-  std::optional<Timing> cull_gpu,
-      frame;  ///< where a device drew; frame: culling and drawing, from start to end
+  /// Where a device drew. Occluders: depth that culling alone reads; frame: all of it, from start to end.
+  std::optional<Timing> cull_gpu, occluders, frame;
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
 };
 

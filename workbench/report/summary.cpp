@@ -40,6 +40,7 @@ std::vector<MethodSummary> summarise(const measure::Comparison& comparison) {
       sum.truly_visible += static_cast<double>(row.truly_visible);
       sum.cpu_ms += row.cull.median;
       sum.gpu_ms += row.cull_gpu ? row.cull_gpu->median : 0;
+      sum.occluders_ms += row.occluders ? row.occluders->median : 0;
       sum.frame_ms += row.frame ? row.frame->median : 0;
       sum.lost_objects += row.lost_objects;
       sum.lost_pixels += row.lost_pixels;
@@ -49,8 +50,9 @@ std::vector<MethodSummary> summarise(const measure::Comparison& comparison) {
       medians.push_back(row.cull.median);
     }
     const double views = std::max(1.0, static_cast<double>(medians.size()));
-    for (double* mean : {&sum.kept, &sum.tested, &sum.cull_vertices, &sum.draw_calls, &sum.triangles,
-                         &sum.excess, &sum.truly_visible, &sum.cpu_ms, &sum.gpu_ms, &sum.frame_ms}) {
+    for (double* mean :
+         {&sum.kept, &sum.tested, &sum.cull_vertices, &sum.draw_calls, &sum.triangles, &sum.excess,
+          &sum.truly_visible, &sum.cpu_ms, &sum.gpu_ms, &sum.occluders_ms, &sum.frame_ms}) {
       *mean /= views;
     }
     sum.cull.median = measure::timing_of(medians).median;

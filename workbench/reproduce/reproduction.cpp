@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "workbench/reproduce/published.hpp"
@@ -12,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// More columns than these are told a line each: four figures of each would not fit side by side.
-constexpr std::size_t kMostSideBySide = 2;
+// More columns than these are told a line each: two figures of each would not fit side by side.
+constexpr std::size_t kMostSideBySide = 4;
 
 std::string of(const std::optional<double>& number) {
   return number ? report::format_ms(*number) : "–";
@@ -51,25 +53,31 @@ std::optional<double> quotient(const std::optional<double>& of, const std::optio
   return *of / *to;
 }
 
+std::string with_ratio(std::string figure, const std::optional<double>& ratio) {
+  return ratio ? fmt::format("{} ({:.2f})", figure, *ratio) : figure;
+}
+
+bool has_published(const PaperTable& table, std::size_t column) {
+  return std::ranges::any_of(table.rows,
+                             [&](const auto& row) { return !row.cells[column].published.empty(); });
+}
+
+// Ratios stand in brackets; a column of ours alone takes one.
 report::Table side_by_side(const PaperTable& table) {
   report::Table out;
   out.header = table.keys;
   out.text_columns = table.keys.size();
-  const bool ratios = table.base != PaperTable::Base::none;
-  for (const std::string& column : table.columns) {
-    out.header.push_back(column + ", published");
-    out.header.emplace_back("ours");
-    if (ratios) out.header.insert(out.header.end(), {"ratio, published", "ours"});
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (has_published(table, c)) out.header.push_back(table.columns[c] + ", published");
+    out.header.push_back(has_published(table, c) ? "ours" : table.columns[c]);
   }
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     std::vector<std::string> line = table.rows[r].keys;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = table.rows[r].cells[c];
-      line.push_back(published_text(cell));
-      line.push_back(ours_text(cell));
-      if (!ratios) continue;
-      line.push_back(ratio_text(table.published_ratio(r, c)));
-      line.push_back(ratio_text(table.our_ratio(r, c)));
+      if (has_published(table, c))
+        line.push_back(with_ratio(published_text(cell), table.published_ratio(r, c)));
+      line.push_back(with_ratio(ours_text(cell), table.our_ratio(r, c)));
     }
     out.rows.push_back(std::move(line));
   }

@@ -63,8 +63,8 @@ struct Reproduction {
   std::vector<PaperSection> sections;
 };
 
-/// For a terminal: a line a row, of each column what is published, what is ours, and both ratios; where there
-/// are many columns, a line each.
+/// A line a row, of each column what is published and ours, ratios in brackets; where there are many columns,
+/// a line each.
 report::Table text_table(const PaperTable& table);
 /// The whole as text.
 std::string text(const Reproduction& reproduction);

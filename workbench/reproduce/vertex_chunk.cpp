@@ -3,128 +3,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/worlds.hpp>
 
+#include "library/world/chunk_map.hpp"
 #include "workbench/reproduce/vertex_chunk_pictures.hpp"
 
 namespace sightline::reproduce {
 
 namespace {
 
-// The paper's methods with its contribution test where it has one; then ours.
-const std::vector<std::string> kMethods{"none", "vfc-vc?contribution=area",       "roc",
-                                        "hroc", "vertex-chunk?contribution=area", "resident-chunk",
-                                        "hiz"};
-constexpr std::size_t kNone = 0, kVfc = 1, kRoc = 2, kHroc = 3, kChunk = 4;
+// One contribution test for all that have one, as in the paper; then ours.
+constexpr std::array kCulling{"vfc-vc", "roc", "hroc", "vertex-chunk", "resident-chunk", "hiz"};
+constexpr std::size_t kChunk = 4;  // after none
 
-// vertex-chunk, hroc, roc, vfc-vc, none; 0 where the paper has no figure.
-struct Published {
-  std::array<double, 5> vertices, cull_ms, culled, fps, far_fps, near_fps;
-};
-constexpr Published kRegular{
-    {2338, 324864, 324864, 9024, 0}, {17, 29, 45, 21, 0}, {7938, 7938, 7938, 5849, 0},
-    {193, 172, 97, 78, 12},          {29, 21, 23, 31, 9}, {220, 192, 108, 88, 12}};
-constexpr Published kIrregular{
-    {2703, 229832, 324864, 9024, 0}, {21, 26, 55, 31, 0}, {8127, 8127, 8127, 6048, 0},
-    {203, 178, 91, 62, 11},          {37, 33, 31, 36, 9}, {223, 182, 92, 83, 12}};
-constexpr std::array<std::size_t, 5> kPaperOrder{kChunk, kHroc, kRoc, kVfc, kNone};
-
-double cull_ms(const report::MethodSummary& s) {
-  return s.cpu_ms + s.gpu_ms;
+std::vector<std::string> methods() {
+  std::vector<std::string> all{"none"};
+  for (const char* name : kCulling) all.push_back(std::string(name) + "?contribution=area");
+  return all;
 }
 
-// "12.3 (1.00 / 1.00)": ours, and both as ratios to vertex-chunk.
-template <class Value>
-std::vector<std::string> line(std::string name, const std::vector<report::MethodSummary>& ours,
-                              const std::array<double, 5>& published, Value value, bool whole) {
-  std::vector<std::string> cells{std::move(name)};
-  const double base = value(ours[kChunk]);
-  const auto ratio = [](double a, double b) {
-    return b > 0 ? fmt::format("{:.2f}", a / b) : std::string("–");
-  };
-  for (std::size_t i = 0; i < kPaperOrder.size(); ++i) {
-    const double v = value(ours[kPaperOrder[i]]);
-    cells.push_back(fmt::format("{} ({} / {})", whole ? report::format_count(v) : report::format_ms(v),
-                                ratio(v, base), published[i] > 0 ? ratio(published[i], published[0]) : "–"));
-  }
-  for (std::size_t m = kChunk + 1; m < ours.size(); ++m) {
-    const double v = value(ours[m]);
-    cells.push_back(
-        fmt::format("{} ({})", whole ? report::format_count(v) : report::format_ms(v), ratio(v, base)));
-  }
-  return cells;
+Vec3 turned(const Vec3& v, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {static_cast<float>(c * v.x - s * v.z), v.y, static_cast<float>(s * v.x + c * v.z)};
 }
 
-report::Table table_of(std::string title) {
-  return {
-      {std::move(title), "vertex-chunk", "hroc", "roc", "vfc-vc", "none", "resident-chunk", "hiz"}, {}, 1};
-}
-
-std::vector<report::Table> make_tables(const VertexChunkWorld& world, const Published& published) {
-  const std::vector<report::MethodSummary> near = report::summarise(world.near),
-                                           far = report::summarise(world.far),
-                                           rising = report::summarise(world.rising);
-  const double objects = static_cast<double>(world.near.rows.front().stats.objects);
-  const auto fps = [](const report::MethodSummary& s) { return s.fps(); };
-  std::vector<report::Table> out;
-  out.push_back(table_of("1: vertices into the culling pass"));
-  out.back().rows.push_back(line(
-      "near view", near, published.vertices, [](const auto& s) { return s.cull_vertices; }, true));
-  out.push_back(table_of("2: culling time, ms"));
-  out.back().rows.push_back(line("near view", near, published.cull_ms, cull_ms, false));
-  out.push_back(table_of("3: objects culled"));
-  out.back().rows.push_back(line(
-      "near view", near, published.culled, [&](const auto& s) { return objects - s.kept; }, true));
-  out.push_back(table_of("4: frames/s"));
-  out.back().rows.push_back(line("rising camera", rising, published.fps, fps, false));
-  out.push_back(table_of("5: frames/s by view"));
-  out.back().rows.push_back(line("far view", far, published.far_fps, fps, false));
-  out.back().rows.push_back(line("near view", near, published.near_fps, fps, false));
-  return out;
-}
-
-report::Table rising_table(const measure::Comparison& rising) {
-  report::Table table;
-  table.header = {"frames/s at scene number"};
-  for (const std::string& method : rising.methods) table.header.push_back(method.substr(0, method.find('?')));
-  for (std::size_t view = 0; view < rising.cameras.size(); ++view) {
-    std::vector<std::string> cells{fmt::format("{}", view + 1)};
-    for (const measure::Row& row : rising.rows) {
-      if (row.view == view)
-        cells.push_back(report::format_ms(row.frame->median > 0 ? 1000 / row.frame->median : 0));
-    }
-    table.rows.push_back(std::move(cells));
-  }
-  return table;
-}
-
-camera::CameraPath rising_path(const Scene& scene, std::size_t views) {
-  const Camera low = vertex_chunk_near(scene), high = vertex_chunk_far(scene);
-  camera::CameraPath path{"rising", {}};
-  for (std::size_t i = 0; i < views; ++i) {
-    const float t = static_cast<float>(i) / static_cast<float>(views - 1);
-    const auto mix = [&](const Vec3& a, const Vec3& b) {
-      return Vec3{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
-    };
-    Camera camera = low;
-    camera.eye = mix(low.eye, high.eye);
-    camera.forward = mix(low.forward, high.forward);
-    path.cameras.push_back(camera);
-  }
-  return path;
-}
-
-}  // namespace
-
-Scene vertex_chunk_scene(const std::string& world, bool quick) {
-  return generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3));
-}
-
-Camera vertex_chunk_near(const Scene& scene) {
+// Near the ground in the middle of the world, where nothing stands close by: a quarter of the world is in
+// view, as the paper's figures imply.
+Camera near_camera(const Scene& scene) {
   const Box all = extent(scene);
   Camera camera;
   camera.eye = {0.5f * (all.min.x + all.max.x), 1.6f, 0.5f * (all.min.z + all.max.z)};
@@ -147,7 +57,7 @@ Camera vertex_chunk_near(const Scene& scene) {
   return camera;
 }
 
-Camera vertex_chunk_far(const Scene& scene) {
+Camera far_camera(const Scene& scene) {
   Camera camera;
   for (const Viewpoint& viewpoint : scene.viewpoints) {
     if (viewpoint.name != "far") continue;
@@ -157,29 +67,95 @@ Camera vertex_chunk_far(const Scene& scene) {
   return camera;
 }
 
-VertexChunkWorld reproduce_vertex_chunk(device::Device& device, const std::string& name,
-                                        const VertexChunkOptions& options, const Progress& progress) {
+// Four headings from the near view's eye.
+camera::CameraPath near_path(const Scene& scene) {
+  camera::CameraPath path{"near", {}};
+  for (int k = 0; k < 4; ++k) {
+    Camera camera = near_camera(scene);
+    camera.forward = turned(camera.forward, k * std::numbers::pi / 2);
+    path.cameras.push_back(camera);
+  }
+  return path;
+}
+
+// The far view from four sides.
+camera::CameraPath far_path(const Scene& scene) {
+  const Box all = extent(scene);
+  const Vec3 middle{0.5f * (all.min.x + all.max.x), 0, 0.5f * (all.min.z + all.max.z)};
+  camera::CameraPath path{"far", {}};
+  for (int k = 0; k < 4; ++k) {
+    const double angle = k * std::numbers::pi / 2;
+    Camera camera = far_camera(scene);
+    const Vec3 eye = turned({camera.eye.x - middle.x, camera.eye.y, camera.eye.z - middle.z}, angle);
+    camera.eye = {eye.x + middle.x, eye.y, eye.z + middle.z};
+    camera.forward = turned(camera.forward, angle);
+    path.cameras.push_back(camera);
+  }
+  return path;
+}
+
+// Straight up from the near view to the far one's height, the head bowed as far as the far view's.
+camera::CameraPath rising_path(const Scene& scene, std::size_t views) {
+  const Camera low = near_camera(scene), high = far_camera(scene);
+  const double across = std::hypot(high.forward.x, high.forward.z);
+  const double bowed = std::atan2(-high.forward.y, across);
+  camera::CameraPath path{"rising", {}};
+  for (std::size_t i = 0; i < views; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(views - 1);
+    Camera camera = low;
+    camera.eye.y = static_cast<float>(low.eye.y + t * (high.eye.y - low.eye.y));
+    camera.forward.y = static_cast<float>(-std::tan(t * bowed) * std::hypot(low.forward.x, low.forward.z));
+    path.cameras.push_back(camera);
+  }
+  return path;
+}
+
+ChunkCounts count_chunks(const Scene& scene) {
+  constexpr std::uint32_t kDepth = 3;  // as the paper's
+  world::ChunkMap map({extent(scene), kDepth});
+  map.insert_all(scene.bounds);
+  ChunkCounts counts;
+  for (std::uint32_t chunk = 0; chunk < map.chunk_limit(); ++chunk) {
+    const std::size_t objects = map.chunk(chunk).count;
+    if (objects == 0) continue;
+    const bool shared = map.chunk_regions(chunk).shared();
+    ++counts.chunks, counts.shared_chunks += shared;
+    counts.objects += objects, counts.shared_objects += shared ? objects : 0;
+    counts.fullest = std::max(counts.fullest, objects);
+  }
+  return counts;
+}
+
+}  // namespace
+
+Scene vertex_chunk_scene(const std::string& world, bool quick) {
+  return generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3));
+}
+
+VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string& name,
+                                      const VertexChunkOptions& options, const Progress& progress) {
   Scene scene = vertex_chunk_scene(name, options.quick);
-  measure::Bench bench(scene, kMethods, &device);
+  measure::Bench bench(scene, methods(), &device);
   measure::MeasureOptions measure;
   measure.width = options.quick ? 640 : 1280;
   measure.height = options.quick ? 360 : 720;
   measure.repeats = measure.timed_passes = 15;
   VertexChunkWorld world;
   world.name = name;
-  world.near = measure::compare(bench, {"near", {vertex_chunk_near(scene)}}, measure);
+  world.chunks = count_chunks(scene);
+  const camera::CameraPath near = near_path(scene);
+  world.near = measure::compare(bench, {"near", {near.cameras.front()}}, measure);
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
   measure.warm_up = 2;
   measure.repeats = 1, measure.timed_passes = 0;
   world.rising = measure::compare(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
-  measure.repeats = options.quick ? 7 : 5, measure.timed_passes = 3;
-  world.far = measure::compare(bench, {"far", {vertex_chunk_far(scene)}}, measure);
-  world.tables = make_tables(world, name == "regular" ? kRegular : kIrregular);
-  world.rising_fps = rising_table(world.rising);
+  measure.repeats = options.quick ? 3 : 7;
+  world.near_views = measure::compare(bench, near, measure);
+  world.far_views = measure::compare(bench, far_path(scene), measure);
   if (options.pictures) {
-    const View near = or_throw(make_view(world.near.cameras.front(), measure.width, measure.height));
-    world.pictures = take_vertex_chunk_pictures(bench, name, near, bench.subjects()[kChunk]);
+    const View view = or_throw(make_view(near.cameras.front(), measure.width, measure.height));
+    world.pictures = take_vertex_chunk_pictures(bench, name, view, bench.subjects()[kChunk]);
   }
   return world;
 }

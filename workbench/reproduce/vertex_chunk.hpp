@@ -1,23 +1,29 @@
 // Lee & Shin 2023, section 4: tables 1 to 5 and figure 7, for both worlds.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "workbench/device/frame_times.hpp"
 #include "workbench/measure/compare.hpp"
-#include "workbench/report/summary.hpp"
+#include "workbench/reproduce/reproduction.hpp"
 
 namespace sightline::reproduce {
 
-/// One world's figures.
+/// How a world's objects fill its chunks (section 3.3).
+struct ChunkCounts {
+  std::size_t chunks = 0, shared_chunks = 0;    ///< that hold an object; of these, across regions' borders
+  std::size_t objects = 0, shared_objects = 0;  ///< all; those in shared chunks
+  std::size_t fullest = 0;                      ///< objects in the fullest
+};
+
+/// One world's figures. Empty comparisons have not been measured.
 struct VertexChunkWorld {
-  std::string name;                   ///< "regular" or "irregular"
-  measure::Comparison near, far;      ///< one view each
-  measure::Comparison rising;         ///< figure 7: the camera climbs from the near view to the far one
-  std::vector<report::Table> tables;  ///< 1 to 5: ours beside the published, as ratios to vertex-chunk
-  report::Table rising_fps;           ///< figure 7 as figures
+  std::string name;                           ///< "regular" or "irregular"
+  measure::Comparison near;                   ///< tables 1 to 4: one view near the ground
+  measure::Comparison near_views, far_views;  ///< table 5: four headings, and from four sides
+  measure::Comparison rising;                 ///< figure 7: the camera climbs straight up from the near view
+  ChunkCounts chunks;
   struct Picture {
     std::string file, caption;
     device::Picture pixels;
@@ -33,16 +39,12 @@ struct VertexChunkOptions {
 /// The world as the paper has it: 9,024 spheres. The paper does not say how many triangles a sphere has.
 Scene vertex_chunk_scene(const std::string& world, bool quick);
 
-/// Near the ground in the middle of the world, where nothing stands within half a metre: a quarter of the
-/// world is in view, as the paper's figures imply.
-Camera vertex_chunk_near(const Scene& scene);
-Camera vertex_chunk_far(const Scene& scene);
-
 /// Measures one world. Throws Error as Bench and compare() do.
-VertexChunkWorld reproduce_vertex_chunk(device::Device& device, const std::string& world,
-                                        const VertexChunkOptions& options, const Progress& progress = {});
+VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string& world,
+                                      const VertexChunkOptions& options, const Progress& progress = {});
 
-/// Writes index.html, with figure 7 as charts, and the pictures.
-void write_vertex_chunk_report(const std::string& folder, std::span<const VertexChunkWorld> worlds);
+/// The paper's tables, figure 7, and what its own figures contradict. Of what was not measured the paper's
+/// numbers alone.
+Reproduction vertex_chunk_reproduction(const std::vector<VertexChunkWorld>& worlds);
 
 }  // namespace sightline::reproduce

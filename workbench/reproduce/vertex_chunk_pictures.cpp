@@ -65,7 +65,8 @@ std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Bench
   const Scene& scene = bench.scene();
   for (int settle = 0; settle < 2; ++settle) bench.run(subject, near);
   std::vector<VertexChunkWorld::Picture> pictures;
-  pictures.push_back({world + "-near.png", "The near view.", bench.renderer()->picture()});
+  pictures.push_back(
+      {world + "-near.png", "The near view, as vertex-chunk draws it.", bench.renderer()->picture()});
   subject.method->read_back(subject.frame);
   std::vector<std::uint32_t> colours(scene.size(), kCulled);
   for (const ObjectId object : subject.frame.visible) colours[object] = kKept;
@@ -74,11 +75,12 @@ std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Bench
   bench.run(everything, aside);
   const device::Picture lit = bench.renderer()->picture();
   const oracle::ItemBuffer items = bench.oracle().look(aside);
-  pictures.push_back(
-      {world + "-kept.png",
-       "Seen from the side: orange is what vertex-chunk keeps of the near view, whose eye is in the "
-       "middle and looks to the right; grey is what it culls.",
-       painted(lit, items, colours)});
+  pictures.push_back({world + "-aside.png", "Seen from the side.", lit});
+  pictures.push_back({world + "-kept.png",
+                      "Seen from the side, before and after: orange is what vertex-chunk keeps of the near "
+                      "view, whose eye is in the "
+                      "middle and looks to the right; grey is what it culls.",
+                      painted(lit, items, colours)});
   pictures.push_back(
       {world + "-chunks.png",
        "The chunks, each in a colour; dark is what crosses a border between regions, in shared "

@@ -67,7 +67,7 @@ MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
 void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
   {
-    const auto pass = frame.pass("depth of last frame's visible objects", PassKind::draw);
+    const auto pass = frame.pass("depth of last frame's visible objects", PassKind::occluders);
     renderer_.draw_solid(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);
   }
   test(frame);
