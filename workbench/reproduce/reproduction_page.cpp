@@ -34,7 +34,7 @@ figure + figure, .wide + .wide, .wide + figure { margin-top: 1.25rem; }
 .slider input { width: 100%; margin: .6rem 0 0; }
 )";
 
-constexpr const char* kScript = R"(
+constexpr const char* kScript = R"js(
 Chart.defaults.animation = false;
 Chart.defaults.maintainAspectRatio = false;
 const dark = matchMedia("(prefers-color-scheme: dark)").matches;
@@ -76,7 +76,7 @@ for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
 }
 for (const slider of document.querySelectorAll(".slider input"))
   slider.addEventListener("input", () = > slider.parentElement.style.setProperty("--at", slider.value + "%"));
-)";
+)js";
 
 std::string as_list(const std::vector<std::string>& sentences) {
   std::string out = "<ul>";
@@ -85,13 +85,13 @@ std::string as_list(const std::vector<std::string>& sentences) {
 }
 
 std::string note_html(const std::string& note) {
-  return note.empty() ? "" : "<p class=\"note\">" + escape(note) + "</p>\n";
+  return note.empty() ? "" : fmt::format("<p class=\"note\">{}</p>\n", escape(note));
 }
 
 std::string joined(const std::vector<std::string>& keys) {
   std::string out;
   for (const std::string& key : keys) {
-    if (!key.empty()) out += (out.empty() ? "" : ", ") + key;
+    if (!key.empty()) out.append(out.empty() ? "" : ", ").append(key);
   }
   return out;
 }
@@ -111,8 +111,9 @@ std::string table_chart(const PaperTable& table, const std::string& id) {
       const auto theirs = ratios ? table.published_ratio(r, c) : number_of(cell.published);
       const auto mine = ratios ? table.our_ratio(r, c) : cell.ours;
       if (!theirs && !mine) continue;
-      made.labels.push_back(joined(table.rows[r].keys) +
-                            (table.columns.size() > 1 ? ": " + table.columns[c] : ""));
+      std::string label = joined(table.rows[r].keys);
+      if (table.columns.size() > 1) label.append(": ").append(table.columns[c]);
+      made.labels.push_back(std::move(label));
       published.values.push_back(theirs.value_or(0));
       ours.values.push_back(mine.value_or(0));
       for (const double value : {published.values.back(), ours.values.back()}) {

@@ -50,11 +50,11 @@ struct Column {
   double (*ours)(const report::MethodSummary&, double objects);
 };
 
-constexpr auto kVertices = [](const report::MethodSummary& s, double) { return s.cull_vertices; };
-constexpr auto kCulling = [](const report::MethodSummary& s, double) { return s.cpu_ms + s.gpu_ms; };
-constexpr auto kOccluders = [](const report::MethodSummary& s, double) { return s.occluders_ms; };
-constexpr auto kCulled = [](const report::MethodSummary& s, double objects) { return objects - s.kept; };
-constexpr auto kFrames = [](const report::MethodSummary& s, double) { return s.fps(); };
+constexpr auto kVerticesOf = [](const report::MethodSummary& s, double) { return s.cull_vertices; };
+constexpr auto kCullingOf = [](const report::MethodSummary& s, double) { return s.cpu_ms + s.gpu_ms; };
+constexpr auto kOccludersOf = [](const report::MethodSummary& s, double) { return s.occluders_ms; };
+constexpr auto kCulledOf = [](const report::MethodSummary& s, double objects) { return objects - s.kept; };
+constexpr auto kFramesOf = [](const report::MethodSummary& s, double) { return s.fps(); };
 
 std::string heading(std::string column) {
   std::ranges::replace(column, '_', ' ');
@@ -103,10 +103,10 @@ PaperTable table_of(std::string name, std::string title, std::vector<std::string
 }
 
 // A name that begins with '+' is a column of ours alone.
-constexpr std::array kCullingColumns{Column{"vertices", kVertices}, Column{"culling_ms", kCulling},
-                                     Column{"+occluders' depth ms", kOccluders}};
-constexpr std::array kDrawnColumns{Column{"culled_objects", kCulled}, Column{"fps", kFrames}};
-constexpr std::array kFrameColumns{Column{"fps", kFrames}};
+constexpr std::array kCullingColumns{Column{"vertices", kVerticesOf}, Column{"culling_ms", kCullingOf},
+                                     Column{"+occluders' depth ms", kOccludersOf}};
+constexpr std::array kDrawnColumns{Column{"culled_objects", kCulledOf}, Column{"fps", kFramesOf}};
+constexpr std::array kFrameColumns{Column{"fps", kFramesOf}};
 
 void add_world_tables(Reproduction& out, const std::vector<VertexChunkWorld>& worlds) {
   for (const bool drawn : {false, true}) {
@@ -255,15 +255,15 @@ std::vector<std::string> findings(const std::vector<VertexChunkWorld>& worlds) {
         "{}In the {} world vertex-chunk culls in {:.2f} of hroc's time and {:.2f} of roc's, with {:.2f} "
         "times hroc's and "
         "{:.2f} times roc's frames/s.",
-        came.empty() ? "" : " ", world.name, kCulling(*chunk, 0) / kCulling(*hroc, 0),
-        kCulling(*chunk, 0) / kCulling(*roc, 0), chunk->fps() / hroc->fps(), chunk->fps() / roc->fps());
+        came.empty() ? "" : " ", world.name, kCullingOf(*chunk, 0) / kCullingOf(*hroc, 0),
+        kCullingOf(*chunk, 0) / kCullingOf(*roc, 0), chunk->fps() / hroc->fps(), chunk->fps() / roc->fps());
     std::vector<const report::MethodSummary*> order;
     for (const char* name : kPapers) {
       if (const auto* s = find(ours, name)) order.push_back(s);
     }
     std::ranges::sort(order, std::ranges::greater{}, [](const auto* s) { return s->fps(); });
     std::string names;
-    for (const auto* s : order) names += (names.empty() ? "" : ", ") + without_parameters(s->method);
+    for (const auto* s : order) names.append(names.empty() ? "" : ", ").append(without_parameters(s->method));
     differ += fmt::format("{}By frames/s the order in the {} world is {}.", differ.empty() ? "" : " ",
                           world.name, names);
   }
