@@ -75,9 +75,11 @@ report::Table side_by_side(const PaperTable& table) {
     std::vector<std::string> line = table.rows[r].keys;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = table.rows[r].cells[c];
+      const bool ratios = table.has_ratios(c);
       if (has_published(table, c))
-        line.push_back(with_ratio(published_text(cell), table.published_ratio(r, c)));
-      line.push_back(with_ratio(ours_text(cell), table.our_ratio(r, c)));
+        line.push_back(ratios ? with_ratio(published_text(cell), table.published_ratio(r, c))
+                              : published_text(cell));
+      line.push_back(ratios ? with_ratio(ours_text(cell), table.our_ratio(r, c)) : ours_text(cell));
     }
     out.rows.push_back(std::move(line));
   }
@@ -157,6 +159,13 @@ std::optional<double> PaperTable::published_ratio(std::size_t row, std::size_t c
 std::optional<double> PaperTable::our_ratio(std::size_t row, std::size_t column) const {
   const Cell* to = base_of(*this, column);
   return to ? quotient(rows[row].cells[column].ours, to->ours) : std::nullopt;
+}
+
+bool PaperTable::has_ratios(std::size_t column) const {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (published_ratio(r, column).value_or(1) != 1 || our_ratio(r, column).value_or(1) != 1) return true;
+  }
+  return false;
 }
 
 report::Table text_table(const PaperTable& table) {

@@ -42,6 +42,8 @@ struct PaperTable {
   /// The cell's ratio to its base; nothing where either is no number, or the base 0.
   [[nodiscard]] std::optional<double> published_ratio(std::size_t row, std::size_t column) const;
   [[nodiscard]] std::optional<double> our_ratio(std::size_t row, std::size_t column) const;
+  /// Whether any of a column's ratios is other than 1.
+  [[nodiscard]] bool has_ratios(std::size_t column) const;
 };
 
 /// A figure of the paper, or a part of its text: tables of ours, pictures, charts; or why it cannot be had.

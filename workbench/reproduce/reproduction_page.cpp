@@ -11,6 +11,7 @@
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/assets.hpp"
 #include "workbench/report/page.hpp"
+#include "workbench/reproduce/page_files.hpp"
 #include "workbench/reproduce/published.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 
@@ -20,63 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using report::escape;
-
-constexpr const char* kStyle = R"(
-main > h3 { margin: 1.6rem 0 .6rem; }
-th, td { padding: .35rem .5rem; white-space: normal; } table { font-size: .84rem; }
-.verdict ul { margin: 0; padding: 0 0 0 1.1rem; } .verdict li + li { margin-top: .45rem; }
-details { margin: .75rem 0 0; } summary { cursor: pointer; color: var(--accent); }
-details .wide { margin-top: .6rem; }
-p.note { max-width: 78ch; color: var(--quiet); }
-figure + figure, .wide + .wide, .wide + figure { margin-top: 1.25rem; }
-.slider { position: relative; } .slider img { width: 100%; }
-.slider img + img { position: absolute; inset: 0; clip-path: inset(0 0 0 var(--at, 50%)); }
-.slider input { width: 100%; margin: .6rem 0 0; }
-)";
-
-constexpr const char* kScript = R"js(
-Chart.defaults.animation = false;
-Chart.defaults.maintainAspectRatio = false;
-const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-Chart.defaults.color = dark ? "#9aa3af" : "#5d6673";
-Chart.defaults.borderColor = dark ? "#2d333b" : "#e2e4e8";
-const palette = [
-  "#7f8791", "#1f77c8", "#e09a22", "#2a9d6e", "#b04fc0", "#d9553f", "#18a0b0", "#8a6d3b", "#c2557f",
-  "#5b6bd0"
-];
-for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
-  const chart = JSON.parse(canvas.dataset.chart);
-  new Chart(canvas, {
-    type : chart.bars ? "bar" : "line",
-    data : {
-      labels : chart.labels,
-      datasets : chart.series.map((s, i) = > ({
-                                             label : s.name,
-                                             data : s.values,
-                                             borderColor : palette[i % palette.length],
-                                             backgroundColor : palette[i % palette.length],
-                                             borderWidth : chart.bars ? 0 : 1.75,
-                                             pointRadius : chart.labels.length < 15 ? 3 : 0,
-                                             tension : 0.15
-                                           }))
-    },
-    options : {
-      interaction : {mode : "index", intersect : false},
-      plugins : {legend : {position : "bottom", labels : {boxWidth : 22, boxHeight : chart.bars ? 10 : 2}}},
-      scales : {
-        x : {title : {display : chart.x != = "", text : chart.x}, grid : {display : false}},
-        y : {
-          type : chart.logarithmic ? "logarithmic" : "linear",
-          beginAtZero : !chart.logarithmic,
-          title : {display : true, text : chart.y}
-        }
-      }
-    }
-  });
-}
-for (const slider of document.querySelectorAll(".slider input"))
-  slider.addEventListener("input", () = > slider.parentElement.style.setProperty("--at", slider.value + "%"));
-)js";
 
 std::string as_list(const std::vector<std::string>& sentences) {
   std::string out = "<ul>";
@@ -88,10 +32,14 @@ std::string note_html(const std::string& note) {
   return note.empty() ? "" : fmt::format("<p class=\"note\">{}</p>\n", escape(note));
 }
 
-std::string joined(const std::vector<std::string>& keys) {
+// What tells the row from the others.
+std::string row_label(const PaperTable& table, std::size_t row) {
   std::string out;
-  for (const std::string& key : keys) {
-    if (!key.empty()) out.append(out.empty() ? "" : ", ").append(key);
+  for (std::size_t k = 0; k < table.keys.size(); ++k) {
+    const std::string& key = table.rows[row].keys[k];
+    const bool alike =
+        std::ranges::all_of(table.rows, [&](const auto& other) { return other.keys[k] == key; });
+    if (!alike && !key.empty()) out.append(out.empty() ? "" : ", ").append(key);
   }
   return out;
 }
@@ -106,12 +54,13 @@ std::string table_chart(const PaperTable& table, const std::string& id) {
   double least = 1e300, most = 0;
   Series published{"published", {}}, ours{"ours", {}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (ratios && !table.has_ratios(c)) continue;
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       const Cell& cell = table.rows[r].cells[c];
       const auto theirs = ratios ? table.published_ratio(r, c) : number_of(cell.published);
       const auto mine = ratios ? table.our_ratio(r, c) : cell.ours;
       if (!theirs && !mine) continue;
-      std::string label = joined(table.rows[r].keys);
+      std::string label = row_label(table, r);
       if (table.columns.size() > 1) label.append(": ").append(table.columns[c]);
       made.labels.push_back(std::move(label));
       published.values.push_back(theirs.value_or(0));
@@ -163,7 +112,9 @@ void write_reproduction(const std::string& folder, const Reproduction& reproduct
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>{}</title>\n<style>",
       escape(reproduction.title));
-  page.append(report::kPageStyle).append(kStyle).append("</style></head>\n<body><main><header><h1>");
+  page.append(report::kPageStyle)
+      .append(kReproductionStyle)
+      .append("</style></head>\n<body><main><header><h1>");
   page += escape(reproduction.title) + "</h1><p>" + escape(reproduction.machine) +
           "</p></header>\n<section class=\"verdict\">" + as_list(reproduction.sentences) + "</section>\n";
   for (std::size_t t = 0; t < reproduction.tables.size(); ++t) {
@@ -179,7 +130,7 @@ void write_reproduction(const std::string& folder, const Reproduction& reproduct
       page += "<details><summary>The figures</summary>" + report::html(table) + "</details>\n";
   }
   page.append("</main>\n<script>").append(report::kChartScript).append("</script>\n<script>");
-  page.append(kScript).append("</script></body></html>\n");
+  page.append(kReproductionScript).append("</script></body></html>\n");
   io::write_file(std::filesystem::path(folder) / "index.html", page);
 }
 

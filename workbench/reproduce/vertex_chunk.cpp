@@ -67,10 +67,10 @@ Camera far_camera(const Scene& scene) {
   return camera;
 }
 
-// Four headings from the near view's eye.
-camera::CameraPath near_path(const Scene& scene) {
+// Headings a right angle apart from the near view's eye.
+camera::CameraPath near_path(const Scene& scene, int views) {
   camera::CameraPath path{"near", {}};
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < views; ++k) {
     Camera camera = near_camera(scene);
     camera.forward = turned(camera.forward, k * std::numbers::pi / 2);
     path.cameras.push_back(camera);
@@ -78,12 +78,12 @@ camera::CameraPath near_path(const Scene& scene) {
   return path;
 }
 
-// The far view from four sides.
-camera::CameraPath far_path(const Scene& scene) {
+// The far view from as many sides.
+camera::CameraPath far_path(const Scene& scene, int views) {
   const Box all = extent(scene);
   const Vec3 middle{0.5f * (all.min.x + all.max.x), 0, 0.5f * (all.min.z + all.max.z)};
   camera::CameraPath path{"far", {}};
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < views; ++k) {
     const double angle = k * std::numbers::pi / 2;
     Camera camera = far_camera(scene);
     const Vec3 eye = turned({camera.eye.x - middle.x, camera.eye.y, camera.eye.z - middle.z}, angle);
@@ -129,7 +129,7 @@ ChunkCounts count_chunks(const Scene& scene) {
 }  // namespace
 
 Scene vertex_chunk_scene(const std::string& world, bool quick) {
-  return generate_world(fmt::format("{}?detail={}", world, quick ? 2 : 3));
+  return generate_world(fmt::format("{}?detail={}", world, quick ? 1 : 3));
 }
 
 VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string& name,
@@ -143,7 +143,8 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   VertexChunkWorld world;
   world.name = name;
   world.chunks = count_chunks(scene);
-  const camera::CameraPath near = near_path(scene);
+  const int views = options.quick ? 2 : 4;
+  const camera::CameraPath near = near_path(scene, views);
   world.near = measure::compare(bench, {"near", {near.cameras.front()}}, measure);
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
@@ -152,7 +153,7 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   world.rising = measure::compare(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
   measure.repeats = options.quick ? 3 : 7;
   world.near_views = measure::compare(bench, near, measure);
-  world.far_views = measure::compare(bench, far_path(scene), measure);
+  world.far_views = measure::compare(bench, far_path(scene, views), measure);
   if (options.pictures) {
     const View view = or_throw(make_view(near.cameras.front(), measure.width, measure.height));
     world.pictures = take_vertex_chunk_pictures(bench, name, view, bench.subjects()[kChunk]);

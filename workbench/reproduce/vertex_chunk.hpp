@@ -21,7 +21,7 @@ struct ChunkCounts {
 struct VertexChunkWorld {
   std::string name;                           ///< "regular" or "irregular"
   measure::Comparison near;                   ///< tables 1 to 4: one view near the ground
-  measure::Comparison near_views, far_views;  ///< table 5: four headings, and from four sides
+  measure::Comparison near_views, far_views;  ///< table 5: by headings, and from several sides
   measure::Comparison rising;                 ///< figure 7: the camera climbs straight up from the near view
   ChunkCounts chunks;
   struct Picture {

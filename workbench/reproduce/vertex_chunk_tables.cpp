@@ -134,7 +134,7 @@ void add_view_tables(Reproduction& out, const std::vector<VertexChunkWorld>& wor
     for (const char* view : {"far", "near"}) {
       PaperTable table = table_of("table 5",
                                   fmt::format("the {} world, frames/s of the {} view, means over "
-                                              "four views",
+                                              "several views",
                                               name, view),
                                   {"world", "view", "method"}, kFrameColumns);
       Summaries ours;
