@@ -146,6 +146,8 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   const int views = options.quick ? 2 : 4;
   const camera::CameraPath near = near_path(scene, views);
   world.near = measure::compare(bench, {"near", {near.cameras.front()}}, measure);
+  const View view = or_throw(make_view(near.cameras.front(), measure.width, measure.height));
+  world.passes = bench.run(bench.subjects()[kChunk], view, device::Timed::passes).passes;
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.
   measure.warm_up = 2;
@@ -154,10 +156,8 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   measure.repeats = options.quick ? 3 : 7;
   world.near_views = measure::compare(bench, near, measure);
   world.far_views = measure::compare(bench, far_path(scene, views), measure);
-  if (options.pictures) {
-    const View view = or_throw(make_view(near.cameras.front(), measure.width, measure.height));
+  if (options.pictures)
     world.pictures = take_vertex_chunk_pictures(bench, name, view, bench.subjects()[kChunk]);
-  }
   return world;
 }
 

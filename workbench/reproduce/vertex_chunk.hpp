@@ -24,6 +24,7 @@ struct VertexChunkWorld {
   measure::Comparison near_views, far_views;  ///< table 5: by headings, and from several sides
   measure::Comparison rising;                 ///< figure 7: the camera climbs straight up from the near view
   ChunkCounts chunks;
+  std::vector<device::PassTime> passes;  ///< figure 2: a frame of vertex-chunk, in its order
   struct Picture {
     std::string file, caption;
     device::Picture pixels;

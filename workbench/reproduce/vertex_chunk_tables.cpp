@@ -171,6 +171,18 @@ PaperSection rising_section(const VertexChunkWorld& world) {
   return section;
 }
 
+PaperSection pass_section(const std::vector<VertexChunkWorld>& worlds) {
+  PaperSection section{"figure 2", "the steps of a frame of vertex-chunk, in its order", {}, {}, {}};
+  report::Table table{{"world", "step", "ms"}, {}, 2};
+  for (const VertexChunkWorld& world : worlds) {
+    for (const device::PassTime& pass : world.passes)
+      table.rows.push_back({world.name, pass.name, report::format_ms(pass.milliseconds)});
+  }
+  section.tables.push_back(std::move(table));
+  section.note = "Before the first step the CPU drops chunks and assembles the vertices of the rest.";
+  return section;
+}
+
 PaperSection chunk_section(const std::vector<VertexChunkWorld>& worlds) {
   PaperSection section{"section 3.3", "the chunks: how many, how full, how many shared", {}, {}, {}};
   report::Table table;
@@ -294,6 +306,7 @@ Reproduction vertex_chunk_reproduction(const std::vector<VertexChunkWorld>& worl
   out.sentences = findings(worlds);
   add_world_tables(out, worlds);
   add_view_tables(out, worlds);
+  out.sections.push_back(pass_section(worlds));
   for (const VertexChunkWorld& world : worlds) out.sections.push_back(rising_section(world));
   out.sections.push_back(chunk_section(worlds));
   out.sections.push_back(contradictions());
