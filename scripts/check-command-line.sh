@@ -89,6 +89,11 @@ refused "whole number" "$sightline" verify "$world" --seed 18446744073709551616
 refused "nonexistent" "$sightline" verify "$world" --device any --pvs nonexistent
 refused "it is empty" "$sightline" reproduce vertex-chunk --device ""
 refused "nowhere/x.json" "$sightline" compare "$world" --json nowhere/x.json
+refused "cannot be written" "$sightline" compare "$world" --json page
+refused "expected SCENE" "$sightline" verify
+refused "missing.json" "$sightline" verify --replay missing.json
+echo '{"scene": 1}' >no-replay.json
+refused '"scene" is missing' "$sightline" verify --replay no-replay.json
 refused "'nonesuch': no such command" "$sightline" reproduce nonesuch
 refused "an entry is empty" "$sightline" compare "$world" --methods none,,vfc-vc
 refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch

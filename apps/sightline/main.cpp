@@ -52,7 +52,7 @@ CLI::Validator output_file() {
   const auto refuse = [](const std::string& file) -> std::string {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     const bool open = access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0;
-    if (!file.empty() && open) return "";
+    if (!file.empty() && open && !std::filesystem::is_directory(file)) return "";
     return "'" + file + "' cannot be written, expected a file in a folder that is there and open to writing";
   };
   return {refuse, ""};

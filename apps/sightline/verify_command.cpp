@@ -1,6 +1,10 @@
 // sightline verify: random views against the item buffer.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -10,6 +14,7 @@
 #include "command.hpp"
 #include "device.hpp"
 #include "workbench/camera/random_views.hpp"
+#include "workbench/measure/replay.hpp"
 #include "workbench/report/evidence_table.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/report/verification_table.hpp"
@@ -19,7 +24,7 @@ namespace sightline::app {
 namespace {
 
 struct VerifyOptions {
-  std::string scene, methods, size = "160x120", device = "cpu", pvs;
+  std::string scene, methods, size = "160x120", device = "cpu", pvs, replay, replays = ".";
   std::size_t views = 100;
   std::uint64_t seed = 1;
   double moving = 0;
@@ -37,7 +42,50 @@ void print_level_evidence(Scene scene, std::uint64_t seed) {
                  report::evidence_table(measure::gather_level_evidence(scene, judge, kEyes, kSide, seed))));
 }
 
+// The first view in which each method broke its guarantee, as a file of its own.
+void write_replays(const measure::Verification& result, const VerifyOptions& options) {
+  for (const measure::MethodVerdict& m : result.methods) {
+    if (m.holds() || m.examples.empty()) continue;
+    std::string name = fmt::format("loss-{}-{}.json", m.method, m.examples.front().view);
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '.'; }, '-');
+    const std::string file = (std::filesystem::path(options.replays) / name).string();
+    try {
+      measure::save_replay(file, {options.scene, options.pvs, m.method, options.device, options.faces,
+                                  options.moving, m.examples.front()});
+      fmt::print("\nThis view again: sightline verify --replay {}\n", file);
+    } catch (const Error& error) {
+      fmt::print(stderr, "sightline: {}\n", error.what());  // what was found counts all the same
+    }
+  }
+}
+
+int run_replay(const VerifyOptions& options) {
+  Scene scene;
+  const measure::Replay replay = measure::load_replay(options.replay, [&](const measure::Replay& found) {
+    scene = load_scene(found.scene);
+    set_raster_state(scene, found.raster_state);
+    attach_pvs(scene, found.pvs);
+    return scene.origin;
+  });
+  const auto device = open_device_or_cpu(replay.device);
+  const std::array methods{replay.method};
+  measure::Bench bench(scene, methods, device.get());
+  const measure::MethodVerdict now = measure::look_again(bench, replay);
+  expect_silence(device.get());
+  if (now.examples.empty() && now.holds()) {
+    fmt::print("{} loses nothing in this view any more; object {} and {} pixels were lost.\n", now.method,
+               replay.lost.object, replay.lost.pixels);
+    return Exit::done;
+  }
+  for (const measure::LostObject& lost : now.examples) fmt::print("{}\n", measure::describe(now, lost));
+  if (now.different_pixels > 0) fmt::print("{}: {} pixels differ\n", now.method, now.different_pixels);
+  return now.holds() ? Exit::done : Exit::check_failed;
+}
+
 int run_verify(const VerifyOptions& options) {
+  if (!options.replay.empty()) return run_replay(options);
+  if (options.scene.empty()) throw Error("verify: expected SCENE, or --replay FILE");
   const auto [width, height] = parse_size(options.size);
   const auto device = open_device_or_cpu(options.device);
   Scene scene = load_scene(options.scene);
@@ -63,6 +111,7 @@ int run_verify(const VerifyOptions& options) {
     for (const measure::LostObject& lost : m.examples)
       fmt::print("{}{}\n", std::exchange(separator, ""), measure::describe(m, lost));
   }
+  write_replays(result, options);
   if (scene.level && !device) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
 }
@@ -73,7 +122,19 @@ void add_verify(CLI::App& app, int& exit) {
   CLI::App& command = *app.add_subcommand(
       "verify", "Prove methods against the item buffer on random views; exit 1 if a guarantee is broken");
   auto options = std::make_shared<VerifyOptions>();
-  command.add_option("SCENE", options->scene, kSceneHelp)->required();
+  CLI::Option* scene = command.add_option("SCENE", options->scene, kSceneHelp);
+  command
+      .add_option("--replay", options->replay,
+                  "look at one view again, which a verify that lost wrote to FILE")
+      ->excludes(scene)
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command
+      .add_option("--replays", options->replays,
+                  "where views in which a guarantee broke are written for --replay")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR")
+      ->capture_default_str();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
       ->type_name("FILE");
   command

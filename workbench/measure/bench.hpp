@@ -29,7 +29,9 @@ public:
   ~Bench();
 
   [[nodiscard]] Scene& scene() noexcept { return scene_; }
+  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   [[nodiscard]] std::span<Subject> subjects() noexcept { return subjects_; }
+  [[nodiscard]] std::span<const Subject> subjects() const noexcept { return subjects_; }
   [[nodiscard]] oracle::Oracle& oracle() noexcept { return *oracle_; }
   /// Null on the CPU.
   [[nodiscard]] device::Renderer* renderer() noexcept { return renderer_.get(); }

@@ -18,7 +18,8 @@ std::size_t examples_wanted(Guarantee guarantee) {
   return guarantee == Guarantee::approximate ? 1 : 10;
 }
 
-/// One look of one subject, added to its verdict.
+}  // namespace
+
 void examine(Bench& bench, Subject& subject, const View& view, const LostObject& where,
              MethodVerdict& verdict) {
   bench.run(subject, view);
@@ -37,14 +38,7 @@ void examine(Bench& bench, Subject& subject, const View& view, const LostObject&
   verdict.examples.back().pixels = judged.loss.lost_pixels;
 }
 
-}  // namespace
-
-bool Verification::passed() const noexcept {
-  return std::all_of(methods.begin(), methods.end(), [](const MethodVerdict& m) { return m.holds(); });
-}
-
-Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
-                    double moving, const Progress& progress) {
+Verification start_verification(const Bench& bench) {
   Verification result;
   result.scene = bench.scene().name;
   result.raster_state = bench.scene().raster_state;
@@ -55,14 +49,28 @@ Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t
     verdict.guarantee = subject.method->guarantee();
     result.methods.push_back(std::move(verdict));
   }
+  return result;
+}
+
+bool Verification::passed() const noexcept {
+  return std::all_of(methods.begin(), methods.end(), [](const MethodVerdict& m) { return m.holds(); });
+}
+
+Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
+                    double moving, const Progress& progress) {
+  Verification result = start_verification(bench);
   const int looks = bench.renderer() ? 2 : 1;
   Mover mover(bench.scene(), moving, 1);
   for (std::size_t v = 0; v < cameras.size(); ++v) {
     const View view = or_throw(make_view(cameras[v], width, height));
     for (int look = 0; look < looks; ++look) {
       if (moving > 0) bench.update(mover.move());
-      LostObject where{v, cameras[v], width, height};
+      LostObject where;
+      where.view = v, where.camera = cameras[v], where.width = width, where.height = height;
       where.origin = bench.scene().origin;
+      where.moves = moving > 0 ? v * static_cast<std::size_t>(looks) + static_cast<std::size_t>(look) + 1 : 0;
+      if (bench.renderer() && v + static_cast<std::size_t>(look) > 0)
+        where.before = cameras[look > 0 ? v : v - 1];
       for (std::size_t m = 0; m < result.methods.size(); ++m)
         examine(bench, bench.subjects()[m], view, where, result.methods[m]);
     }

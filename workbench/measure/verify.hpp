@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,8 +20,10 @@ struct LostObject {
   Camera camera;
   std::uint32_t width = 0, height = 0;
   ObjectId object = kNoObject;
-  std::uint64_t pixels = 0;  ///< lost in this view, over all its lost objects
-  WorldPoint origin{};       ///< what the camera counts from
+  std::uint64_t pixels = 0;      ///< lost in this view, over all its lost objects
+  WorldPoint origin{};           ///< what the camera counts from
+  std::size_t moves = 0;         ///< how often objects had moved by then
+  std::optional<Camera> before;  ///< on a device: what was drawn just before
 };
 
 struct MethodVerdict {
@@ -56,6 +59,11 @@ struct Verification {
 /// for a camera that makes no view, and for a method that names an object twice or one that does not exist.
 Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t width, std::uint32_t height,
                     double moving = 0, const Progress& progress = {});
+
+/// A verification of no views yet, and one look of one subject, which is added to its verdict.
+Verification start_verification(const Bench& bench);
+void examine(Bench& bench, Subject& subject, const View& view, const LostObject& where,
+             MethodVerdict& verdict);
 
 /// A sentence that names method, view and object, with every number of the view.
 std::string describe(const MethodVerdict& verdict, const LostObject& lost);

@@ -1,0 +1,109 @@
+#include "workbench/measure/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include <sightline/workbench/error.hpp>
+
+#include "workbench/camera/path_file.hpp"
+#include "workbench/io/text_file.hpp"
+#include "workbench/measure/mover.hpp"
+
+namespace sightline::measure {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::size_t kMostMoves = 1'000'000;
+constexpr std::array kFaces{"materials", "both", "front"};  // in the order of RasterState
+
+// A member of the type asked for; says which one is missing or another.
+template <class Value>
+Value member(const Json& document, const char* name, const std::string& file) {
+  const auto found = document.find(name);
+  try {
+    if (found != document.end()) return found->template get<Value>();
+  } catch (const Json::exception&) {
+  }
+  throw Error(fmt::format("{}: \"{}\" is missing or of another type than a replay has", file, name));
+}
+
+std::size_t raster_state_of(const std::string& name, const std::string& file) {
+  for (std::size_t i = 0; i < kFaces.size(); ++i) {
+    if (name == kFaces[i]) return i;
+  }
+  throw Error(fmt::format("{}: \"faces\" is \"{}\", expected materials, both or front", file, name));
+}
+
+}  // namespace
+
+void save_replay(const std::filesystem::path& file, const Replay& replay) {
+  const LostObject& lost = replay.lost;
+  Json document{{"scene", replay.scene},
+                {"pvs", replay.pvs},
+                {"method", replay.method},
+                {"device", replay.device},
+                {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
+                {"moving", replay.moving},
+                {"moves", lost.moves},
+                {"size", {lost.width, lost.height}},
+                {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
+                {"views", Json::array()}};
+  if (lost.before) document["views"].push_back(camera::camera_json(*lost.before, lost.origin));
+  document["views"].push_back(camera::camera_json(lost.camera, lost.origin));
+  io::write_file(file, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Replay load_replay(const std::filesystem::path& path,
+                   const std::function<WorldPoint(const Replay&)>& origin_of) {
+  const std::string file = path.string(), text = io::read_file(path, kMostBytes);
+  const Json document = Json::parse(text, nullptr, false);
+  if (!document.is_object()) throw Error(file + ": expected a replay, which is a JSON object");
+  Replay replay;
+  replay.scene = member<std::string>(document, "scene", file);
+  replay.pvs = member<std::string>(document, "pvs", file);
+  replay.method = member<std::string>(document, "method", file);
+  replay.device = member<std::string>(document, "device", file);
+  replay.raster_state =
+      static_cast<RasterState>(raster_state_of(member<std::string>(document, "faces", file), file));
+  replay.moving = member<double>(document, "moving", file);
+  LostObject& lost = replay.lost;
+  lost.moves = member<std::size_t>(document, "moves", file);
+  if (!(replay.moving >= 0 && replay.moving <= 1) || lost.moves > kMostMoves)
+    throw Error(fmt::format("{}: expected \"moving\" from 0 to 1 and at most {} moves", file, kMostMoves));
+  const auto size = member<std::array<std::uint32_t, 2>>(document, "size", file);
+  lost.width = size[0], lost.height = size[1];
+  const Json what = member<Json>(document, "lost", file);
+  lost.object = member<ObjectId>(what, "object", file);
+  lost.pixels = member<std::uint64_t>(what, "pixels", file);
+  lost.origin = origin_of(replay);
+  const Json views{{"views", member<Json>(document, "views", file)}};
+  const std::vector<Camera> cameras = camera::parse_path(file, views.dump(), lost.origin);
+  if (cameras.size() > 2) throw Error(file + ": expected one view, or two of which the last one lost");
+  lost.camera = cameras.back();
+  if (cameras.size() == 2) lost.before = cameras.front();
+  return replay;
+}
+
+MethodVerdict look_again(Bench& bench, const Replay& replay) {
+  const LostObject& lost = replay.lost;
+  Mover mover(bench.scene(), replay.moving, 1);
+  const auto move = [&] {
+    if (replay.moving > 0) bench.update(mover.move());
+  };
+  for (std::size_t i = 1; i < lost.moves; ++i) move();
+  if (lost.before)
+    bench.run(bench.subjects().front(), or_throw(make_view(*lost.before, lost.width, lost.height)));
+  if (lost.moves > 0) move();
+  Verification seen = start_verification(bench);
+  examine(bench, bench.subjects().front(), or_throw(make_view(lost.camera, lost.width, lost.height)), lost,
+          seen.methods.front());
+  return seen.methods.front();
+}
+
+}  // namespace sightline::measure
