@@ -15,6 +15,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "command.hpp"
+#include "workbench/report/page_folder.hpp"
 
 namespace sightline::app {
 
@@ -40,10 +41,12 @@ CLI::Validator whole_number() {
 
 CLI::Validator page_folder() {
   const auto refuse = [](const std::string& folder) -> std::string {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (!failed && access(folder.c_str(), W_OK | X_OK) == 0) return "";
-    return "'" + folder + "' cannot be written, expected a folder or a place for one";
+    try {
+      const report::PageFolder trial(folder);
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
   };
   return {refuse, ""};
 }

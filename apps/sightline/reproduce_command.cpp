@@ -11,6 +11,7 @@
 #include "reproduce_ray_pvs.hpp"
 #include "workbench/device/renderer.hpp"
 #include "workbench/io/text_file.hpp"
+#include "workbench/report/page_folder.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
@@ -149,7 +150,15 @@ void add_reproduce(CLI::App& app, int& exit) {
                     "a Vulkan device by index or part of its name (default: any)")
         ->check(not_empty())
         ->type_name("NAME");
-    on_run(of_paper, exit, [options, run = paper.run] { return run(*options); });
+    on_run(of_paper, exit, [options, run = paper.run] {
+      if (options->report.empty()) return run(*options);
+      report::PageFolder folder(options->report);
+      ReproduceOptions here = *options;
+      here.report = folder.path().string();
+      const int code = run(here);
+      folder.commit();
+      return code;
+    });
   }
 }
 

@@ -101,10 +101,33 @@ TEST(Report, FullDiskOrAFileInTheWayIsAnError) {
     const test::FullDisk full(2000);
     EXPECT_THROW(write_report(folder / "full", m.comparison, m.scene, m.snapshot), Error);
   }
-  EXPECT_FALSE(std::filesystem::exists(folder / "full/index.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "full"));
   io::write_file(folder / "file", "in the way");
   EXPECT_THROW(write_report(folder / "file", m.comparison, m.scene, m.snapshot), Error);
   EXPECT_THROW(write_report(folder / "file/below", m.comparison, m.scene, m.snapshot), Error);
+}
+
+// A report of fewer methods leaves nothing of one of more; and what is no report of ours is left alone.
+TEST(Report, ReplacesAnEarlierOneWholeAndNothingElse) {
+  Material m;
+  const TemporaryFolder folder;
+  write_report(folder / "page", m.comparison, m.scene, m.snapshot);
+  const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder / "page"), {}); };
+  const auto before = files();
+  {
+    const test::FullDisk full(2000);
+    EXPECT_THROW(write_report(folder / "page", m.comparison, m.scene, m.snapshot), Error);
+  }
+  EXPECT_EQ(files(), before) << "the earlier report stays whole";
+  m.snapshot.methods.pop_back();
+  write_report(folder / "page", m.comparison, m.scene, m.snapshot);
+  EXPECT_EQ(files(), before - 1);
+  std::filesystem::create_directory(folder / "mine");
+  io::write_file(folder / "mine/letter", "dear");
+  EXPECT_THROW(write_report(folder / "mine", m.comparison, m.scene, m.snapshot), Error);
+  EXPECT_EQ(io::read_file(folder / "mine/letter", 100), "dear");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2)
+      << "nothing unfinished stays";
 }
 
 TEST(Snapshot, OutcomesAddUpAndAgreeWithTheTruth) {

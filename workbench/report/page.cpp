@@ -9,6 +9,7 @@
 #include <sightline/version.hpp>
 
 #include "workbench/report/assets.hpp"
+#include "workbench/report/page_folder.hpp"
 #include "workbench/report/pictures.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/report/table.hpp"
@@ -188,10 +189,10 @@ std::string escape(std::string_view text) {
 std::string make_page(const PageContent& content) {
   const measure::Comparison& comparison = content.comparison;
   const std::string scene = escape(comparison.scene);
-  std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      scene + " – Sightline</title>\n<style>\n";
+  std::string page = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">" +
+                     std::string(kPageMark) +
+                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+                     scene + " – Sightline</title>\n<style>\n";
   page.append(kPageStyle).append("</style></head>\n<body><main>\n");
   page += "<header><h1>What not to draw of " + scene + "</h1><p>Sightline " + escape(kVersion) + " on " +
           machine_html(comparison.machine) +

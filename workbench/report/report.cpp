@@ -1,12 +1,10 @@
 #include "workbench/report/report.hpp"
 
 #include <algorithm>
-#include <system_error>
-
-#include <sightline/workbench/error.hpp>
 
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/page.hpp"
+#include "workbench/report/page_folder.hpp"
 #include "workbench/report/pictures.hpp"
 
 namespace sightline::report {
@@ -19,14 +17,10 @@ std::size_t picture_view(const measure::Comparison& comparison) {
   return best == comparison.rows.end() ? 0 : best->view;
 }
 
-void write_report(const std::filesystem::path& folder, const measure::Comparison& comparison,
+void write_report(const std::filesystem::path& target, const measure::Comparison& comparison,
                   const Scene& scene, const Snapshot& snapshot) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed || !std::filesystem::is_directory(folder)) {
-    throw Error(folder.string() + ": no folder for the report could be made there" +
-                (failed ? ": " + failed.message() : std::string()));
-  }
+  PageFolder made(target);
+  const std::filesystem::path& folder = made.path();
   constexpr std::uint32_t kTopViewWidth = 900;
   report::PageContent content{comparison, scene, snapshot, "item-buffer.png", {}};
   report::draw_item_buffer(snapshot.view, snapshot.truth).write_png(folder / content.item_buffer);
@@ -35,8 +29,8 @@ void write_report(const std::filesystem::path& folder, const measure::Comparison
     io::write_file(folder / content.top_views.back(),
                    report::draw_top_view(scene, snapshot, snapshot.methods[m], kTopViewWidth));
   }
-  // The page comes last: where it stands, its pictures do.
   io::write_file(folder / "index.html", report::make_page(content));
+  made.commit();
 }
 
 }  // namespace sightline::report

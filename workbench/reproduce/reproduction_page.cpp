@@ -11,6 +11,7 @@
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/assets.hpp"
 #include "workbench/report/page.hpp"
+#include "workbench/report/page_folder.hpp"
 #include "workbench/reproduce/page_files.hpp"
 #include "workbench/reproduce/published.hpp"
 #include "workbench/reproduce/reproduction.hpp"
@@ -109,9 +110,9 @@ void write_reproduction(const std::string& folder, const Reproduction& reproduct
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(fmt::format("{}: the folder cannot be made", folder));
   std::string page = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">{}<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>{}</title>\n<style>",
-      escape(reproduction.title));
+      report::kPageMark, escape(reproduction.title));
   page.append(report::kPageStyle)
       .append(kReproductionStyle)
       .append("</style></head>\n<body><main><header><h1>");

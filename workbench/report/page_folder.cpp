@@ -1,0 +1,67 @@
+#include "workbench/report/page_folder.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include <sightline/workbench/error.hpp>
+
+namespace sightline::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_page(const fs::path& folder) {
+  std::ifstream page(folder / "index.html", std::ios::binary);
+  std::string head(1024, '\0');
+  page.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find(kPageMark) != std::string::npos;
+}
+
+}  // namespace
+
+PageFolder::PageFolder(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {
+  if (!target_.has_filename()) target_ = target_.parent_path();  // "DIR/"
+  std::error_code failed;
+  const auto refuse = [&](const char* expected) {
+    throw Error(fmt::format("{}: cannot be written, expected {}", target.string(), expected));
+  };
+  if (fs::exists(target_, failed)) {
+    if (!fs::is_directory(target_, failed)) refuse("a folder");
+    if (!fs::is_empty(target_, failed) && !is_page(target_))
+      refuse("an empty folder, a new one, or an earlier page of ours to replace");
+    if (failed || access(target_.c_str(), W_OK | X_OK) != 0) refuse("a folder open to writing");
+  } else {
+    made_target_ = fs::create_directories(target_, failed);
+    if (failed) refuse("a folder or a place for one");
+  }
+  partial_ = target_.parent_path() / fmt::format(".{}.{}", target_.filename().string(), getpid());
+  fs::create_directory(partial_, failed);
+  if (failed) refuse("a place beside it for what is not finished");
+}
+
+PageFolder::~PageFolder() {
+  std::error_code ignored;
+  fs::remove_all(partial_, ignored);
+  if (made_target_) fs::remove(target_, ignored);  // only where it is empty
+}
+
+void PageFolder::commit() {
+  std::error_code failed;
+  for (const fs::directory_entry& old : fs::directory_iterator(target_)) fs::remove_all(old.path(), failed);
+  const auto move = [&](const fs::path& file) {
+    if (!failed) fs::rename(file, target_ / file.filename(), failed);
+  };
+  // The page comes last: where it stands, its pictures do.
+  for (const fs::directory_entry& file : fs::directory_iterator(partial_)) {
+    if (file.path().filename() != "index.html") move(file.path());
+  }
+  move(partial_ / "index.html");
+  if (failed)
+    throw Error(fmt::format("{}: the page cannot be put there: {}", target_.string(), failed.message()));
+  made_target_ = false;
+}
+
+}  // namespace sightline::report

@@ -1,0 +1,30 @@
+// A folder with a page and its pictures, written whole or not at all.
+#pragma once
+
+#include <filesystem>
+
+namespace sightline::report {
+
+/// What index.html holds in its first kilobyte, so that a later report knows what it may replace.
+inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"Sightline\">";
+
+/// Files are written to path(), a folder under a temporary name beside the target; commit() puts them in the
+/// target's place. Without it nothing is left behind, and what stood in the target stays.
+class PageFolder {
+public:
+  /// Throws Error where the folder cannot be made, or the target holds anything but an earlier page.
+  explicit PageFolder(const std::filesystem::path& target);
+  ~PageFolder();
+  PageFolder(const PageFolder&) = delete;
+  PageFolder& operator=(const PageFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return partial_; }
+  /// Throws Error where the files cannot be moved.
+  void commit();
+
+private:
+  std::filesystem::path target_, partial_;
+  bool made_target_ = false;
+};
+
+}  // namespace sightline::report
