@@ -40,6 +40,9 @@ TEST_F(BenchTest, TellsMethodsWhatTheirFramesTook) {
     ASSERT_EQ(told.size(), static_cast<std::size_t>(frame) + 1);
     EXPECT_EQ(told.back(), took);
   }
+  // A frame that timestamps made slower is none to choose by.
+  bench.run(listener, view, device::Timed::passes);
+  EXPECT_EQ(told.size(), 3u);
 }
 
 // On a device as on the CPU: nothing that is refused reaches the device.

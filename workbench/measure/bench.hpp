@@ -42,7 +42,8 @@ public:
   Subject& add(std::string name, std::unique_ptr<Method> method);
   void remove_last() { subjects_.pop_back(); }
 
-  /// One frame of one subject, which is told what it took; on the CPU it is culled alone.
+  /// One frame of one subject, which is told what it took unless passes were timed, too; on the CPU it is
+  /// culled alone.
   device::FrameTimes run(Subject& subject, const View& view, device::Timed timed = device::Timed::frame);
   /// What the subject's last frame was worth, which was of this view. With `picture`, on a device, its
   /// picture is compared, too; the next picture is drawn anew in any case.
