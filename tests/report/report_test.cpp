@@ -63,7 +63,7 @@ TEST(Report, WritesAPageThatLoadsNothingFromElsewhere) {
     EXPECT_THAT(page, Not(HasSubstr(loader)));
   }
   EXPECT_THAT(page, HasSubstr("Chart.js v3"));
-  EXPECT_THAT(page, HasSubstr("This scene wants"));
+  EXPECT_THAT(page, HasSubstr("Beaten by no other"));
   for (const std::string& method : test::kExactMethods)
     EXPECT_THAT(page, HasSubstr("<td>" + method + "<td>"));
 }

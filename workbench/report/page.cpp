@@ -198,7 +198,7 @@ std::string make_page(const PageContent& content) {
           machine_html(comparison.machine) +
           (comparison.drawn() ? ", drawn by " + escape(comparison.device) : "") + "</p>" +
           facts_html(content) + "</header>\n";
-  page += "<p class=\"verdict\">" + escape(verdict(comparison)) + "</p>\n";
+  page += "<p class=\"verdict\">" + escape(verdict(comparison)) + "</p>\n";  // its lines stay lines
   page += "<h2>The methods</h2>\n" + table_html(comparison);
   page +=
       "<h2>Along the path</h2>\n<div class=\"charts\">" + chart_html("cull-time", "Culling time, a view") +

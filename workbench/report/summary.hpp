@@ -1,4 +1,4 @@
-// A method's rows along a path, drawn together; and which method the scene wants.
+// A method's rows along a path, drawn together; and what they say of the methods.
 #pragma once
 
 #include <string>
@@ -20,6 +20,7 @@ struct MethodSummary {
   /// Means of the views' medians; 0 where nothing was drawn. Of the GPU's part of culling the occluders'
   /// depth stands apart.
   double cpu_ms = 0, gpu_ms = 0, occluders_ms = 0, frame_ms = 0;
+  double frame_spread_ms = 0;  ///< median less least, likewise
   std::uint64_t lost_objects = 0, lost_pixels = 0;
   std::size_t views_with_loss = 0;
 
@@ -40,13 +41,13 @@ Table summary_table(const measure::Comparison& comparison);
 /// nothing was drawn.
 Table ratio_table(const measure::Comparison& comparison, double share = 0.2);
 
-/// What a mean frame would cost on an assumed GPU, for weighing what a method leaves to draw against the time
-/// it takes to decide. An assumption, to be named beside every use.
-inline constexpr double kTrianglesPerMillisecond = 1e6, kDrawCallsPerMillisecond = 1000;
-double estimated_frame_ms(const MethodSummary& summary) noexcept;
+/// Those that promise to lose nothing, kept that, and that no other such method beats in culling time,
+/// triangles and draw calls together.
+std::vector<std::string> unbeaten(const std::vector<MethodSummary>& all);
 
-/// A paragraph: which method this scene wants, and what that is based on: the frames that were drawn, or
-/// where none were, culling times and that assumption.
+/// At most three lines: whose drawn frames were quickest, with what they ran on, two names where they differ
+/// by less than the spread of their frames; where nothing was drawn, who is unbeaten; and who broke a
+/// promise.
 std::string verdict(const measure::Comparison& comparison);
 
 }  // namespace sightline::report
