@@ -15,6 +15,7 @@
   METHOD(kVertexChunk)                    \
   METHOD(kResidentChunk)                  \
   METHOD(kHiz)                            \
+  METHOD(kHizUnsafe)                      \
   METHOD(kGridCell)                       \
   METHOD(kObjectFrustum)                  \
   METHOD(kMasked)                         \
