@@ -5,11 +5,10 @@
 
 #include "command.hpp"
 #include "device.hpp"
-#include "page.hpp"
+#include "reproduce_object_frustum.hpp"
 #include "reproduce_ray_pvs.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
-#include "workbench/reproduce/object_frustum.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
 namespace sightline::app {
@@ -20,43 +19,6 @@ struct ReproduceOptions {
   bool quick = false;
   std::string report, device;
 };
-
-// Frame times of both methods, drawn by a device.
-void print_drawn_object_frustum(const std::string& name, bool quick) {
-  const auto device = open_device(name);
-  Scene scene = reproduce::object_frustum_scene();
-  measure::Bench bench(scene, reproduce::kObjectFrustumMethods, device.get());
-  measure::MeasureOptions measure;
-  measure.repeats = quick ? 2 : 5;
-  measure.warm_up = 1;
-  const measure::Comparison drawn =
-      measure::compare(bench, reproduce::object_frustum_path(scene), measure, progress("draw"));
-  expect_silence(device.get());
-  fmt::print("\nDrawn on {}, opaque front to back, then transparent back to front\n{}", drawn.device,
-             report::render(report::summary_table(drawn)));
-  const auto all = report::summarise(drawn);
-  fmt::print("\nfps, object-frustum / grid-cell: {:.2f}, published {:.2f}\n", all[1].fps() / all[0].fps(),
-             reproduce::kPublishedObjectFrustum.fps / reproduce::kPublishedGridCell.fps);
-}
-
-int run_object_frustum(const ReproduceOptions& options) {
-  Scene scene = reproduce::object_frustum_scene();
-  measure::Bench bench(scene, reproduce::kObjectFrustumMethods);
-  const auto result = reproduce::reproduce_object_frustum(bench, options.quick, progress("reproduce"));
-  fmt::print(
-      "Le Hoang Minh et al. 2022, table 2: {} trees on 1 km², eye at 8.9 m in the middle, ten runs\n\n{}\n",
-      scene.size(), report::render(result.runs));
-  fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
-             100 * result.tested_share, report::render(result.ratios));
-  fmt::print("{}", report::render(report::summary_table(result.comparison)));
-  if (!options.report.empty()) write_page(options.report, bench, result.comparison);
-  if (options.device.empty() && device::list_devices().empty()) {
-    fmt::print("\nThere is no Vulkan device: nothing was drawn.\n");
-  } else if (options.device != "cpu") {
-    print_drawn_object_frustum(options.device.empty() ? "any" : options.device, options.quick);
-  }
-  return Exit::done;
-}
 
 int run_vertex_chunk(const ReproduceOptions& options) {
   const auto device = open_device(options.device.empty() ? "any" : options.device);
@@ -123,18 +85,8 @@ void add_reproduce(CLI::App& app, int& exit) {
   CLI::App& command =
       *app.add_subcommand("reproduce", "Print a paper's tables, ours beside the published, as ratios");
   command.require_subcommand(1);
-  CLI::App& paper =
-      *command.add_subcommand("object-frustum", "Le Hoang Minh et al. 2022: grid-cell and object-frustum");
+  add_object_frustum(command, exit);
   auto options = std::make_shared<ReproduceOptions>();
-  paper.add_flag("--quick", options->quick, "fewer repeats");
-  paper.add_option("--report", options->report, "also write an HTML page to DIR")
-      ->check(page_folder())
-      ->type_name("DIR");
-  paper.add_option("--device", options->device, "where frames are drawn; cpu draws none (default: any)")
-      ->check(not_empty())
-      ->type_name("cpu|NAME");
-  on_run(paper, exit, [options] { return run_object_frustum(*options); });
-
   CLI::App& chunks =
       *command.add_subcommand("vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion");
   chunks.add_flag("--quick", options->quick, "smaller pictures, fewer triangles, fewer repeats");

@@ -164,7 +164,7 @@ std::string text(const Reproduction& reproduction) {
   }
   for (const PaperSection& section : reproduction.sections) {
     out += fmt::format("\n{}: {}\n", section.name, section.title);
-    for (const report::Table& table : section.tables) out += "\n" + render(table);
+    for (const report::Table& table : section.tables) out.append("\n").append(render(table));
     if (!section.note.empty()) out += section.note + "\n";
   }
   return out;

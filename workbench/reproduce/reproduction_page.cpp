@@ -34,49 +34,42 @@ figure + figure, .wide + .wide, .wide + figure { margin-top: 1.25rem; }
 .slider input { width: 100%; margin: .6rem 0 0; }
 )";
 
-constexpr const char* kScript = R"(
+constexpr const char* kScript = R"js(
 Chart.defaults.animation = false;
 Chart.defaults.maintainAspectRatio = false;
 const dark = matchMedia("(prefers-color-scheme: dark)").matches;
 Chart.defaults.color = dark ? "#9aa3af" : "#5d6673";
 Chart.defaults.borderColor = dark ? "#2d333b" : "#e2e4e8";
-const palette = [
-  "#7f8791", "#1f77c8", "#e09a22", "#2a9d6e", "#b04fc0", "#d9553f", "#18a0b0", "#8a6d3b", "#c2557f",
-  "#5b6bd0"
-];
+const palette = ["#7f8791", "#1f77c8", "#e09a22", "#2a9d6e", "#b04fc0", "#d9553f", "#18a0b0", "#8a6d3b", "#c2557f",
+                 "#5b6bd0"];
 for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
   const chart = JSON.parse(canvas.dataset.chart);
   new Chart(canvas, {
-    type : chart.bars ? "bar" : "line",
-    data : {
-      labels : chart.labels,
-      datasets : chart.series.map((s, i) = > ({
-                                             label : s.name,
-                                             data : s.values,
-                                             borderColor : palette[i % palette.length],
-                                             backgroundColor : palette[i % palette.length],
-                                             borderWidth : chart.bars ? 0 : 1.75,
-                                             pointRadius : chart.labels.length < 15 ? 3 : 0,
-                                             tension : 0.15
-                                           }))
+    type: chart.bars ? "bar" : "line",
+    data: {
+      labels: chart.labels,
+      datasets: chart.series.map((s, i) => ({
+        label: s.name, data: s.values, borderColor: palette[i % palette.length],
+        backgroundColor: palette[i % palette.length], borderWidth: chart.bars ? 0 : 1.75,
+        pointRadius: chart.labels.length < 15 ? 3 : 0, tension: 0.15
+      }))
     },
-    options : {
-      interaction : {mode : "index", intersect : false},
-      plugins : {legend : {position : "bottom", labels : {boxWidth : 22, boxHeight : chart.bars ? 10 : 2}}},
-      scales : {
-        x : {title : {display : chart.x != = "", text : chart.x}, grid : {display : false}},
-        y : {
-          type : chart.logarithmic ? "logarithmic" : "linear",
-          beginAtZero : !chart.logarithmic,
-          title : {display : true, text : chart.y}
+    options: {
+      interaction: {mode: "index", intersect: false},
+      plugins: {legend: {position: "bottom", labels: {boxWidth: 22, boxHeight: chart.bars ? 10 : 2}}},
+      scales: {
+        x: {title: {display: chart.x !== "", text: chart.x}, grid: {display: false}},
+        y: {
+          type: chart.logarithmic ? "logarithmic" : "linear", beginAtZero: !chart.logarithmic,
+          title: {display: true, text: chart.y}
         }
       }
     }
   });
 }
 for (const slider of document.querySelectorAll(".slider input"))
-  slider.addEventListener("input", () = > slider.parentElement.style.setProperty("--at", slider.value + "%"));
-)";
+  slider.addEventListener("input", () => slider.parentElement.style.setProperty("--at", slider.value + "%"));
+)js";
 
 std::string as_list(const std::vector<std::string>& sentences) {
   std::string out = "<ul>";

@@ -1,0 +1,106 @@
+// The paper's figures 4 and 6: which cells both walks list over the grids that it draws.
+#include <algorithm>
+#include <cmath>
+
+#include <sightline/workbench/error.hpp>
+
+#include "workbench/methods/object_frustum/printed_walk.hpp"
+#include "workbench/reproduce/object_frustum.hpp"
+#include "workbench/reproduce/object_frustum_walks.hpp"
+
+namespace sightline::reproduce {
+
+namespace {
+
+constexpr float kCell = 100;
+// Small things near the corners of every cell fill it, so that its tight bounds are nearly the whole of it.
+constexpr float kInset = 5, kSize = 0.5f;
+// Wide enough that, as the paper draws it, row 1 lies across the limits three cells wide and row 3 is wholly
+// in sight but for its ends.
+constexpr float kTangent = 1.1f;
+
+partition::ObjectGrid grid_of(const WalkFigure& figure) {
+  Boxes boxes;
+  for (std::uint32_t row = 0; row < figure.rows; ++row) {
+    for (std::uint32_t column = 0; column < figure.columns; ++column) {
+      const float x = static_cast<float>(column) * kCell, z = -static_cast<float>(figure.rows - row) * kCell;
+      for (const auto& [dx, dz] : {std::pair{kInset, kInset},
+                                   {kCell - kInset, kInset},
+                                   {kInset, kCell - kInset},
+                                   {kCell - kInset, kCell - kInset}}) {
+        boxes.push_back({{x + dx - kSize, -kSize, z + dz - kSize}, {x + dx + kSize, kSize, z + dz + kSize}});
+      }
+    }
+  }
+  partition::ObjectGrid grid;
+  grid.build(boxes, kCell, {figure.rows, figure.columns});
+  return grid;
+}
+
+CellLists lists_of(const partition::ObjectGrid& grid, const std::vector<partition::ObjectGrid::Run>& runs) {
+  CellLists lists;
+  for (const auto& run : runs) {
+    for (std::uint32_t column = run.first_column; column < run.last_column; ++column) {
+      (run.overlap == Overlap::inside ? lists.inside : lists.crossing)
+          .emplace_back(grid.rows() - run.row, column + 1);
+    }
+  }
+  std::ranges::sort(lists.inside);
+  std::ranges::sort(lists.crossing);
+  return lists;
+}
+
+WalkFigure walked(std::uint32_t rows, std::uint32_t columns, float sight_limit) {
+  WalkFigure figure{rows, columns, sight_limit, {}, {}};
+  const partition::ObjectGrid grid = grid_of(figure);
+  const View view = or_throw(make_view(walk_camera(figure), 800, 800));
+  const Frustum frustum = make_frustum(view);
+  std::vector<partition::ObjectGrid::Run> runs;
+  grid.classify(frustum, runs);
+  figure.repaired = lists_of(grid, runs);
+  runs.clear();
+  methods::walk_as_printed(grid, view, frustum, runs);
+  figure.printed = lists_of(grid, runs);
+  return figure;
+}
+
+}  // namespace
+
+Camera walk_camera(const WalkFigure& figure) {
+  Camera camera;
+  camera.eye = {0.5f * static_cast<float>(figure.columns) * kCell, 0, 0};
+  camera.vertical_fov = 2 * std::atan(kTangent);
+  camera.far_plane = figure.sight_limit;
+  return camera;
+}
+
+std::vector<DrawnCell> walk_cells(const WalkFigure& figure, const CellLists& lists) {
+  const partition::ObjectGrid grid = grid_of(figure);
+  const auto in = [](const std::vector<NumberedCell>& list, const NumberedCell& cell) {
+    return std::ranges::binary_search(list, cell);
+  };
+  std::vector<DrawnCell> cells;
+  for (std::uint32_t row = 0; row < grid.rows(); ++row) {
+    for (std::uint32_t column = 0; column < grid.columns(); ++column) {
+      const NumberedCell cell{grid.rows() - row, column + 1};
+      const bool in_sight = in(figure.repaired.inside, cell) || in(figure.repaired.crossing, cell);
+      const auto kind = in(lists.inside, cell)     ? DrawnCell::Kind::inside
+                        : in(lists.crossing, cell) ? DrawnCell::Kind::crossing
+                        : in_sight                 ? DrawnCell::Kind::lost
+                                                   : DrawnCell::Kind::outside;
+      const float x = static_cast<float>(column) * kCell, z = -static_cast<float>(cell.first) * kCell;
+      cells.push_back({{{x, 0, z}, {x + kCell, 0, z + kCell}}, cell_number(grid, row, column), kind});
+    }
+  }
+  return cells;
+}
+
+WalkFigure walk_figure_4() {
+  return walked(4, 5, 250);
+}
+
+WalkFigure walk_figure_6() {
+  return walked(6, 7, 450);
+}
+
+}  // namespace sightline::reproduce
