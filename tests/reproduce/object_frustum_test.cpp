@@ -51,6 +51,18 @@ TEST(ObjectFrustumWalks, SortFigure6) {
                    {3, 7}, {4, 1}, {4, 7}, {5, 1}, {5, 2}, {5, 3}, {5, 4}, {5, 5}, {5, 6}, {5, 7}}));
 }
 
+TEST(ObjectFrustumWalks, AsPrintedLosesWhatShowsAndRepairedNothing) {
+  Scene scene = object_frustum_scene();
+  const std::vector<WalkLoss> losses = measure_walk_losses(scene, 160, 90);
+  ASSERT_EQ(losses.size(), 4u);
+  for (const WalkLoss& loss : losses) {
+    EXPECT_GT(loss.missing, loss.kept / 4) << loss.height;
+    EXPECT_EQ(loss.lost_repaired, 0u) << loss.height;
+  }
+  EXPECT_GT(losses.back().lost_objects, 50u);
+  EXPECT_GT(losses.back().lost_pixels, 50u);
+}
+
 TEST(ObjectFrustumCells, TheirSizeDecidesWhatIsKept) {
   const Scene scene = object_frustum_scene();
   const std::vector<CellSize> sizes = sweep_cell_sizes(scene, 1280, 720);

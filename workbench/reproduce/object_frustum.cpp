@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/worlds.hpp>
@@ -19,6 +18,7 @@
 #include "workbench/methods/object_frustum/visible_list.hpp"
 #include "workbench/methods/raster_occlusion/scene_occluders.hpp"
 #include "workbench/reproduce/object_frustum_cells.hpp"
+#include "workbench/reproduce/object_frustum_walks.hpp"
 
 namespace sightline::reproduce {
 
@@ -38,7 +38,7 @@ std::vector<std::string> forms() {
           form("grid-cell"),
           form("object-frustum"),
           form("object-frustum", "&walk=printed"),
-          "object-frustum?rows=22&columns=22&walk=printed",
+          "object-frustum?rows=6&columns=7&walk=printed",
           form("object-frustum", fmt::format("&layers={}", kOpaqueTreesOnly).c_str()),
           form("object-frustum", "&occlusion=masked")};
 }
@@ -66,8 +66,7 @@ std::vector<ObjectFrustumForm> measure_forms(Scene& scene, const View& view, int
   measure::Bench bench(scene, forms());
   std::vector<ObjectFrustumForm> out;
   bench.run(bench.subjects()[kObjectFrustum], view);
-  std::vector<ObjectId> all = bench.subjects()[kObjectFrustum].frame.visible;
-  std::ranges::sort(all);
+  const std::vector<ObjectId> all = bench.subjects()[kObjectFrustum].frame.visible;
   for (measure::Subject& subject : bench.subjects()) {
     ObjectFrustumForm made;
     made.method = subject.name, made.guarantee = subject.method->guarantee();
@@ -76,10 +75,7 @@ std::vector<ObjectFrustumForm> measure_forms(Scene& scene, const View& view, int
     const oracle::Judgement judged = bench.judge(subject, view);
     made.kept = subject.frame.visible.size(), made.tested = subject.frame.stats.tested;
     made.draw_calls = subject.frame.stats.draw_calls;
-    std::vector<ObjectId> kept = subject.frame.visible, missing;
-    std::ranges::sort(kept);
-    std::ranges::set_difference(all, kept, std::back_inserter(missing));
-    made.missing = missing.size();
+    made.missing = missing_of(all, subject.frame.visible);
     made.lost_objects = judged.loss.lost.size(), made.lost_pixels = judged.loss.lost_pixels;
     out.push_back(std::move(made));
   }
@@ -100,12 +96,25 @@ DrawnFrame draw(measure::Bench& bench, measure::Subject& subject, const View& vi
   return drawn;
 }
 
+// The mean of table 2's frames of one method.
+DrawnFrame mean_of(const std::vector<ObjectFrustumRun>& runs, DrawnFrame ObjectFrustumRun::*frame) {
+  DrawnFrame mean;
+  double gpu = 0;
+  const auto count = static_cast<double>(runs.size());
+  for (const ObjectFrustumRun& run : runs) {
+    const DrawnFrame& drawn = run.*frame;
+    mean.cpu += drawn.cpu / count, mean.record += drawn.record / count, gpu += drawn.gpu.value_or(0) / count;
+  }
+  if ((runs.front().*frame).gpu) mean.gpu = gpu;
+  return mean;
+}
+
 void measure_drawn(measure::Bench& bench, const View& view, const ObjectFrustumOptions& options,
                    const Progress& progress, ObjectFrustumResult& out) {
   const auto subjects = bench.subjects();
   const int repeats = options.quick ? 3 : 9;
   for (std::size_t f = 0; f < subjects.size(); ++f) {
-    bench.run(subjects[f], view);
+    bench.run(subjects[f], view);  // grows what grows
     out.forms[f].drawn = draw(bench, subjects[f], view, repeats);
   }
   for (int run = 0; run < kRuns; ++run) {
@@ -116,9 +125,11 @@ void measure_drawn(measure::Bench& bench, const View& view, const ObjectFrustumO
       (grid ? made.grid_cell : made.object_frustum) =
           draw(bench, subjects[grid ? kGridCell : kObjectFrustum], view, repeats);
     }
-    out.runs.push_back(made);
+    out.runs.push_back(std::move(made));
     if (progress) progress(static_cast<std::size_t>(run) + 1, kRuns);
   }
+  out.forms[kGridCell].drawn = mean_of(out.runs, &ObjectFrustumRun::grid_cell);
+  out.forms[kObjectFrustum].drawn = mean_of(out.runs, &ObjectFrustumRun::object_frustum);
 }
 
 // Steps of the life of a frame that the CPU takes before it draws.
@@ -181,10 +192,8 @@ std::vector<FrameStep> measure_steps(const Scene& scene, const View& view, const
   if (!fine.drawn->gpu) return steps;
   steps.push_back(
       {"G3", "draws object by object", both([](const Form& f, const ListTimes&) { return *f.drawn->gpu; })});
-  steps.push_back(
-      {"G4", "the picture is finished; the CPU has waited", both([](const Form& f, const ListTimes&) {
-         return std::max(0.0, f.drawn->cpu - f.drawn->record - *f.drawn->gpu);
-       })});
+  steps.push_back({"G4", "the picture; the CPU has waited for G1 to G4",
+                   both([](const Form& f, const ListTimes&) { return f.drawn->cpu - f.drawn->record; })});
   return steps;
 }
 
@@ -219,7 +228,8 @@ FigureFile cells_picture(const Scene& scene, const View& view, const ObjectFrust
 }  // namespace
 
 Scene object_frustum_scene() {
-  return generate_world("forest?trees=30000&size=1000&ground=64");
+  // A seed by which no tree stands right before the eye and fills the picture.
+  return generate_world("forest?trees=30000&size=1000&ground=64&seed=209");
 }
 
 Camera object_frustum_camera_without_limit(const Scene& scene) {
@@ -286,6 +296,7 @@ ObjectFrustumResult measure_object_frustum(device::Device* device, const ObjectF
     }
   }
   out.steps = measure_steps(scene, view, out, update_ms, repeats);
+  out.walk_losses = measure_walk_losses(scene, options.width, options.height);
   out.cell_sizes = sweep_cell_sizes(scene, options.width, options.height);
   out.figure_4 = walk_figure_4(), out.figure_6 = walk_figure_6();
   if (options.pictures) {

@@ -76,6 +76,15 @@ struct WalkFigure {
   CellLists repaired, printed;
 };
 
+/// What the printed walk leaves out of table 2's view, over other cells, as the eye rises.
+struct WalkLoss {
+  float height = 0;  ///< metres over the ground
+  std::uint64_t kept = 0, kept_as_printed = 0;
+  std::uint64_t missing = 0;  ///< objects that the repaired walk keeps and the printed one does not
+  std::uint64_t lost_objects = 0, lost_pixels = 0;  ///< of these, what shows
+  std::uint64_t lost_repaired = 0;                  ///< what the repaired walk loses
+};
+
 /// A picture beside the page: SVG text, or pixels.
 struct FigureFile {
   std::string name, svg;
@@ -91,6 +100,7 @@ struct ObjectFrustumResult {
   std::vector<CellSize> cell_sizes;
   std::vector<FrameStep> steps;
   std::optional<WalkFigure> figure_4, figure_6;
+  std::vector<WalkLoss> walk_losses;
   std::vector<FigureFile> files;  ///< figure 7's and the drawn frames
 };
 
@@ -104,6 +114,8 @@ struct ObjectFrustumOptions {
 inline constexpr const char* kObjectFrustumCells = "rows=5&columns=5";
 /// Metres: nearer than the map's edge ahead, so that it acts.
 inline constexpr float kSightLimit = 480;
+/// Metres over the ground, where the paper's camera stands.
+inline constexpr float kEyeHeight = 8.9f;
 
 /// The scene the paper describes: 30,000 trees on terrain of one square kilometre.
 Scene object_frustum_scene();
@@ -118,6 +130,10 @@ std::vector<CellSize> sweep_cell_sizes(const Scene& scene, std::uint32_t width, 
 /// Figure 4 is about the distance limit, over 4 × 5 cells; figure 6 about the two angle limits, over 6 × 7.
 WalkFigure walk_figure_4();
 WalkFigure walk_figure_6();
+
+/// Both walks over as many cells as figure 6 has, 6 × 7, judged at several heights of the eye. Over 5 × 5
+/// each cell that the printed walk meets happens to lie on a limit.
+std::vector<WalkLoss> measure_walk_losses(Scene& scene, std::uint32_t width, std::uint32_t height);
 
 /// Measures everything; without a device nothing is drawn, and table 2 stays empty. Throws Error as Bench
 /// does.

@@ -19,17 +19,22 @@ std::string count(std::uint64_t number) {
   return format_count(static_cast<double>(number));
 }
 
+// What a clock's reading alone takes is no time of a step's.
+std::string step_ms(double milliseconds) {
+  return milliseconds < 0.001 ? "< 0.001" : format_ms(milliseconds);
+}
+
 PaperSection life_cycle(const ObjectFrustumResult& result) {
   PaperSection section{"figures 1 and 2", "the life cycle of a frame on the CPU and the GPU", {}, "", ""};
   if (result.steps.empty()) return section;
   report::Table table{{"step", "what", "grid-cell, ms", "object-frustum, ms"}, {}, 2};
   for (const FrameStep& step : result.steps) {
-    table.rows.push_back({step.name, step.what, step.ms ? format_ms(step.ms->grid_cell) : "–",
-                          step.ms ? format_ms(step.ms->object_frustum) : "–"});
+    table.rows.push_back({step.name, step.what, step.ms ? step_ms(step.ms->grid_cell) : "–",
+                          step.ms ? step_ms(step.ms->object_frustum) : "–"});
   }
   section.tables.push_back(std::move(table));
-  section.html = "<figure><div class=\"wide\">" + draw_life_cycle(result.steps) +
-                 "</div><figcaption>The paper's steps with the times of table 2's view here; grid-cell / "
+  section.html = "<figure>" + draw_life_cycle(result.steps) +
+                 "<figcaption>The paper's steps with their times in table 2's view, ms: grid-cell / "
                  "object-frustum.</figcaption></figure>\n";
   section.note =
       "The steps bear the paper's numbers. Where two of them are one here, the later bears the time of both.";
@@ -62,12 +67,33 @@ PaperSection walk_section(const char* name, const char* title, const std::option
   for (const auto& [lists, caption] :
        {std::pair{&figure->printed, "As printed: red cells are in sight and deleted."},
         {&figure->repaired, "Repaired: blue cells are taken whole, crossed ones object by object."}}) {
-    section.html += "<figure>" + draw_cells(walk_cells(*figure, *lists), camera, 1, {}, {}, 440) +
+    section.html += "<figure style=\"margin:0\">" +
+                    draw_cells(walk_cells(*figure, *lists), camera, 1, {}, {}, 440) +
                     fmt::format("<figcaption>{}</figcaption></figure>\n", report::escape(caption));
   }
   section.html += "</div>\n";
   section.note +=
       fmt::format(" The walk as printed deletes {} cells that are in sight.", lost_cells(*figure));
+  return section;
+}
+
+PaperSection losses_section(const ObjectFrustumResult& result) {
+  PaperSection section{
+      "section 3, the walk", "what the walk as printed loses over 6 x 7 cells as the eye rises", {}, "", ""};
+  report::Table table{{"eye at, m", "kept, repaired", "kept, as printed", "missing", "lost objects",
+                       "lost pixels", "lost by the repaired walk"},
+                      {},
+                      1};
+  for (const WalkLoss& loss : result.walk_losses) {
+    table.rows.push_back({fmt::format("{:.1f}", loss.height), count(loss.kept), count(loss.kept_as_printed),
+                          count(loss.missing), count(loss.lost_objects), count(loss.lost_pixels),
+                          count(loss.lost_repaired)});
+  }
+  if (!table.rows.empty()) section.tables.push_back(std::move(table));
+  section.note =
+      "Missing is what the repaired walk keeps and the printed one does not, lost what of that shows in the "
+      "picture: among the trees the nearest hide most of it, above them nothing does. It keeps objects that "
+      "the repaired walk leaves out, too, as the cells straight ahead get no angle test.";
   return section;
 }
 
@@ -108,19 +134,19 @@ std::string spelt(std::string method) {
 
 PaperSection forms_section(const ObjectFrustumResult& result) {
   PaperSection section{"section 3", "the forms of both methods in table 2's view", {}, "", ""};
-  report::Table table{{"method", "guarantee", "kept", "tested", "draw calls", "cull ms", "CPU ms", "GPU ms",
-                       "missing", "lost objects", "lost pixels"},
-                      {},
-                      2};
+  report::Table sets{
+      {"method", "guarantee", "kept", "tested", "missing", "lost objects", "lost pixels"}, {}, 2};
+  report::Table times{{"method", "draw calls", "cull ms", "CPU ms", "GPU ms"}, {}, 1};
   for (const ObjectFrustumForm& form : result.forms) {
     const bool gpu = form.drawn && form.drawn->gpu;
-    table.rows.push_back({spelt(form.method), std::string(to_string(form.guarantee)), count(form.kept),
-                          count(form.tested), count(form.draw_calls), format_ms(form.cull_ms),
+    sets.rows.push_back({spelt(form.method), std::string(to_string(form.guarantee)), count(form.kept),
+                         count(form.tested), count(form.missing), count(form.lost_objects),
+                         count(form.lost_pixels)});
+    times.rows.push_back({spelt(form.method), count(form.draw_calls), format_ms(form.cull_ms),
                           form.drawn ? format_ms(form.drawn->cpu) : "–",
-                          gpu ? format_ms(*form.drawn->gpu) : "–", count(form.missing),
-                          count(form.lost_objects), count(form.lost_pixels)});
+                          gpu ? format_ms(*form.drawn->gpu) : "–"});
   }
-  if (!table.rows.empty()) section.tables.push_back(std::move(table));
+  if (!result.forms.empty()) section.tables = {std::move(sets), std::move(times)};
   section.note =
       "submission=objects is a draw an object (steps C7 and G3), else a draw a mesh, instanced. walk=printed "
       "is the walk word for word; missing is what object-frustum keeps and this form does not, lost what of "
@@ -140,7 +166,7 @@ PaperSection sizes_section(const ObjectFrustumResult& result) {
                        "object-frustum within the limit", "ratio"},
                       {},
                       1};
-  Chart chart_of{"cell-sizes", "cells", "objects kept, grid-cell / object-frustum", {}, {}, false, false};
+  Chart chart_of{"cell-sizes", "cells", "times as many kept", {}, {}, false, false};
   Series whole{"whole map in sight", {}}, limited{"within the sight limit", {}},
       paper{"the paper's GPU times", {}};
   for (const CellSize& size : result.cell_sizes) {
@@ -163,7 +189,7 @@ PaperSection sizes_section(const ObjectFrustumResult& result) {
   return section;
 }
 
-constexpr int kStepWidth = 136, kStepHeight = 92, kGap = 14;
+constexpr int kStepWidth = 140, kStepHeight = 96, kGap = 14;
 
 // What a step does in lines that fit its box.
 std::vector<std::string> wrapped(const std::string& text) {
@@ -181,7 +207,7 @@ std::vector<std::string> wrapped(const std::string& text) {
 
 std::string draw_step(const FrameStep& step, int x, int y, const char* colour) {
   const std::string times =
-      step.ms ? format_ms(step.ms->grid_cell) + " / " + format_ms(step.ms->object_frustum) + " ms" : "–";
+      step.ms ? step_ms(step.ms->grid_cell) + " / " + step_ms(step.ms->object_frustum) : "–";
   std::string svg = fmt::format(
       "<rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" rx=\"6\" fill=\"{4}\" "
       "fill-opacity=\".14\" stroke=\"{4}\"/><text x=\"{5}\" y=\"{6}\" font-size=\"15\" "
@@ -224,6 +250,7 @@ std::vector<PaperSection> object_frustum_sections(const ObjectFrustumResult& res
                        "The paper's numbers are misprinted: what its text deletes at the left is numbered "
                        "\"1.1 and 1.6\" and \"2.7\", at the right \"1.2 and 1.1\" and \"2.1\"; by its own "
                        "numbering the left has 1.2, 1.1 and 2.1, the right 1.6, 1.7 and 2.7."),
+          losses_section(result),
           cells_section(result),
           forms_section(result),
           sizes_section(result),
@@ -236,22 +263,22 @@ std::vector<PaperSection> object_frustum_sections(const ObjectFrustumResult& res
 }
 
 std::string draw_life_cycle(const std::vector<FrameStep>& steps) {
-  const auto on_gpu = [](const FrameStep& step) { return step.name.starts_with("G"); };
-  const auto gpu = static_cast<int>(std::ranges::count_if(steps, on_gpu));
-  const int most = std::max(gpu, static_cast<int>(steps.size()) - gpu);
-  const int width = most * (kStepWidth + kGap) + kGap, row = kStepHeight + 2 * kGap;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "font-family=\"sans-serif\"><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      width, (gpu > 0 ? 2 : 1) * row);
-  int cpu_at = 0, gpu_at = 0;
+  constexpr int kMost = 4;  // a row, so that a narrow page holds it
+  std::string drawn;
+  int row = 0, column = 0;
+  bool on_gpu = false;
   for (const FrameStep& step : steps) {
-    const bool below = on_gpu(step);
-    const int at = below ? gpu_at++ : cpu_at++;
-    svg += draw_step(step, kGap + at * (kStepWidth + kGap), kGap + (below ? row : 0),
-                     below ? "#2a9d6e" : "#2084d0");
+    const bool gpu = step.name.starts_with("G");
+    if (column == kMost || gpu != on_gpu) ++row, column = 0;
+    on_gpu = gpu;
+    drawn += draw_step(step, kGap + column++ * (kStepWidth + kGap), kGap + row * (kStepHeight + kGap),
+                       gpu ? "#2a9d6e" : "#2084d0");
   }
-  return svg + "</svg>\n";
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "style=\"max-width:100%;height:auto\" font-family=\"sans-serif\"><rect width=\"100%\" "
+      "height=\"100%\" fill=\"#fff\"/>\n{2}</svg>\n",
+      kMost * (kStepWidth + kGap) + kGap, (row + 1) * (kStepHeight + kGap) + kGap, drawn);
 }
 
 }  // namespace sightline::reproduce

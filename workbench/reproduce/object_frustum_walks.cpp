@@ -1,9 +1,12 @@
 // The paper's figures 4 and 6: which cells both walks list over the grids that it draws.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/measure/bench.hpp"
 #include "workbench/methods/object_frustum/printed_walk.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
 #include "workbench/reproduce/object_frustum_walks.hpp"
@@ -64,7 +67,39 @@ WalkFigure walked(std::uint32_t rows, std::uint32_t columns, float sight_limit) 
   return figure;
 }
 
+std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
+  std::ranges::sort(objects);
+  return objects;
+}
+
 }  // namespace
+
+std::size_t missing_of(const std::vector<ObjectId>& all, const std::vector<ObjectId>& some) {
+  std::vector<ObjectId> missing;
+  std::ranges::set_difference(sorted(all), sorted(some), std::back_inserter(missing));
+  return missing.size();
+}
+
+std::vector<WalkLoss> measure_walk_losses(Scene& scene, std::uint32_t width, std::uint32_t height) {
+  const std::string repaired = "object-frustum?rows=6&columns=7";
+  measure::Bench bench(scene, std::vector<std::string>{repaired, repaired + "&walk=printed"});
+  std::vector<WalkLoss> out;
+  for (const float over : {0.0f, 10.0f, 30.0f, 60.0f}) {
+    Camera camera = object_frustum_camera(scene);
+    camera.eye.y += over;
+    const View view = or_throw(make_view(camera, width, height));
+    std::array<oracle::Loss, 2> losses;
+    for (std::size_t walk = 0; walk < 2; ++walk) {
+      bench.run(bench.subjects()[walk], view);
+      losses[walk] = bench.judge(bench.subjects()[walk], view).loss;
+    }
+    const std::vector<ObjectId>&all = bench.subjects()[0].frame.visible,
+          &some = bench.subjects()[1].frame.visible;
+    out.push_back({kEyeHeight + over, all.size(), some.size(), missing_of(all, some), losses[1].lost.size(),
+                   losses[1].lost_pixels, losses[0].lost.size()});
+  }
+  return out;
+}
 
 Camera walk_camera(const WalkFigure& figure) {
   Camera camera;

@@ -8,6 +8,9 @@
 
 namespace sightline::reproduce {
 
+/// How many of `all` are not among `some`.
+std::size_t missing_of(const std::vector<ObjectId>& all, const std::vector<ObjectId>& some);
+
 /// The viewpoint of the figure: before the middle of row 1, level, looking along the columns; drawn square.
 Camera walk_camera(const WalkFigure& figure);
 
