@@ -276,9 +276,11 @@ ObjectFrustumResult measure_object_frustum(device::Device* device, const ObjectF
   ObjectFrustumResult out;
   Scene scene = object_frustum_scene();
   const measure::Machine machine = measure::this_machine();
-  out.trees = scene.size() - 1, out.triangles = triangle_count(scene);
-  out.machine = fmt::format("{}, {} threads; {}", machine.cpu, machine.cores,
-                            device ? device->info().name + " draws" : "nothing was drawn");
+  out.machine =
+      fmt::format("{}, {} threads; {}; {} trees on their ground, {} triangles, {}x{} pixels", machine.cpu,
+                  machine.cores, device ? device->info().name + " draws" : "nothing was drawn",
+                  scene.size() - 1, triangle_count(scene), options.width, options.height);
+  out.drawn_by_cpu = device && device->info().kind == "CPU";
   const View view = or_throw(make_view(object_frustum_camera(scene), options.width, options.height));
   const int repeats = options.quick ? 11 : 101;
   out.forms = measure_forms(scene, view, repeats);

@@ -93,8 +93,7 @@ struct FigureFile {
 
 struct ObjectFrustumResult {
   std::string machine;
-  std::size_t trees = 0;
-  std::uint64_t triangles = 0;
+  bool drawn_by_cpu = false;  ///< the device is none but in name: llvmpipe
   std::vector<ObjectFrustumRun> runs;
   std::vector<ObjectFrustumForm> forms;
   std::vector<CellSize> cell_sizes;
