@@ -24,23 +24,23 @@ namespace sightline::reproduce {
 
 namespace {
 
-constexpr int kRuns = 10;
+constexpr int kTableRuns = 10;
 constexpr std::uint32_t kOpaqueTreesOnly = 1, kAllThatStandsHere = 7;
 
-std::string form(const char* method, const char* more = "") {
+std::string with_cells(const char* method, const char* more = "") {
   return fmt::format("{}?{}{}", method, kObjectFrustumCells, more);
 }
 
 // The first two are table 2's, which draw objects one by one, as the paper's frame does.
-std::vector<std::string> forms() {
-  return {form("grid-cell", "&submission=objects"),
-          form("object-frustum", "&submission=objects"),
-          form("grid-cell"),
-          form("object-frustum"),
-          form("object-frustum", "&walk=printed"),
+std::vector<std::string> measured_forms() {
+  return {with_cells("grid-cell", "&submission=objects"),
+          with_cells("object-frustum", "&submission=objects"),
+          with_cells("grid-cell"),
+          with_cells("object-frustum"),
+          with_cells("object-frustum", "&walk=printed"),
           "object-frustum?rows=6&columns=7&walk=printed",
-          form("object-frustum", fmt::format("&layers={}", kOpaqueTreesOnly).c_str()),
-          form("object-frustum", "&occlusion=masked")};
+          with_cells("object-frustum", fmt::format("&layers={}", kOpaqueTreesOnly).c_str()),
+          with_cells("object-frustum", "&occlusion=masked")};
 }
 constexpr std::size_t kGridCell = 0, kObjectFrustum = 1;
 
@@ -50,7 +50,7 @@ Parameters parameters_of(const std::string& specification) {
 }
 
 template <class Work>
-double median_ms(int repeats, Work work) {
+double median_time(int repeats, Work work) {
   std::vector<double> samples;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const auto begin = std::chrono::steady_clock::now();
@@ -63,7 +63,7 @@ double median_ms(int repeats, Work work) {
 
 // On the CPU: what each form keeps and loses, and what deciding takes.
 std::vector<ObjectFrustumForm> measure_forms(Scene& scene, const View& view, int repeats) {
-  measure::Bench bench(scene, forms());
+  measure::Bench bench(scene, measured_forms());
   std::vector<ObjectFrustumForm> out;
   bench.run(bench.subjects()[kObjectFrustum], view);
   const std::vector<ObjectId> all = bench.subjects()[kObjectFrustum].frame.visible;
@@ -71,7 +71,7 @@ std::vector<ObjectFrustumForm> measure_forms(Scene& scene, const View& view, int
     ObjectFrustumForm made;
     made.method = subject.name, made.guarantee = subject.method->guarantee();
     bench.run(subject, view);
-    made.cull_ms = median_ms(repeats, [&] { bench.run(subject, view); });
+    made.cull_ms = median_time(repeats, [&] { bench.run(subject, view); });
     const oracle::Judgement judged = bench.judge(subject, view);
     made.kept = subject.frame.visible.size(), made.tested = subject.frame.stats.tested;
     made.draw_calls = subject.frame.stats.draw_calls;
@@ -83,7 +83,7 @@ std::vector<ObjectFrustumForm> measure_forms(Scene& scene, const View& view, int
 }
 
 // One form's frames, by turns whole ones and those that tell the GPU's own time: medians.
-DrawnFrame draw(measure::Bench& bench, measure::Subject& subject, const View& view, int repeats) {
+DrawnFrame drawn_frame(measure::Bench& bench, measure::Subject& subject, const View& view, int repeats) {
   std::vector<double> cpu, record, gpu;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const device::FrameTimes times = bench.run(subject, view);
@@ -115,18 +115,18 @@ void measure_drawn(measure::Bench& bench, const View& view, const ObjectFrustumO
   const int repeats = options.quick ? 3 : 9;
   for (std::size_t f = 0; f < subjects.size(); ++f) {
     bench.run(subjects[f], view);  // grows what grows
-    out.forms[f].drawn = draw(bench, subjects[f], view, repeats);
+    out.forms[f].drawn = drawn_frame(bench, subjects[f], view, repeats);
   }
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kTableRuns; ++run) {
     ObjectFrustumRun made;
     // By turns first and second, so that drift of the machine hits both alike.
     for (int turn = 0; turn < 2; ++turn) {
       const bool grid = (run + turn) % 2 == 0;
       (grid ? made.grid_cell : made.object_frustum) =
-          draw(bench, subjects[grid ? kGridCell : kObjectFrustum], view, repeats);
+          drawn_frame(bench, subjects[grid ? kGridCell : kObjectFrustum], view, repeats);
     }
     out.runs.push_back(std::move(made));
-    if (progress) progress(static_cast<std::size_t>(run) + 1, kRuns);
+    if (progress) progress(static_cast<std::size_t>(run) + 1, kTableRuns);
   }
   out.forms[kGridCell].drawn = mean_of(out.runs, &ObjectFrustumRun::grid_cell);
   out.forms[kObjectFrustum].drawn = mean_of(out.runs, &ObjectFrustumRun::object_frustum);
@@ -140,7 +140,7 @@ struct ListTimes {
 // Steps C1 to C4 one by one; of the cells, all of them or object by object.
 ListTimes time_list(const Scene& scene, const View& view, bool take_cells, int repeats) {
   const Parameters parameters = parameters_of(
-      form("object-frustum", fmt::format("&submission=objects&layers={}", kAllThatStandsHere).c_str()));
+      with_cells("object-frustum", fmt::format("&submission=objects&layers={}", kAllThatStandsHere).c_str()));
   const methods::GridObjects objects(scene, parameters);
   methods::VisibleList list(scene, parameters);
   methods::SceneOccluders occluders(scene);
@@ -149,19 +149,19 @@ ListTimes time_list(const Scene& scene, const View& view, bool take_cells, int r
   std::vector<double> cells, layers, occlusion, order;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     frame.clear(), runs.clear();
-    cells.push_back(median_ms(1, [&] {
+    cells.push_back(median_time(1, [&] {
       const Frustum frustum = make_frustum(view);
       if (take_cells) return objects.take_cells(frustum, frame);
       objects.grid.classify(frustum, runs);
       objects.test_cells(frustum, runs, frame);
     }));
-    layers.push_back(median_ms(1, [&] { list.keep_layers(frame); }));
+    layers.push_back(median_time(1, [&] { list.keep_layers(frame); }));
     Frame unhidden = frame;
-    occlusion.push_back(median_ms(1, [&] {
+    occlusion.push_back(median_time(1, [&] {
       if (occluders.usable() && occluders.draw({view, {}}, unhidden.visible))
         unhidden.visible.resize(occluders.keep_unhidden(unhidden.visible));
     }));
-    order.push_back(median_ms(1, [&] { list.draw(view, frame); }));
+    order.push_back(median_time(1, [&] { list.draw(view, frame); }));
   }
   const auto median = [](std::vector<double>& samples) { return measure::timing_of(samples).median; };
   return {median(cells), median(layers), median(occlusion), median(order)};
@@ -286,9 +286,9 @@ ObjectFrustumResult measure_object_frustum(device::Device* device, const ObjectF
   out.forms = measure_forms(scene, view, repeats);
   double update_ms = 0;
   if (device) {
-    measure::Bench bench(scene, forms(), device);
+    measure::Bench bench(scene, measured_forms(), device);
     measure_drawn(bench, view, options, progress, out);
-    update_ms = median_ms(repeats, [&] { bench.update({}); });
+    update_ms = median_time(repeats, [&] { bench.update({}); });
     if (options.pictures) {
       for (const auto& [subject, name] :
            {std::pair{kGridCell, "frame-grid-cell.png"}, {kObjectFrustum, "frame-object-frustum.png"}}) {
@@ -302,9 +302,10 @@ ObjectFrustumResult measure_object_frustum(device::Device* device, const ObjectF
   out.cell_sizes = sweep_cell_sizes(scene, options.width, options.height);
   out.figure_4 = walk_figure_4(), out.figure_6 = walk_figure_6();
   if (options.pictures) {
-    out.files.push_back(cells_picture(scene, view, options, form("grid-cell"), "figure-7-grid-cell.svg"));
     out.files.push_back(
-        cells_picture(scene, view, options, form("object-frustum"), "figure-7-object-frustum.svg"));
+        cells_picture(scene, view, options, with_cells("grid-cell"), "figure-7-grid-cell.svg"));
+    out.files.push_back(
+        cells_picture(scene, view, options, with_cells("object-frustum"), "figure-7-object-frustum.svg"));
   }
   return out;
 }

@@ -17,20 +17,20 @@ namespace sightline::reproduce {
 
 namespace {
 
-constexpr const char* kPaper = "object_frustum";
+constexpr const char* kTrees = "object_frustum";
 
-std::optional<double> value_of(const DrawnFrame& frame, std::string_view what) {
+std::optional<double> frame_value(const DrawnFrame& frame, std::string_view what) {
   if (what == "gpu_ms") return frame.gpu;
   if (frame.cpu <= 0) return std::nullopt;
   return what == "cpu_ms" ? frame.cpu : 1000 / frame.cpu;
 }
 
 // Of a run, or their mean: frames/s are the mean of the runs' frames/s, as the paper's average is.
-std::optional<double> ours(const ObjectFrustumResult& result, std::size_t run, std::string_view column) {
+std::optional<double> our_value(const ObjectFrustumResult& result, std::size_t run, std::string_view column) {
   const bool grid = column.starts_with("unity_");
   const std::string_view what = column.substr(column.find('_') + 1);
   const auto of = [&](const ObjectFrustumRun& r) {
-    return value_of(grid ? r.grid_cell : r.object_frustum, what);
+    return frame_value(grid ? r.grid_cell : r.object_frustum, what);
   };
   if (run < result.runs.size()) return of(result.runs[run]);
   if (result.runs.empty() || run < kPublishedRuns) return std::nullopt;
@@ -43,13 +43,13 @@ std::optional<double> ours(const ObjectFrustumResult& result, std::size_t run, s
   return sum / static_cast<double>(result.runs.size());
 }
 
-std::string words(std::string column) {
+std::string spaced(std::string column) {
   std::ranges::replace(column, '_', ' ');
   return column;
 }
 
 PaperTable table_2(const ObjectFrustumResult& result) {
-  const Published& csv = published(kPaper);
+  const Published& csv = published(kTrees);
   PaperTable table;
   table.name = "table 2";
   table.title =
@@ -57,12 +57,12 @@ PaperTable table_2(const ObjectFrustumResult& result) {
       "and grid-cell here, \"ours\" the paper's method and object-frustum";
   table.keys = {"run"};
   const std::vector<std::string> columns(csv.header().begin() + 1, csv.header().end());
-  for (const std::string& column : columns) table.columns.push_back(words(column));
+  for (const std::string& column : columns) table.columns.push_back(spaced(column));
   for (std::size_t run = 0; run < csv.rows().size(); ++run) {
     const std::string& name = csv.rows()[run].front();
     PaperTable::Row row{{name}, {}};
     for (const std::string& column : columns)
-      row.cells.push_back({csv.text({{"run", name}}, column), ours(result, run, column), {}});
+      row.cells.push_back({csv.text({{"run", name}}, column), our_value(result, run, column), {}});
     table.rows.push_back(std::move(row));
   }
   table.base = PaperTable::Base::row;
@@ -75,7 +75,7 @@ PaperTable table_2(const ObjectFrustumResult& result) {
   return table;
 }
 
-PaperTable ratio_table(const ObjectFrustumResult& result) {
+PaperTable averages_table(const ObjectFrustumResult& result) {
   PaperTable table;
   table.name = "table 2, averages";
   table.title = "unity / ours: what testing objects instead of cells saves";
@@ -97,7 +97,7 @@ const ObjectFrustumForm* form_of(const ObjectFrustumResult& result, std::string_
   return nullptr;
 }
 
-std::vector<std::string> sentences(const ObjectFrustumResult& result) {
+std::vector<std::string> tree_sentences(const ObjectFrustumResult& result) {
   const PublishedAverages cpu = averages_of(result, "cpu_ms"), gpu = averages_of(result, "gpu_ms");
   std::vector<std::string> out{fmt::format(
       "The paper claims that testing the objects of crossing cells, instead of drawing all of them, takes "
@@ -123,7 +123,7 @@ std::vector<std::string> sentences(const ObjectFrustumResult& result) {
 }  // namespace
 
 PublishedAverages averages_of(const ObjectFrustumResult& result, std::string_view what) {
-  const Published& csv = published(kPaper);
+  const Published& csv = published(kTrees);
   const auto column = [&](const char* whose) { return fmt::format("{}_{}", whose, what); };
   const auto printed = [&](const char* whose) {
     return number_of(csv.text({{"run", "average"}}, column(whose)));
@@ -131,8 +131,8 @@ PublishedAverages averages_of(const ObjectFrustumResult& result, std::string_vie
   PublishedAverages out;
   const auto theirs_unity = printed("unity"), theirs = printed("ours");
   if (theirs_unity && theirs && *theirs > 0) out.published = *theirs_unity / *theirs;
-  const auto grid = ours(result, kPublishedRuns, column("unity")),
-             fine = ours(result, kPublishedRuns, column("ours"));
+  const auto grid = our_value(result, kPublishedRuns, column("unity")),
+             fine = our_value(result, kPublishedRuns, column("ours"));
   if (grid && fine && *fine > 0) out.ours = *grid / *fine;
   return out;
 }
@@ -142,8 +142,8 @@ Reproduction object_frustum_reproduction(const ObjectFrustumResult& result) {
   out.paper = "object-frustum";
   out.title = "Le Hoang Minh et al. 2022: object-level frustum culling";
   out.machine = result.machine.empty() ? "nothing was measured" : result.machine;
-  out.sentences = sentences(result);
-  out.tables = {table_2(result), ratio_table(result)};
+  out.sentences = tree_sentences(result);
+  out.tables = {table_2(result), averages_table(result)};
   out.sections = object_frustum_sections(result);
   return out;
 }

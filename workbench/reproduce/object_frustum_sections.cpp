@@ -15,7 +15,7 @@ namespace {
 using report::format_count;
 using report::format_ms;
 
-std::string count(std::uint64_t number) {
+std::string whole_number(std::uint64_t number) {
   return format_count(static_cast<double>(number));
 }
 
@@ -85,9 +85,10 @@ PaperSection losses_section(const ObjectFrustumResult& result) {
                       {},
                       1};
   for (const WalkLoss& loss : result.walk_losses) {
-    table.rows.push_back({fmt::format("{:.1f}", loss.height), count(loss.kept), count(loss.kept_as_printed),
-                          count(loss.missing), count(loss.lost_objects), count(loss.lost_pixels),
-                          count(loss.lost_repaired)});
+    table.rows.push_back({fmt::format("{:.1f}", loss.height), whole_number(loss.kept),
+                          whole_number(loss.kept_as_printed), whole_number(loss.missing),
+                          whole_number(loss.lost_objects), whole_number(loss.lost_pixels),
+                          whole_number(loss.lost_repaired)});
   }
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
   section.note =
@@ -139,10 +140,10 @@ PaperSection forms_section(const ObjectFrustumResult& result) {
   report::Table times{{"method", "draw calls", "cull ms", "CPU ms", "GPU ms"}, {}, 1};
   for (const ObjectFrustumForm& form : result.forms) {
     const bool gpu = form.drawn && form.drawn->gpu;
-    sets.rows.push_back({spelt(form.method), std::string(to_string(form.guarantee)), count(form.kept),
-                         count(form.tested), count(form.missing), count(form.lost_objects),
-                         count(form.lost_pixels)});
-    times.rows.push_back({spelt(form.method), count(form.draw_calls), format_ms(form.cull_ms),
+    sets.rows.push_back({spelt(form.method), std::string(to_string(form.guarantee)), whole_number(form.kept),
+                         whole_number(form.tested), whole_number(form.missing),
+                         whole_number(form.lost_objects), whole_number(form.lost_pixels)});
+    times.rows.push_back({spelt(form.method), whole_number(form.draw_calls), format_ms(form.cull_ms),
                           form.drawn ? format_ms(form.drawn->cpu) : "–",
                           gpu ? format_ms(*form.drawn->gpu) : "–"});
   }

@@ -15,9 +15,9 @@ namespace sightline::reproduce {
 
 namespace {
 
-constexpr float kCell = 100;
+constexpr float kFigureCell = 100;
 // Small things near the corners of every cell fill it, so that its tight bounds are nearly the whole of it.
-constexpr float kInset = 5, kSize = 0.5f;
+constexpr float kCornerInset = 5, kCornerSize = 0.5f;
 // Wide enough that, as the paper draws it, row 1 lies across the limits three cells wide and row 3 is wholly
 // in sight but for its ends.
 constexpr float kTangent = 1.1f;
@@ -26,17 +26,19 @@ partition::ObjectGrid grid_of(const WalkFigure& figure) {
   Boxes boxes;
   for (std::uint32_t row = 0; row < figure.rows; ++row) {
     for (std::uint32_t column = 0; column < figure.columns; ++column) {
-      const float x = static_cast<float>(column) * kCell, z = -static_cast<float>(figure.rows - row) * kCell;
-      for (const auto& [dx, dz] : {std::pair{kInset, kInset},
-                                   {kCell - kInset, kInset},
-                                   {kInset, kCell - kInset},
-                                   {kCell - kInset, kCell - kInset}}) {
-        boxes.push_back({{x + dx - kSize, -kSize, z + dz - kSize}, {x + dx + kSize, kSize, z + dz + kSize}});
+      const float x = static_cast<float>(column) * kFigureCell,
+                  z = -static_cast<float>(figure.rows - row) * kFigureCell;
+      for (const auto& [dx, dz] : {std::pair{kCornerInset, kCornerInset},
+                                   {kFigureCell - kCornerInset, kCornerInset},
+                                   {kCornerInset, kFigureCell - kCornerInset},
+                                   {kFigureCell - kCornerInset, kFigureCell - kCornerInset}}) {
+        boxes.push_back({{x + dx - kCornerSize, -kCornerSize, z + dz - kCornerSize},
+                         {x + dx + kCornerSize, kCornerSize, z + dz + kCornerSize}});
       }
     }
   }
   partition::ObjectGrid grid;
-  grid.build(boxes, kCell, {figure.rows, figure.columns});
+  grid.build(boxes, kFigureCell, {figure.rows, figure.columns});
   return grid;
 }
 
@@ -67,7 +69,7 @@ WalkFigure walked(std::uint32_t rows, std::uint32_t columns, float sight_limit) 
   return figure;
 }
 
-std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
+std::vector<ObjectId> in_order(std::vector<ObjectId> objects) {
   std::ranges::sort(objects);
   return objects;
 }
@@ -76,7 +78,7 @@ std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
 
 std::size_t missing_of(const std::vector<ObjectId>& all, const std::vector<ObjectId>& some) {
   std::vector<ObjectId> missing;
-  std::ranges::set_difference(sorted(all), sorted(some), std::back_inserter(missing));
+  std::ranges::set_difference(in_order(all), in_order(some), std::back_inserter(missing));
   return missing.size();
 }
 
@@ -103,7 +105,7 @@ std::vector<WalkLoss> measure_walk_losses(Scene& scene, std::uint32_t width, std
 
 Camera walk_camera(const WalkFigure& figure) {
   Camera camera;
-  camera.eye = {0.5f * static_cast<float>(figure.columns) * kCell, 0, 0};
+  camera.eye = {0.5f * static_cast<float>(figure.columns) * kFigureCell, 0, 0};
   camera.vertical_fov = 2 * std::atan(kTangent);
   camera.far_plane = figure.sight_limit;
   return camera;
@@ -123,8 +125,10 @@ std::vector<DrawnCell> walk_cells(const WalkFigure& figure, const CellLists& lis
                         : in(lists.crossing, cell) ? DrawnCell::Kind::crossing
                         : in_sight                 ? DrawnCell::Kind::lost
                                                    : DrawnCell::Kind::outside;
-      const float x = static_cast<float>(column) * kCell, z = -static_cast<float>(cell.first) * kCell;
-      cells.push_back({{{x, 0, z}, {x + kCell, 0, z + kCell}}, cell_number(grid, row, column), kind});
+      const float x = static_cast<float>(column) * kFigureCell,
+                  z = -static_cast<float>(cell.first) * kFigureCell;
+      cells.push_back(
+          {{{x, 0, z}, {x + kFigureCell, 0, z + kFigureCell}}, cell_number(grid, row, column), kind});
     }
   }
   return cells;
