@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/reproduce/object_frustum.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
@@ -63,8 +64,9 @@ struct File {
   std::set<std::string> keys;
 };
 
-// What was measured is left out: what is printed must stand there all the same.
-void expect_whole(const Reproduction& reproduction, const std::vector<File>& files) {
+// What was measured is left out: what is printed must stand there all the same. `derived` cells hold what
+// follows from printed numbers.
+void expect_whole(const Reproduction& reproduction, const std::vector<File>& files, std::size_t derived = 0) {
   const Json document = Json::parse(json(reproduction));
   std::size_t numbers = 0;
   for (const File& file : files) {
@@ -78,12 +80,17 @@ void expect_whole(const Reproduction& reproduction, const std::vector<File>& fil
       }
     }
   }
-  EXPECT_EQ(published_cells(document), numbers) << "a number that no file holds, or one told twice";
+  EXPECT_EQ(published_cells(document), numbers + derived) << "a number that no file holds, or one told twice";
   EXPECT_GT(numbers, 10u);
 }
 
 TEST(Published, EveryNumberOfTheVertexChunksStandsInItsCell) {
   expect_whole(vertex_chunk_reproduction({}), {{"vertex_chunk", {"table", "world", "view", "method"}}});
+}
+
+TEST(Published, EveryNumberOfTheObjectFrustumStandsInItsCell) {
+  expect_whole(object_frustum_reproduction({}), {{"object_frustum", {"run"}}},
+               3);  // three ratios of its means
 }
 
 TEST(Published, RefusesWhatIsNoTable) {
