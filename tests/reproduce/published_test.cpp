@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
@@ -84,6 +85,10 @@ void expect_whole(const Reproduction& reproduction, const std::vector<File>& fil
 
 TEST(Published, EveryNumberOfTheVertexChunksStandsInItsCell) {
   expect_whole(vertex_chunk_reproduction({}), {{"vertex_chunk", {"table", "world", "view", "method"}}});
+}
+
+TEST(Published, EveryNumberOfTheDrawCallsStandsInItsCell) {
+  expect_whole(draw_calls_reproduction({}), {{"draw_calls", {"triangles"}}, {"draw_calls_text", {"what"}}});
 }
 
 TEST(Published, RefusesWhatIsNoTable) {
