@@ -172,6 +172,7 @@ TEST(DrawCallReproduction, SaysWhatWasMeasured) {
   EXPECT_EQ(cell_of(out.tables[1], "best height over all scenes", 0).our_words, "3");
   EXPECT_EQ(cell_of(out.tables[1], "simple / others: draw calls", 0).ours, 6);
   EXPECT_EQ(cell_of(out.tables[1], "octree height 4 Manor: nodes created about", 0).our_words, "77");
+  EXPECT_EQ(cell_of(out.tables[1], "octree height 4 Manor: nodes created about", 0).ours, 77);
   EXPECT_EQ(cell_of(out.tables[1], "zhang octree Manor: triangles culled more about", 0).our_words, "100");
   ASSERT_EQ(out.sentences.size(), 3u);
   EXPECT_THAT(out.sentences[1], HasSubstr("simple makes 10.0 to 10.0 × the calls"));
