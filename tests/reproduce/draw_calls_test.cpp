@@ -4,13 +4,16 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <set>
 
 #include <fmt/format.h>
 
+#include <sightline/workbench/io.hpp>
 #include <sightline/workbench/worlds.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "workbench/reproduce/draw_call_sections.hpp"
 #include "workbench/reproduce/least_squares.hpp"
 
@@ -198,6 +201,23 @@ TEST(DrawCallReproduction, HasEveryFigureOfThePaperMeasuredOrNot) {
     }
   }
   EXPECT_EQ(empty.sentences[1], "Nothing was measured.");
+}
+
+TEST(DrawCallReproduction, EveryPictureThatThePageNamesLiesBesideIt) {
+  DrawCallMeasurement measured;
+  measured.walks = {made_up_level()};
+  measured.walks[0].level = "pak1-maps.pk3:maps/ce1m7.bsp";
+  measured.walks[0].path = turn_and_walk(load_scene(measured.walks[0].level), 2, 3);
+  const test::TemporaryFolder folder;
+  write_level_pictures(folder.path().string(), measured);
+  const std::string html = levels_section(measured.walks).html;
+  std::size_t named = 0;
+  for (std::size_t at = html.find("src=\""); at != std::string::npos;
+       at = html.find("src=\"", at + 5), ++named) {
+    const std::string file = html.substr(at + 5, html.find('"', at + 5) - at - 5);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / file)) << file;
+  }
+  EXPECT_EQ(named, 5u);
 }
 
 }  // namespace
