@@ -60,7 +60,7 @@ struct WalkRow {
 
   /// One of the nine families with no other parameter than its height.
   [[nodiscard]] bool is_of_the_paper() const noexcept;
-  /// Exact and neither `adaptive` nor `none` nor `nothing`.
+  /// Exact, of what `adaptive` chooses among: neither itself nor `none` nor `nothing`, and without occlusion.
   [[nodiscard]] bool may_be_best() const noexcept;
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
@@ -102,7 +102,7 @@ struct LevelWalk {
   [[nodiscard]] const WalkRow& row(std::string_view method) const;
   [[nodiscard]] const StructureCount& count(std::string_view structure, std::uint32_t height,
                                             std::string_view rules) const;
-  /// The quickest exact one, `adaptive` and `none` apart, by the final where one was held.
+  /// The quickest that may be best, by the final where one was held.
   [[nodiscard]] const WalkRow& best() const;
   /// The quickest of the nine families.
   [[nodiscard]] const WalkRow& best_of_the_paper() const;

@@ -214,7 +214,8 @@ bool WalkRow::is_of_the_paper() const noexcept {
 }
 
 bool WalkRow::may_be_best() const noexcept {
-  return family != "adaptive" && family != "none" && family != "nothing" && lost_pixels == 0;
+  return family != "adaptive" && family != "none" && family != "nothing" && lost_pixels == 0 &&
+         method.find("occlusion=") == std::string::npos;
 }
 
 const WalkRow* LevelWalk::find(std::string_view method) const noexcept {

@@ -204,7 +204,7 @@ PaperSection outcomes_section(const LevelWalks& walks) {
   report::Table table;
   table.text_columns = 3;
   table.header = {"level",
-                  "quickest",
+                  "quickest without occlusion",
                   "adaptive settled on",
                   "after frames",
                   "adaptive / quickest",
