@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 folder=$build/surfaces
 mkdir -p "$folder"
 
-still=300 moving=60
+still=300 moving=60 forms=
 scenes=(world:foliage)
 for show in leaves grate sides; do
   "$build/sightline" generate "world:cards?show=$show" --output "$folder/$show.glb" >/dev/null
@@ -23,13 +23,20 @@ if [ "$full" = --full ]; then
   scenes+=('world:regular?columns=60&rows=60&detail=1' 'world:irregular?spheres=3000&detail=1' 'world:forest?trees=3000&size=300'
            'world:city?objects=10000' 'world:city?objects=3000&offset=1e7' 'world:foliage?offset=-1e7')
   triangles=cluster-cone,adaptive
-  for structure in grid octree kd-tree; do triangles+=,simple-$structure,drawcall-wise-$structure,zhang-$structure; done
-  for name in oasago2 oa_dm1 kaos2 ctf_inyard czest2ctf; do level $name; done
+  for structure in grid octree kd-tree; do
+    triangles+=,simple-$structure,drawcall-wise-$structure,zhang-$structure
+    # Forms that only parameters ask for.
+    forms+=${forms:+,}simple-$structure'?least=0&cells=printed',drawcall-wise-$structure'?least=0&cells=printed'
+    forms+=,drawcall-wise-$structure'?occlusion=masked',zhang-$structure'?planes=xy',zhang-$structure'?planes=both'
+  done
+  for name in oasago2 oa_dm1 kaos2 ce1m7 wrackdm17 ctf_inyard czest2ctf; do level $name; done
 fi
 
 ways=("--views $still" "--views $moving --moving 0.1" "--views $still --device any"
       "--views $moving --device any --moving 0.1")
-[ "$full" != --full ] || ways+=("--views $still --device any --methods $triangles")
+[ "$full" != --full ] ||
+  ways+=("--views $still --device any --methods $triangles" "--views 300 --methods $forms"
+         "--views 60 --device any --methods $forms")
 failed=0
 for scene in "${scenes[@]}"; do
   start=$SECONDS lost=0

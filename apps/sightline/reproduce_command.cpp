@@ -10,6 +10,7 @@
 #include "reproduce_ray_pvs.hpp"
 #include "workbench/device/renderer.hpp"
 #include "workbench/io/text_file.hpp"
+#include "workbench/measure/machine.hpp"
 #include "workbench/report/page_folder.hpp"
 #include "workbench/report/summary.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
@@ -60,27 +61,18 @@ int run_vertex_chunk(const ReproduceOptions& options) {
 }
 
 int run_draw_calls(const ReproduceOptions& options) {
-  const auto opened = open_device(options.device.empty() ? "any" : options.device);
-  device::Device& device = *opened;
+  const auto device = open_device(options.device.empty() ? "any" : options.device);
   const reproduce::DrawCallOptions how{.quick = options.quick};
-  fmt::print("Serpa, Serpa & Rodrigues on {} ({})\n\n", device.info().name, device.info().driver);
-  const reproduce::CallGrid grid = reproduce::measure_call_grid(device, how, progress("table 1"));
-  fmt::print("Table 1: random triangles in draw calls, {}x{}\n\n{}\n", how.width, how.height,
-             render(reproduce::table_of(grid)));
-  fmt::print("{}", reproduce::findings(grid));
-  std::vector<reproduce::LevelWalk> walks;
-  for (const reproduce::LevelChoice& level : reproduce::kDrawCallLevels) {
-    walks.push_back(reproduce::walk_level(device, level, how, progress(level.kind)));
-    const reproduce::LevelWalk& walk = walks.back();
-    fmt::print("\n{}: {}, {} triangles, {} views of {}x{}\n\n{}\n{}\n{}\n{}\n{}", walk.level, walk.kind,
-               report::format_count(static_cast<double>(walk.triangles)), walk.views, how.width, how.height,
-               render(reproduce::heights_table(walk)), render(reproduce::calls_table(walk)),
-               render(reproduce::methods_table(walk)), render(reproduce::submission_table(walk)),
-               reproduce::findings(walk));
-    std::fflush(stdout);
-  }
-  if (!options.report.empty())
-    reproduce::write_draw_call_report(options.report, device.info().name, grid, walks);
+  const measure::Machine machine = measure::this_machine();
+  reproduce::DrawCallMeasurement measured;
+  measured.machine = fmt::format("{} ({}), {}, {} hardware threads, {}x{}", device->info().name,
+                                 device->info().driver, machine.cpu, machine.cores, how.width, how.height);
+  measured.rates = reproduce::measure_call_rates(*device, how, progress("table 1"));
+  for (const reproduce::LevelChoice& level : reproduce::kDrawCallLevels)
+    measured.walks.push_back(reproduce::walk_level(*device, level, how, progress(level.kind)));
+  expect_silence(device.get());
+  if (!options.report.empty()) reproduce::write_level_pictures(options.report, measured);
+  give(reproduce::draw_calls_reproduction(measured), options);
   return Exit::done;
 }
 

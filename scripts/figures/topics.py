@@ -3,7 +3,8 @@ takes minutes."""
 import re
 import time
 
-from figures.programs import BUILD, compare, google_benchmark, number, run, sightline, tables
+from figures.programs import (BUILD, compare, google_benchmark, number, reproduced, run, sightline, table_of,
+                              tables)
 from figures.results import Row, Wrong, compare_with, row_of
 
 LEVEL = "pak1-maps.pk3:maps/{}.bsp"
@@ -135,29 +136,31 @@ def surfaces(quick):
 
 
 def draw_calls(quick):
-    """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, and what adaptive's
-    frames cost beside the quickest method's. Minutes long, so not in a quick run."""
+    """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, calls of both at every
+    height by ours and by the paper's rules, and what adaptive's frames cost beside the quickest method's. Many minutes
+    long, so not in a quick run."""
     if quick:
         return []
-    said = sightline("reproduce", "draw-calls", "--quick")
+    said = reproduced("draw-calls")
     rows = []
-    for level, part in re.findall(r"^\S*/(\w+)\.bsp: (.*?)(?=^\S*\.bsp: |\Z)", said, re.M | re.S):
-        calls = next(table for table in tables(part) if "drawcall-wise's" in table[0])
-        for line in calls:
-            structure, height = line["simple / drawcall-wise"].removesuffix(" (best)").split(", height ")
-            if height != "4":
-                continue
-            small = next(key for key in line if key.startswith("frame at"))
-            for what, column in (("calls", "ratio"), ("small-frame", small), ("frame", "frame"), ("record", "CPU")):
-                rows.append(Row(level, f"simple-to-wise/{structure}/{what}", "×", number(line[column])))
-            rows.append(Row(level, f"zhang-to-wise/{structure}/triangles", "×", number(line["triangles zhang / wise"])))
-        for what, pattern in (("adaptive-to-quickest/frame", r"takes ([\d.]+) × the frame time of the quickest"),
-                              ("adaptive/learning", r"in (\d+) frames; in the final"),
-                              ("cone-to-zhang-octree/triangles", r"cluster-cone submits ([\d.]+) ×")):
-            found = re.search(pattern, part)
-            if not found:
-                raise Wrong(f"reproduce draw-calls said nothing of {what} on {level}")
-            rows.append(Row(level, what, "frames" if what.endswith("learning") else "×", float(found.group(1))))
+    for line in table_of(said, "text: simple against drawcall-wise"):
+        if line["height"] != "4":
+            continue
+        level, structure = line["level"], line["structure"]
+        small = next(key for key in line if key.startswith("frame at"))
+        for what, column in (("calls", "calls"), ("small-frame", small), ("frame", "frame"), ("record", "CPU")):
+            rows.append(Row(level, f"simple-to-wise/{structure}/{what}", "×", number(line[column])))
+        rows.append(Row(level, f"zhang-to-wise/{structure}/triangles", "×", number(line["triangles zhang / wise"])))
+    for line in table_of(said, "text: structures as printed"):
+        case = f"{line['structure']}/{line['rules']}/height-{line['height']}"
+        for method, column in (("simple", "simple's calls"), ("drawcall-wise", "drawcall-wise's")):
+            rows.append(Row(line["level"], f"calls-of-{method}/{case}", "calls", number(line[column])))
+        rows.append(Row(line["level"], f"calls-simple-to-wise/{case}", "×", number(line["ratio"])))
+    for line in table_of(said, "beyond the paper, by level"):
+        for what, unit, column in (("adaptive-to-quickest/frame", "×", "adaptive / quickest"),
+                                   ("adaptive/learning", "frames", "after frames"),
+                                   ("cone-to-zhang-octree/triangles", "×", "triangles cluster-cone / zhang-octree")):
+            rows.append(Row(line["level"], what, unit, number(line[column])))
     if not rows:
         raise Wrong("reproduce draw-calls named no level")
     return rows + extremes(rows)

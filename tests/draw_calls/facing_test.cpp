@@ -103,6 +103,33 @@ TEST(Facing, PartsAreSectorsOf45Degrees) {
   EXPECT_EQ(part_of({0, -1, 0}), kSteep);
 }
 
+TEST(Facing, PartsOnXyAreSectorsOfThatPlane) {
+  for (int degrees = 0; degrees < 360; ++degrees) {
+    const double turn = (degrees + 0.5) * std::numbers::pi / 180;
+    const Vec3 across{static_cast<float>(std::cos(turn)), static_cast<float>(std::sin(turn)), 0};
+    const auto sector = static_cast<std::uint32_t>((degrees + 180) % 360 / 45);
+    EXPECT_EQ(part_of(across, PartPlanes::xy), kOnXy + sector) << degrees;
+    const bool steep = std::fabs(across.y) > std::fabs(across.x);
+    EXPECT_EQ(part_of(across, PartPlanes::both), steep ? kOnXy + sector : part_of(across)) << degrees;
+  }
+  EXPECT_EQ(part_of({0, 0, 1}, PartPlanes::xy), kSteep);
+  EXPECT_EQ(part_of({0, 0, 1}, PartPlanes::both), part_of({0, 0, 1}));
+  EXPECT_EQ(part_of({0, 0, 0}, PartPlanes::both), kSteep);
+}
+
+// Looking down, a floor's sector is that which the view vector comes from, a ceiling's that which it goes to.
+TEST(Facing, ThePrintedRuleJudgesAPartOnItsOwnPlane) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+  const std::vector<std::uint32_t> up{0, 2, 1}, down{0, 1, 2}, ids{0};
+  const View view = *make_view({.eye = {0.2f, 9, 0.2f}, .forward = {0.1f, -1, 0}, .up = {1, 0, 0}}, 64, 64);
+  const Facing facing(view, FacingRule::printed);
+  for (const PartPlanes planes : {PartPlanes::xy, PartPlanes::both}) {
+    EXPECT_TRUE(facing.may_face(cone_of({positions, up}, ids, kEverywhere, planes)));
+    EXPECT_FALSE(facing.may_face(cone_of({positions, down}, ids, kEverywhere, planes)));
+  }
+  EXPECT_TRUE(facing.may_face(cone_of({positions, down}, ids, kEverywhere, PartPlanes::xz)));
+}
+
 // A wall to the side, seen under perspective from in front, faces the eye although its sector is next to the
 // view vector's: what the printed rule loses.
 TEST(Facing, ThePrintedRuleDropsWallsThatFaceTheEye) {

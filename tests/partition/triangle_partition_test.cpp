@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include <sightline/workbench/error.hpp>
+
 #include "support/random_views.hpp"
 #include "support/triangles.hpp"
 #include "workbench/partition/triangle_box.hpp"
@@ -29,6 +31,7 @@ struct Flat {
 };
 
 constexpr std::array kStructures{Structure::grid, Structure::octree, Structure::kd_tree};
+constexpr CellRules kToTheHeight{.least = 0}, kPrinted{.least = 0, .printed = true};
 
 bool holds(const Box& box, const Vec3& p, float room) {
   return p.x >= box.min.x - room && p.x <= box.max.x + room && p.y >= box.min.y - room &&
@@ -70,9 +73,11 @@ TEST(TrianglePartition, EveryPointOfATriangleIsInACellOfIts) {
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     const Flat flat(triangles);
     for (const Structure structure : kStructures) {
-      for (std::uint32_t height = 1; height <= 6; ++height) {
+      for (std::uint32_t height = 1; height <= 8; ++height) {
         TrianglePartition partition;
-        partition.build(structure, flat.span(), flat.ids, height);
+        // The last two times the paper's rules, at a height that some triangles fill with copies.
+        const CellRules rules = height == 7 ? kToTheHeight : height == 8 ? kPrinted : CellRules{};
+        partition.build(structure, flat.span(), flat.ids, height > 6 ? 3 : height, rules);
         SCOPED_TRACE(name + " structure " + std::to_string(static_cast<int>(structure)) + " height " +
                      std::to_string(height));
         expect_sound_tree(partition, triangles.size());
@@ -157,6 +162,62 @@ TEST(TrianglePartition, TreesKeepFewTrianglesInOneCell) {
   }
 }
 
+// As the paper has it: however few triangles, and whatever that multiplies.
+TEST(TrianglePartition, WithoutALeastEveryNodeIsSplitToTheHeight) {
+  scene::Random random(48);
+  std::vector<test::Triangle> triangles;
+  for (int i = 0; i < 20; ++i)
+    triangles.push_back(test::random_triangle(random, {{-50, -20, -50}, {50, 20, 50}}, i < 2 ? 60.0f : 0.8f));
+  const Flat flat(triangles);
+  for (const Structure structure : kStructures) {
+    TrianglePartition partition;
+    partition.build(structure, flat.span(), flat.ids, 3, kToTheHeight);
+    expect_sound_tree(partition, triangles.size());
+    // Depth of each leaf: nodes that it lies under.
+    const auto nodes = partition.nodes();
+    for (std::uint32_t leaf = 0; leaf < nodes.size(); ++leaf) {
+      if (nodes[leaf].next != leaf + 1) continue;
+      int depth = 0;
+      for (std::uint32_t above = 0; above < leaf; ++above) depth += nodes[above].next > leaf;
+      ASSERT_EQ(depth, 3) << "structure " << static_cast<int>(structure);
+    }
+  }
+}
+
+TEST(TrianglePartition, PrintedCellsAreEqualAndAGridsAreAsHighAsEverything) {
+  const Flat flat(test::awkward_triangles()[0].triangles);
+  for (const Structure structure : kStructures) {
+    TrianglePartition printed, tight;
+    printed.build(structure, flat.span(), flat.ids, 3, kPrinted);
+    tight.build(structure, flat.span(), flat.ids, 3, kToTheHeight);
+    ASSERT_EQ(printed.cells(), tight.cells());
+    const Box all = printed.nodes()[0].bounds;
+    std::uint32_t larger = 0;
+    for (std::uint32_t cell = 0; cell < printed.cells(); ++cell) {
+      const Box &cut = printed.bounds(cell), &shown = tight.bounds(cell);
+      ASSERT_EQ(cut, printed.region(cell));
+      ASSERT_EQ(united(cut, shown), cut);
+      larger += cut != shown;
+      if (structure == Structure::kd_tree) continue;
+      ASSERT_NEAR(cut.max.x - cut.min.x, (all.max.x - all.min.x) / 8, 1e-3);
+      ASSERT_NEAR(cut.max.y - cut.min.y, (all.max.y - all.min.y) / (structure == Structure::grid ? 1 : 8),
+                  1e-3);
+    }
+    EXPECT_GT(larger, printed.cells() / 2);
+  }
+}
+
+TEST(TrianglePartition, RefusesMoreCopiesThanTheRulesAllow) {
+  const Flat flat(test::awkward_triangles()[0].triangles);
+  CellRules rules = kToTheHeight;
+  rules.most_held = flat.ids.size();
+  TrianglePartition partition;
+  EXPECT_THROW(partition.build(Structure::octree, flat.span(), flat.ids, 3, rules), Error);
+  rules.most_held = 100 * flat.ids.size();
+  partition.build(Structure::octree, flat.span(), flat.ids, 3, rules);
+  EXPECT_GT(partition.cells(), 1u);
+}
+
 TEST(TrianglePartition, KdTreeSplitsAtTheMeanOfTheAxisOfHighestVariance) {
   std::vector<test::Triangle> triangles;
   for (int i = 0; i < 8; ++i) {
@@ -175,8 +236,11 @@ TEST(TrianglePartition, WalkFindsExactlyTheCellsThatOverlap) {
   constexpr Box kAround{{-60, -25, -60}, {60, 25, 60}};
   for (const auto& [name, triangles] : test::awkward_triangles()) {
     const Flat flat(triangles);
-    std::vector<TrianglePartition> partitions(4);
-    for (std::size_t s = 0; s < 3; ++s) partitions[s].build(kStructures[s], flat.span(), flat.ids, 4);
+    std::vector<TrianglePartition> partitions(7);
+    for (std::size_t s = 0; s < 3; ++s) {
+      partitions[s].build(kStructures[s], flat.span(), flat.ids, 4);
+      partitions[4 + s].build(kStructures[s], flat.span(), flat.ids, 3, kPrinted);
+    }
     partitions[3].build_clusters(flat.span(), flat.ids, 32);
     scene::Random random(43);
     for (const TrianglePartition& partition : partitions) {

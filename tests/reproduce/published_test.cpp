@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
@@ -91,6 +92,10 @@ TEST(Published, EveryNumberOfTheVertexChunksStandsInItsCell) {
 TEST(Published, EveryNumberOfTheObjectFrustumStandsInItsCell) {
   expect_whole(object_frustum_reproduction({}), {{"object_frustum", {"run"}}},
                3);  // three ratios of its means
+}
+
+TEST(Published, EveryNumberOfTheDrawCallsStandsInItsCell) {
+  expect_whole(draw_calls_reproduction({}), {{"draw_calls", {"triangles"}}, {"draw_calls_text", {"what"}}});
 }
 
 TEST(Published, RefusesWhatIsNoTable) {

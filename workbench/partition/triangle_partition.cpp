@@ -1,18 +1,27 @@
 #include "workbench/partition/triangle_partition.hpp"
 
 #include <algorithm>
-#include <array>
+#include <string>
+
+#include <sightline/workbench/error.hpp>
 
 namespace sightline::partition {
 
 namespace {
 
-// What a draw call costs, in triangles: by table 1 of the paper (one call or 100,000 of 100,000 triangles).
-constexpr std::size_t kCallsWorth = 11;
-
 // A split into k saves at best what k − 1 children hold, and costs at worst k − 1 calls: nodes of fewer
 // triangles than k calls are worth have less to gain than to lose. A grid's cells are all alike.
-constexpr std::array<std::size_t, 3> kLeastTriangles{2, 8 * kCallsWorth, 2 * kCallsWorth};
+std::size_t least_triangles(Structure structure, const CellRules& rules) {
+  switch (structure) {
+    case Structure::grid:
+      return rules.least == 0 ? 0 : 2;
+    case Structure::octree:
+      return std::size_t{8} * rules.least;
+    case Structure::kd_tree:
+      break;
+  }
+  return std::size_t{2} * rules.least;
+}
 
 }  // namespace
 
@@ -34,14 +43,21 @@ struct TrianglePartition::Builder {
   TrianglePartition& out;
   const TriangleSpan& all;
   Structure structure;
+  CellRules rules;
+
+  // Whether the node is split, into `parts`.
+  [[nodiscard]] bool divide(std::span<const std::uint32_t> triangles, const Box& region, std::uint32_t levels,
+                            Split& parts) const {
+    if (levels == 0 || triangles.size() < least_triangles(structure, rules)) return false;
+    return split(structure, all, triangles, region, parts) || rules.least == 0;
+  }
 
   // False, and nothing made, where no triangle turned out to reach into the region.
   bool node(std::span<const std::uint32_t> triangles, const Box& region, std::uint32_t levels) {
     const std::size_t self = out.nodes_.size();
     out.nodes_.push_back({{}, 0, out.cells(), 0});
     Split parts;
-    if (levels == 0 || triangles.size() < kLeastTriangles[static_cast<std::size_t>(structure)] ||
-        !split(structure, all, triangles, region, parts)) {
+    if (!divide(triangles, region, levels, parts)) {
       out.nodes_[self].bounds = cell(triangles, region);
     } else {
       bool first = true;
@@ -59,6 +75,7 @@ struct TrianglePartition::Builder {
         out.nodes_.resize(self);
         return false;
       }
+      if (rules.printed) out.nodes_[self].bounds = region;
     }
     out.nodes_[self].next = static_cast<std::uint32_t>(out.nodes_.size());
     out.nodes_[self].last_cell = out.cells();
@@ -66,9 +83,14 @@ struct TrianglePartition::Builder {
   }
 
   Box cell(std::span<const std::uint32_t> triangles, const Box& region) {
+    if (out.triangles_.size() + triangles.size() > rules.most_held) {
+      throw Error("cells of triangles: more than " + std::to_string(rules.most_held) +
+                  " copies; expected a smaller height, or least above 0");
+    }
     Box bounds = shown_within(region, all[triangles.front()]);
     for (const std::uint32_t triangle : triangles)
       bounds = united(bounds, shown_within(region, all[triangle]));
+    if (rules.printed) bounds = region;
     out.triangles_.insert(out.triangles_.end(), triangles.begin(), triangles.end());
     out.cell_start_.push_back(static_cast<std::uint32_t>(out.triangles_.size()));
     out.cell_bounds_.push_back(bounds);
@@ -78,13 +100,14 @@ struct TrianglePartition::Builder {
 };
 
 void TrianglePartition::build(Structure structure, const TriangleSpan& all,
-                              std::span<const std::uint32_t> triangles, std::uint32_t height) {
+                              std::span<const std::uint32_t> triangles, std::uint32_t height,
+                              const CellRules& rules) {
   *this = {};
   if (triangles.empty()) return;
   Box region = bounds_of(all[triangles.front()]);
   for (const std::uint32_t triangle : triangles) region = united(region, bounds_of(all[triangle]));
   triangles_.reserve(triangles.size() + triangles.size() / 4);
-  Builder{*this, all, structure}.node(triangles, region, height);
+  Builder{*this, all, structure, rules}.node(triangles, region, height);
 }
 
 std::uint64_t TrianglePartition::bytes() const noexcept {

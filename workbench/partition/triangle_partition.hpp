@@ -10,12 +10,27 @@
 
 namespace sightline::partition {
 
+/// What a draw call costs, in triangles: by table 1 of the paper (one call or 100,000 of 100,000 triangles).
+inline constexpr std::uint32_t kCallsWorth = 11;
+
+/// How far nodes are split, and how large a cell is taken to be.
+struct CellRules {
+  /// A tree's node of fewer triangles than this for each child stays whole. 0: every node is split to the
+  /// height, even where that multiplies its triangles.
+  std::uint32_t least = kCallsWorth;
+  /// Cells and nodes are the regions that they were split into, those of a grid as high as everything; else
+  /// the tight boxes around what shows within.
+  bool printed = false;
+  std::size_t most_held = 200'000'000;  ///< triangles that all cells may hold together
+  bool operator==(const CellRules&) const = default;
+};
+
 /// A tree whose leaves are the cells. Nodes stand depth first, so the cells under a node are a range, and a
 /// walk needs no stack. A triangle that crosses cells belongs to each; empty cells are not made.
 class TrianglePartition {
 public:
   struct Node {
-    Box bounds;              ///< tight around what the triangles of its cells show within those cells
+    Box bounds;              ///< around what the triangles of its cells show within those cells
     std::uint32_t next = 0;  ///< the node after the last one under this one
     std::uint32_t first_cell = 0, last_cell = 0;  ///< the cells under it
   };
@@ -25,10 +40,11 @@ public:
   };
 
   /// Structures of Serpa et al. over `triangles` (ascending ids into `all`), `height` levels of splitting.
-  /// A node is not split where that would multiply its triangles, nor a tree's where it holds fewer than its
-  /// children's calls are worth. Coordinates are finite.
+  /// Unless the rules say otherwise a node is not split where that would multiply its triangles, nor a tree's
+  /// where it holds fewer than its children's calls are worth. Coordinates are finite. Throws Error where
+  /// cells would hold more than the rules allow.
   void build(Structure structure, const TriangleSpan& all, std::span<const std::uint32_t> triangles,
-             std::uint32_t height);
+             std::uint32_t height, const CellRules& rules = {});
 
   /// Clusters: at most `size` triangles each (4 or more), alike in place and facing, each triangle in exactly
   /// one. meshoptimizer's meshlets; where `size` is more than they hold (85), halves of halves.
@@ -42,7 +58,8 @@ public:
     return std::span(triangles_).subspan(cell_start_[cell], cell_start_[cell + 1] - cell_start_[cell]);
   }
   [[nodiscard]] const Box& bounds(std::uint32_t cell) const noexcept { return cell_bounds_[cell]; }
-  /// The part of space that is the cell's own; its bounds lie within. For clusters the two are the same.
+  /// The part of space that is the cell's own; its bounds lie within. For clusters and printed cells the two
+  /// are the same.
   [[nodiscard]] const Box& region(std::uint32_t cell) const noexcept { return cell_regions_[cell]; }
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept;

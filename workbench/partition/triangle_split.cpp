@@ -17,7 +17,7 @@ struct Planes {
   std::array<bool, 3> cuts{};
 };
 
-// Axis of the highest variance of the triangles' centres, at their mean (section 3.3).
+// Axis of the highest variance of the triangles' centres, at their mean (section 3.2.3).
 Planes mean_plane(const TriangleSpan& all, std::span<const std::uint32_t> triangles) {
   std::array<double, 3> sum{}, squares{};
   const Vec3 origin = all[triangles.front()][0];  // near the data: squares lose little

@@ -4,8 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include <sightline/workbench/error.hpp>
-
+#include "workbench/measure/timing.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline::reproduce {

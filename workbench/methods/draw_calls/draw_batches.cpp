@@ -49,28 +49,30 @@ std::uint64_t DrawBatches::bytes() const noexcept {
 
 namespace {
 
-/// Batches of a strategy's kind, their ranges made by add(batches, triangles).
+/// Batches by the rules, their ranges made by add(batches, triangles).
 template <class Add>
-DrawBatches batches_of(Strategy strategy, const FlatTriangles& flat,
-                       const partition::TrianglePartition& cells, bool with_cones, Add add) {
+DrawBatches batches_of(const BatchRules& rules, const FlatTriangles& flat,
+                       const partition::TrianglePartition& cells, Add add) {
   DrawBatches batches;
   const partition::TriangleSpan all = flat.span();
   // What is drawn from both sides may always face the eye, and is a part of its own.
   const auto has_back = [&](std::uint32_t t) { return flat.sides[flat.objects[t]] == Sides::both; };
   const auto cone = [&](Triangles triangles, std::uint32_t cell) {
-    return std::ranges::any_of(triangles, has_back) ? FacingCone{}
-                                                    : cone_of(all, triangles, cells.region(cell));
+    return std::ranges::any_of(triangles, has_back)
+               ? FacingCone{}
+               : cone_of(all, triangles, cells.region(cell), rules.planes);
   };
   std::array<std::vector<std::uint32_t>, kParts + 1> parts;
   for (std::uint32_t cell = 0; cell < cells.cells(); ++cell) {
     const Triangles triangles = cells.triangles(cell);
-    if (strategy != Strategy::zhang) {
+    if (rules.strategy != Strategy::zhang) {
       add(batches, triangles);
-      if (with_cones) batches.cones.push_back(cone(triangles, cell));
+      if (rules.with_cones) batches.cones.push_back(cone(triangles, cell));
     } else {
       for (auto& part : parts) part.clear();
       for (const std::uint32_t triangle : triangles)
-        parts[has_back(triangle) ? kParts : part_of(unit_normal(all[triangle]))].push_back(triangle);
+        parts[has_back(triangle) ? kParts : part_of(unit_normal(all[triangle]), rules.planes)].push_back(
+            triangle);
       for (const auto& part : parts) {
         if (part.empty()) continue;
         add(batches, part);
@@ -84,11 +86,10 @@ DrawBatches batches_of(Strategy strategy, const FlatTriangles& flat,
 
 }  // namespace
 
-DrawBatches make_draw_batches(Strategy strategy, const FlatTriangles& flat,
-                              const partition::TrianglePartition& cells, TriangleOrder& order,
-                              bool with_cones) {
-  return batches_of(strategy, flat, cells, with_cones, [&](DrawBatches& batches, Triangles triangles) {
-    if (strategy == Strategy::simple) {
+DrawBatches make_draw_batches(const BatchRules& rules, const FlatTriangles& flat,
+                              const partition::TrianglePartition& cells, TriangleOrder& order) {
+  return batches_of(rules, flat, cells, [&](DrawBatches& batches, Triangles triangles) {
+    if (rules.strategy == Strategy::simple) {
       add_runs(batches, flat, triangles, [](std::uint32_t triangle) { return triangle; });
     } else {
       add_copy(batches, flat, triangles, order);
@@ -96,15 +97,15 @@ DrawBatches make_draw_batches(Strategy strategy, const FlatTriangles& flat,
   });
 }
 
-DrawBatches make_blended_batches(Strategy strategy, const FlatTriangles& flat,
+DrawBatches make_blended_batches(const BatchRules& rules, const FlatTriangles& flat,
                                  const partition::TrianglePartition& cells,
                                  std::span<const std::uint32_t> triangles,
-                                 std::span<const std::uint32_t> positions, bool with_cones) {
+                                 std::span<const std::uint32_t> positions) {
   const auto position = [&](std::uint32_t triangle) {
     return positions[static_cast<std::size_t>(std::ranges::lower_bound(triangles, triangle) -
                                               triangles.begin())];
   };
-  return batches_of(strategy, flat, cells, with_cones,
+  return batches_of(rules, flat, cells,
                     [&](DrawBatches& batches, Triangles some) { add_runs(batches, flat, some, position); });
 }
 

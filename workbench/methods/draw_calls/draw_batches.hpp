@@ -14,7 +14,14 @@ namespace sightline::methods {
 enum class Strategy : std::uint8_t {
   simple,         ///< one global list; a cell draws each contiguous run of its triangles
   drawcall_wise,  ///< each cell owns a copy of its triangles: one range
-  zhang,          ///< each cell's copy in nine parts by facing: a range a part that can face the eye
+  zhang,          ///< each cell's copy in parts by facing: a range a part that can face the eye
+};
+
+/// How a cell's triangles become batches.
+struct BatchRules {
+  Strategy strategy = Strategy::drawcall_wise;
+  PartPlanes planes = PartPlanes::xz;  ///< of zhang's parts
+  bool with_cones = false;             ///< for batches that are not zhang's, too
 };
 
 /// A range of a triangle list.
@@ -39,17 +46,15 @@ struct DrawBatches {
 using TriangleOrder = std::vector<std::uint32_t>;
 
 /// Makes the batches of a partition of opaque triangles. `order` is the global list for `simple` (every
-/// triangle, untouched); for the others the copies are appended. `with_cones` gives drawcall-wise batches
-/// cones too.
-DrawBatches make_draw_batches(Strategy strategy, const FlatTriangles& flat,
-                              const partition::TrianglePartition& cells, TriangleOrder& order,
-                              bool with_cones = false);
+/// triangle, untouched); for the others the copies are appended.
+DrawBatches make_draw_batches(const BatchRules& rules, const FlatTriangles& flat,
+                              const partition::TrianglePartition& cells, TriangleOrder& order);
 
 /// The same of transparent triangles, which are drawn in order of depth and only once: whatever the strategy,
 /// batches are runs of one list. `triangles` are all of them, ascending; triangles[i] stands at positions[i].
-DrawBatches make_blended_batches(Strategy strategy, const FlatTriangles& flat,
+DrawBatches make_blended_batches(const BatchRules& rules, const FlatTriangles& flat,
                                  const partition::TrianglePartition& cells,
                                  std::span<const std::uint32_t> triangles,
-                                 std::span<const std::uint32_t> positions, bool with_cones);
+                                 std::span<const std::uint32_t> positions);
 
 }  // namespace sightline::methods

@@ -35,7 +35,7 @@ void DrawCallMethod::rebuild() {
   } else {
     order.reserve(flat.size() + flat.size() / 4);
   }
-  const bool with_cones = plan_.facing != FacingRule::none;
+  const BatchRules rules{plan_.strategy, plan_.planes, plan_.facing != FacingRule::none};
   for (const bool blended : {false, true}) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < flat.size(); ++t) {
@@ -45,22 +45,25 @@ void DrawCallMethod::rebuild() {
     if (plan_.clusters) {
       layer.partition.build_clusters(flat.span(), triangles, plan_.cluster_size);
     } else {
-      layer.partition.build(plan_.structure, flat.span(), triangles, plan_.height);
+      layer.partition.build(plan_.structure, flat.span(), triangles, plan_.height, plan_.cells);
     }
     if (!blended) {
-      layer.batches = make_draw_batches(plan_.strategy, flat, layer.partition, order, with_cones);
+      layer.batches = make_draw_batches(rules, flat, layer.partition, order);
     } else {
       std::vector<std::uint32_t> positions = triangles;  // in the global list of `simple`
       if (plan_.strategy != Strategy::simple) {
         std::iota(positions.begin(), positions.end(), static_cast<std::uint32_t>(order.size()));
         order.insert(order.end(), triangles.begin(), triangles.end());
       }
-      layer.batches =
-          make_blended_batches(plan_.strategy, flat, layer.partition, triangles, positions, with_cones);
+      layer.batches = make_blended_batches(rules, flat, layer.partition, triangles, positions);
       blend_order_ = BlendOrder(flat, triangles, positions);
     }
+    if (plan_.occlusion && !blended) build_occludees(flat, layer);
     layer.partition.drop_triangles();
   }
+  movers_.clear();
+  is_mover_.assign(scene_.size(), 0);
+  if (plan_.occlusion) build_occluder(flat);
   if (plan_.strategy == Strategy::simple) {
     lists_.indices = std::move(flat.indices), lists_.objects = std::move(flat.objects);
   } else {
@@ -76,15 +79,15 @@ void DrawCallMethod::rebuild() {
   lists_.sources = std::move(order);
   seen_.assign(scene_.size(), 0);
   frame_ = 0;
-  movers_.clear();
-  is_mover_.assign(scene_.size(), 0);
   describe();
 }
 
 void DrawCallMethod::describe() {
+  constexpr std::uint64_t kOccluderBytes = 300;  // a triangle, by the library's manual
   std::uint64_t bytes =
       lists_.positions.size() * sizeof(Vec3) + lists_.texture_coordinates.size() * sizeof(TextureCoordinate) +
       4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 9 * scene_.size();
+  bytes += kOccluderBytes * occluder_.triangles();
   for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.batches.bytes();
   geometry_ = {lists_.positions,           lists_.indices,   lists_.objects, lists_.sources,
                lists_.texture_coordinates, plan_.submission, bytes};
@@ -99,15 +102,22 @@ TriangleLists DrawCallMethod::give_lists() {
 void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
   frame.clear();
   ++frame_;
-  touched_ = 0;
+  in_view_ = not_hidden_ = 0;
   const Frustum frustum = make_frustum(view);
   const Facing facing(view, plan_.facing);
   frame.stats.objects = scene_.size();
+  // A view that the buffer refuses is culled by the frustum alone.
+  hides_ = plan_.occlusion && buffer_.begin({view, {}}) && buffer_.draw_mesh(occluder_);
   for (const Layer& layer : layers_) {
     runs_.clear(), ranges_.clear();
     frame.stats.nodes_visited += layer.partition.walk(frustum, runs_);
-    take(layer, facing, frame);
     const bool transparent = &layer == &layers_[1];
+    if (hides_) leave_out_hidden(layer, frame);
+    if (hides_ && !transparent) {
+      take_unhidden(layer, frame);
+    } else {
+      take(layer, facing, frame);
+    }
     take_movers(frustum, transparent, frame);
     if (transparent) {
       blend_order_.arrange(scene_, view, ranges_);
@@ -116,8 +126,19 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
     }
     submit(frame);
   }
-  frame.stats.culled_facing = touched_ - frame.visible.size();
-  frame.stats.culled_frustum = scene_.size() - touched_;
+  frame.stats.culled_facing = not_hidden_ - frame.visible.size();
+  frame.stats.culled_occlusion = in_view_ - not_hidden_;
+  frame.stats.culled_frustum = scene_.size() - in_view_;
+}
+
+void DrawCallMethod::reach(ObjectId object, Reached how_far, Frame& frame) noexcept {
+  std::uint64_t& seen = seen_[object];
+  const std::uint64_t before = std::max(seen, 4 * frame_), now = std::max(before, 4 * frame_ + how_far);
+  const auto gets_to = [&](Reached step) { return before < 4 * frame_ + step && now >= 4 * frame_ + step; };
+  in_view_ += gets_to(kInView);
+  not_hidden_ += gets_to(kNotHidden);
+  if (gets_to(kSubmitted)) frame.visible.push_back(object);
+  seen = now;
 }
 
 void DrawCallMethod::take(const Layer& layer, const Facing& facing, Frame& frame) noexcept {
@@ -126,13 +147,8 @@ void DrawCallMethod::take(const Layer& layer, const Facing& facing, Frame& frame
   for (const auto& run : runs_) {
     for (std::uint32_t u = batches.cell_start[run.first_cell]; u < batches.cell_start[run.last_cell]; ++u) {
       const bool drawn = !faces || facing.may_face(batches.cones[u]);
-      for (std::uint32_t o = batches.object_start[u]; o < batches.object_start[u + 1]; ++o) {
-        const ObjectId object = batches.objects[o];
-        std::uint64_t& seen = seen_[object];
-        touched_ += seen < 2 * frame_;
-        if (drawn && seen <= 2 * frame_) frame.visible.push_back(object);
-        seen = std::max(seen, 2 * frame_ + drawn);
-      }
+      for (std::uint32_t o = batches.object_start[u]; o < batches.object_start[u + 1]; ++o)
+        reach(batches.objects[o], drawn ? kSubmitted : kNotHidden, frame);
       if (!drawn) continue;
       ranges_.insert(ranges_.end(), batches.ranges.begin() + batches.range_start[u],
                      batches.ranges.begin() + batches.range_start[u + 1]);

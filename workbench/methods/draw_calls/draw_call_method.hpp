@@ -1,8 +1,10 @@
 // The frame of all methods of paper D: cells that the frustum touches, of them the batches that can face the
-// eye, of them ranges of triangles, as draws.
+// eye or are not hidden, of them ranges of triangles, as draws.
 #pragma once
 
 #include <vector>
+
+#include <sightline/occlusion.hpp>
 
 #include "workbench/methods/draw_calls/blend_order.hpp"
 #include "workbench/methods/draw_calls/draw_batches.hpp"
@@ -19,6 +21,9 @@ struct DrawCallPlan {
   Strategy strategy = Strategy::drawcall_wise;
   FacingRule facing = FacingRule::none;
   Submission submission = Submission::calls;
+  partition::CellRules cells = {};
+  PartPlanes planes = PartPlanes::xz;  ///< of zhang's parts
+  bool occlusion = false;              ///< what opaque triangles hide of visible cells is not drawn
   bool operator==(const DrawCallPlan&) const = default;
 };
 
@@ -57,6 +62,8 @@ private:
   struct Layer {
     partition::TrianglePartition partition;
     DrawBatches batches;
+    /// Where there is occlusion, of each of the batches' objects what of it lies in the cell; of opaque ones.
+    OccludeeTriangles occludees;
   };
 
   struct Mover {
@@ -64,10 +71,19 @@ private:
     TriangleRange range;  ///< all its triangles
   };
 
+  /// How far an object came in a frame; what counts is the farthest.
+  enum Reached : std::uint64_t { kNowhere, kInView, kNotHidden, kSubmitted };
+
   void rebuild();
   void describe();
   void place(ObjectId object);
   void add_mover(ObjectId object);
+  void build_occluder(const FlatTriangles& flat);
+  static void build_occludees(const FlatTriangles& flat, Layer& layer);
+  void reach(ObjectId object, Reached how_far, Frame& frame) noexcept;
+  void leave_out_hidden(const Layer& layer, Frame& frame) noexcept;
+  void take_unhidden(const Layer& layer, Frame& frame) noexcept;
+  void take_unhidden_of(const Layer& layer, std::uint32_t batch, Frame& frame) noexcept;
   void take_movers(const Frustum& frustum, bool transparent, Frame& frame) noexcept;
   void take(const Layer& layer, const Facing& facing, Frame& frame) noexcept;
   void merge() noexcept;
@@ -84,12 +100,16 @@ private:
   /// begin when all are counted through.
   std::vector<std::uint32_t> first_corner_, first_source_;
 
+  OccluderMesh occluder_;  ///< the opaque triangles of what has not moved, where there is occlusion
+  OcclusionBuffer buffer_;
+
   // of the frame
-  std::vector<partition::TrianglePartition::Run> runs_;
+  bool hides_ = false;  ///< whether the buffer can be asked
+  std::vector<partition::TrianglePartition::Run> runs_, seen_runs_;
   std::vector<TriangleRange> ranges_;
-  std::vector<std::uint64_t>
-      seen_;  ///< one an object: 2 · frame where in a visible cell, + 1 where submitted
-  std::uint64_t frame_ = 0, touched_ = 0;
+  std::vector<std::uint64_t> seen_;  ///< one an object: 4 · frame + Reached
+  std::uint64_t frame_ = 0;
+  std::uint64_t in_view_ = 0, not_hidden_ = 0;  ///< objects that came so far
 };
 
 }  // namespace sightline::methods

@@ -25,6 +25,7 @@ void DrawCallMethod::do_update(std::span<const ObjectId> moved) {
     place(object);
     if (!is_mover_[object]) add_mover(object);
   }
+  if (plan_.occlusion && fresh > 0) build_occluder(flatten(scene_));
   describe();
 }
 
@@ -56,10 +57,9 @@ void DrawCallMethod::take_movers(const Frustum& frustum, bool transparent, Frame
     if ((scene_.surface[mover.object] == Surface::transparent) != transparent) continue;
     ++frame.stats.tested;
     if (!overlaps(frustum, scene_.bounds[mover.object])) continue;
-    std::uint64_t& seen = seen_[mover.object];
-    touched_ += seen < 2 * frame_;
-    if (seen <= 2 * frame_) frame.visible.push_back(mover.object);
-    seen = 2 * frame_ + 1;
+    const bool hidden = hides_ && !buffer_.may_see(scene_.bounds[mover.object]);
+    reach(mover.object, hidden ? kInView : kSubmitted, frame);
+    if (hidden) continue;
     ranges_.push_back(mover.range);
   }
 }

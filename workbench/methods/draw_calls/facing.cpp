@@ -31,9 +31,13 @@ std::uint32_t sector_of(double x, double z) noexcept {
 
 }  // namespace
 
-std::uint32_t part_of(const Vec3& normal) noexcept {
-  const double along = std::hypot(double{normal.x}, double{normal.z});
-  return along > 0 && along >= std::fabs(double{normal.y}) ? sector_of(normal.x, normal.z) : kSteep;
+std::uint32_t part_of(const Vec3& normal, PartPlanes planes) noexcept {
+  const auto on_plane = [](double x, double along_plane, double across, std::uint32_t first) {
+    const double along = std::hypot(x, along_plane);
+    return along > 0 && along >= std::fabs(across) ? first + sector_of(x, along_plane) : kSteep;
+  };
+  const std::uint32_t part = planes == PartPlanes::xy ? kSteep : on_plane(normal.x, normal.z, normal.y, 0);
+  return planes == PartPlanes::xz || part != kSteep ? part : on_plane(normal.x, normal.y, normal.z, kOnXy);
 }
 
 Vec3 unit_normal(const std::array<Vec3, 3>& triangle) noexcept {
@@ -41,7 +45,7 @@ Vec3 unit_normal(const std::array<Vec3, 3>& triangle) noexcept {
 }
 
 FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint32_t> triangles,
-                   const Box& region) noexcept {
+                   const Box& region, PartPlanes planes) noexcept {
   FacingCone cone;
   cone.bounds = partition::shown_within(region, all[triangles.front()]);
   glm::dvec3 sum(0);
@@ -53,7 +57,7 @@ FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint
     sum += normal;
     all_have_area = all_have_area && normal != glm::dvec3(0);
   }
-  cone.part = part_of(unit_normal(all[triangles.front()]));
+  cone.part = part_of(unit_normal(all[triangles.front()]), planes);
   const double length = glm::length(sum);
   if (!all_have_area || !(length > 1e-6)) return cone;
   cone.axis = geometry::to_vec3(sum / length);
@@ -70,15 +74,18 @@ Facing::Facing(const View& view, FacingRule rule) noexcept
     : rule_(rule),
       orthographic_(is_orthographic(view)),
       eye_(eye_position(view)),
-      forward_(view_direction(view)) {
-  if (forward_.x != 0 || forward_.z != 0) sector_ = sector_of(forward_.x, forward_.z);
-}
+      forward_(view_direction(view)),
+      on_xz_(forward_.x != 0 || forward_.z != 0 ? sector_of(forward_.x, forward_.z) : kSteep),
+      on_xy_(forward_.x != 0 || forward_.y != 0 ? sector_of(forward_.x, forward_.y) : kSteep) {}
 
 bool Facing::may_face(const FacingCone& cone) const noexcept {
   if (rule_ == FacingRule::none) return true;
   if (rule_ == FacingRule::printed) {
-    if (cone.part == kSteep || sector_ == kSteep) return true;
-    const std::uint32_t apart = (cone.part + kSectors - sector_) % kSectors;
+    const bool on_xy = cone.part >= kOnXy;
+    const std::uint32_t looks = on_xy ? on_xy_ : on_xz_;
+    if (cone.part == kSteep || looks == kSteep) return true;
+    const std::uint32_t sector = on_xy ? cone.part - kOnXy : cone.part;
+    const std::uint32_t apart = (sector + kSectors - looks) % kSectors;
     return apart != 0 && apart != 1 && apart != kSectors - 1;
   }
   if (cone.reach > 1) return true;

@@ -12,11 +12,18 @@
 
 namespace sightline::methods {
 
-/// 8 sectors of 45° of the normal's direction on x–z, then those too steep for one.
-inline constexpr std::uint32_t kSectors = 8, kSteep = 8, kParts = 9;
+/// 8 sectors of 45° of the normal's direction on x–z, those too steep for one, and 8 sectors on x–y.
+inline constexpr std::uint32_t kSectors = 8, kSteep = 8, kOnXy = 9, kParts = 17;
 
-/// The normal's part: a sector where it is within 45° of the ground, otherwise (and without a normal) kSteep.
-std::uint32_t part_of(const Vec3& normal) noexcept;
+/// The planes on which normals are told apart.
+enum class PartPlanes : std::uint8_t {
+  xz,    ///< as Zhang has it: walls apart
+  xy,    ///< floors and ceilings, too; walls that face along z are too steep
+  both,  ///< on x–z, and what is too steep there on x–y
+};
+
+/// The normal's part: a sector where it is within 45° of the plane, otherwise (and without a normal) kSteep.
+std::uint32_t part_of(const Vec3& normal, PartPlanes planes = PartPlanes::xz) noexcept;
 
 /// The triangle's unit normal, counter-clockwise; zero where it has no area.
 Vec3 unit_normal(const std::array<Vec3, 3>& triangle) noexcept;
@@ -31,13 +38,13 @@ struct FacingCone {
 
 /// A cone around the normals of triangles of the given region. A triangle without area may face anywhere.
 FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint32_t> triangles,
-                   const Box& region) noexcept;
+                   const Box& region, PartPlanes planes = PartPlanes::xz) noexcept;
 
 enum class FacingRule : std::uint8_t {
   none,     ///< all may face the eye
   cone,     ///< dropped only where every point of the bounds is seen from behind
-  printed,  ///< sectors i − 1, i, i + 1 of the view vector's sector i, as printed: loses pixels under
-            ///< perspective
+  printed,  ///< sectors i − 1, i, i + 1 of the view vector's sector i on the part's plane, as printed:
+            ///< loses pixels under perspective
 };
 
 /// The rule for one view.
@@ -57,7 +64,7 @@ private:
   FacingRule rule_;
   bool orthographic_;
   Vec3 eye_, forward_;
-  std::uint32_t sector_ = kSteep;
+  std::uint32_t on_xz_, on_xy_;  ///< the view vector's sectors, or kSteep
 };
 
 }  // namespace sightline::methods
