@@ -115,8 +115,10 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsOnTheFiveModelsAndTheIrregularWorld) {
     const Scene scene = generate_world(world);
     Casters casters(device(), scene);
     rays::RayGrid grid;
-    grid.make(view_of(camera_at(scene, "far")), 100, 100);
-    compare(scene, casters, grid, world);
+    Camera camera = camera_at(scene, "far");
+    camera.far_plane = 1e5f;
+    grid.make(view_of(camera), 50, 50);
+    EXPECT_GT(compare(scene, casters, grid, world), 50u);
     ASSERT_FALSE(HasFailure());
   }
 }
@@ -149,7 +151,9 @@ TEST_F(DeviceRaysTest, RoundsOfManyBoxesLeaveNothingOut) {
 TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   const Scene scene = generate_world("strata?triangles=40000");
   device::Renderer renderer(device(), scene);
-  const View view = view_of(camera_at(scene, "far"));
+  Camera camera = camera_at(scene, "far");
+  camera.far_plane = 1e5f;
+  const View view = view_of(camera);
   const auto boca = create_method("boca", scene);
   Frame expected;
   cull(*boca, view, expected);
