@@ -81,6 +81,25 @@ def compare(scene, methods, key=None, **options):
     return [row for method, lines in by_method.items() for row in method_rows(f"{key or scene}/{method}", lines, drawn)]
 
 
+def reproduced(paper, *arguments):
+    """The document that `sightline reproduce` writes of a paper."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as file:
+        sightline("reproduce", paper, f"--json={file.name}", *arguments)
+        return json.load(open(file.name, encoding="utf-8"))
+
+
+def table_of(document, name):
+    """The lines of a reproduction's table of that name, or of the first of a section: [{column: cell}, …]."""
+    for table in document["tables"]:
+        if table["name"] == name:
+            return table["rows"]
+    for section in document["sections"]:
+        if section["name"] == name:
+            table = section["tables"][0]
+            return [dict(zip(table["header"], row)) for row in table["rows"]]
+    raise Wrong(f"the reproduction has no '{name}'")
+
+
 def method_rows(name, lines, drawn):
     def mean(field):
         return sum(line[field] for line in lines) / len(lines)

@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/reproduce/ray_pvs.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
@@ -86,6 +87,10 @@ TEST(Published, EveryNumberOfTheVertexChunksStandsInItsCell) {
   expect_whole(vertex_chunk_reproduction({}), {{"vertex_chunk", {"table", "world", "view", "method"}}});
 }
 
+TEST(Published, EveryNumberOfTheRayPvsStandsInItsCell) {
+  expect_whole(ray_pvs_reproduction({}), {{"ray_pvs_models", {"model"}}, {"ray_pvs_times", {"model"}}});
+}
+
 TEST(Published, RefusesWhatIsNoTable) {
   EXPECT_THROW(Published("a,b\n1\n"), Error);
   EXPECT_THROW(static_cast<void>(published("nonesuch")), Error);
@@ -107,6 +112,9 @@ TEST(Reproduction, TellsRatiosToItsBase) {
   EXPECT_FALSE(table.published_ratio(2, 0));
   table.base_row = 1;
   EXPECT_EQ(table.our_ratio(0, 0), 4);
+  table.base = PaperTable::Base::column;
+  EXPECT_EQ(table.our_ratio(1, 0), 1);
+  table.base = PaperTable::Base::row;
   const report::Table text = text_table(table);
   EXPECT_EQ(text.rows[0], (std::vector<std::string>{"a", "4 (0.67)", "8.00 (4.00)"}));
   EXPECT_EQ(text.rows[2], (std::vector<std::string>{"c", "–", "1.00 (0.50)"}));

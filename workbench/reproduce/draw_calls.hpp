@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sightline/workbench/progress.hpp>
+#include <sightline/workbench/triangle_draws.hpp>
 
 #include "workbench/camera/camera_path.hpp"
 #include "workbench/device/frame_times.hpp"

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <sightline/workbench/method.hpp>
+
 #include "workbench/device/triangle_draws.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
 
