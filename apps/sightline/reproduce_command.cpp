@@ -1,13 +1,13 @@
 // sightline reproduce: a paper's tables, ours beside the published.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
 
 #include "command.hpp"
 #include "device.hpp"
-#include "reproduce_ray_pvs.hpp"
 #include "workbench/device/renderer.hpp"
 #include "workbench/io/text_file.hpp"
 #include "workbench/measure/machine.hpp"
@@ -15,6 +15,7 @@
 #include "workbench/report/summary.hpp"
 #include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
+#include "workbench/reproduce/ray_pvs.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
 namespace sightline::app {
@@ -76,8 +77,16 @@ int run_draw_calls(const ReproduceOptions& options) {
   return Exit::done;
 }
 
-int run_rays(const ReproduceOptions& options) {
-  return run_ray_pvs(options.quick, options.device.empty() ? "any" : options.device, options.report);
+int run_ray_pvs(const ReproduceOptions& options) {
+  const auto device = open_device(options.device.empty() ? "any" : options.device);
+  reproduce::RayPvsOptions how;
+  how.quick = options.quick;
+  how.pictures = options.report;
+  const reproduce::RayPvs measured = reproduce::measure_ray_pvs(*device, how, progress("reproduce"));
+  expect_silence(device.get());
+  give(reproduce::ray_pvs_reproduction(measured), options);
+  const bool alike = std::ranges::all_of(measured.models, [](const auto& model) { return model.identical; });
+  return alike ? Exit::done : Exit::check_failed;
 }
 
 struct Paper {
@@ -89,7 +98,8 @@ constexpr std::array kPapers{
           run_object_frustum},
     Paper{"vertex-chunk", "Lee & Shin 2023: vertex chunks and raster occlusion",
           "smaller pictures, fewer triangles, fewer repeats", run_vertex_chunk},
-    Paper{"ray-pvs", "Ye et al. 2023: toca, boca, iwcpa, bvha and saa", "fewer repeats", run_rays},
+    Paper{"ray-pvs", "Ye et al. 2023: toca, boca, iwcpa, bvha and saa", "fewer repeats and views",
+          run_ray_pvs},
     Paper{"draw-calls",
           "Serpa, Serpa & Rodrigues: triangles x draw calls, and walks through three game levels",
           "fewer views and repeats", run_draw_calls},

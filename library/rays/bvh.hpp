@@ -1,5 +1,5 @@
-// The bounding volume hierarchy of Ye et al. 2023, section 3: built top down, laid flat depth first with skip
-// counts, so that a ray walks it with one index and no stack.
+// The bounding volume hierarchy of Ye et al. 2023, sections 2.3 and 3.4.3: built top down, laid flat depth
+// first with skip counts, so that a ray walks it with one index and no stack.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The rays of a view: a uniform grid over the viewport (Ye et al. 2023, section 3.1), or through any point of
-// it.
+// The rays of a view: a uniform grid over the viewport (Ye et al. 2023, sections 2.3 and 4), or through any
+// point of it.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -65,27 +65,27 @@ def rays(quick):
     compare_with(rows, lambda name: name.replace(name.split("/")[0], "WideRays"))
     if quick:
         return rows
-    said = tables(sightline("reproduce", "ray-pvs", "--quick"))
-    times, lost, triangles = said[0], said[2], said[-1]
-    for line, loss in zip(times, lost):
+    said = reproduced("ray-pvs", "--quick")
+    guided, triangles = table_of(said, "beyond the paper: guided rays"), table_of(said, "beyond the paper: triangles")
+    for line, loss in zip(table_of(said, "table 6, ready"), table_of(said, "figure 12a")):
         model = f"strata-{line['model']}"
         judged = {"kept": number(loss["in the PVS"]), "lost": number(loss["lost objects"]),
                   "lost_pixels": number(loss["lost pixels"])}
-        five = [Row(model, method, "ms", number(line[f"{method} ms"]), repetitions=3, **judged)
-                for method in ("toca", "boca", "iwcpa", "bvha", "saa")]
-        rows += compare_with(five, lambda name: name.split("/")[0] + "/boca")
+        timed = [Row(model, method.removesuffix(" ms").replace(" ", "-"), "ms", cell["ours"], repetitions=2, **judged)
+                 for method, cell in line["cells"].items()]
+        rows += compare_with(timed, lambda name: name.split("/")[0] + "/boca")
         rows.append(Row(model, "lost-share", "%", number(loss["share"])))
-    for line in triangles:
+    for line, by_grid in zip(guided, triangles):
         scene = re.sub(r"^world:|\?model=", lambda m: "-" if m.group() == "?model=" else "", line["scene"])
         scene = re.sub(r".*/(\w+)\.bsp$", r"\1", scene)
         views = int(number(line["views"]))
         rows.append(Row(scene, "guided", "ms", number(line["ms a view"]), repetitions=views,
-                        lost_pixels=number(line["guided: lost pixels"])))
+                        lost_pixels=number(line["lost pixels"])))
         rows.append(Row(scene, "guided-worst-share", "%", number(line["worst view"]), repetitions=views))
         rows.append(Row(scene, "guided-rays", "rays", number(line["rays a view"]), repetitions=views))
         rows.append(Row(scene, "triangle-pvs-lost-with-a-block", "objects",
-                        number(line["with a whole 13x7 block"]), repetitions=views))
-    return rows + [row_of("all/guided-worst-share", "%", [number(line["worst view"]) for line in triangles])]
+                        number(by_grid["with a whole 13x7 block"]), repetitions=views))
+    return rows + [row_of("all/guided-worst-share", "%", [number(line["worst view"]) for line in guided])]
 
 
 def verified(key, scene, views, *arguments):

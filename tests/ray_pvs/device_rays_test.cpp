@@ -33,6 +33,8 @@ struct Casters {
 
   Casters(device::Device& device, const Scene& scene) {
     all.emplace_back("iwcpa", methods::make_iwcpa(device, scene));
+    all.emplace_back("iwcpa?mapping=printed",
+                     methods::make_iwcpa(device, scene, methods::IwcpaMapping::printed));
     all.emplace_back("bvha", methods::make_bvha(device, scene));
     all.emplace_back("saa", methods::make_saa(device, scene));
   }
@@ -115,8 +117,10 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsOnTheFiveModelsAndTheIrregularWorld) {
     const Scene scene = generate_world(world);
     Casters casters(device(), scene);
     rays::RayGrid grid;
-    grid.make(view_of(camera_at(scene, "far")), 100, 100);
-    compare(scene, casters, grid, world);
+    Camera camera = camera_at(scene, "far");
+    camera.far_plane = 1e5f;
+    grid.make(view_of(camera), 50, 50);
+    EXPECT_GT(compare(scene, casters, grid, world), 50u);
     ASSERT_FALSE(HasFailure());
   }
 }
@@ -134,7 +138,7 @@ TEST_F(DeviceRaysTest, HitWhatTheCpuHitsInAGameLevel) {
   }
 }
 
-// More boxes than one round of iwcpa holds.
+// More boxes than one round of either iwcpa holds.
 TEST_F(DeviceRaysTest, RoundsOfManyBoxesLeaveNothingOut) {
   scene::Random random(33);
   Boxes boxes;
@@ -149,13 +153,15 @@ TEST_F(DeviceRaysTest, RoundsOfManyBoxesLeaveNothingOut) {
 TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   const Scene scene = generate_world("strata?triangles=40000");
   device::Renderer renderer(device(), scene);
-  const View view = view_of(camera_at(scene, "far"));
+  Camera camera = camera_at(scene, "far");
+  camera.far_plane = 1e5f;
+  const View view = view_of(camera);
   const auto boca = create_method("boca", scene);
   Frame expected;
   cull(*boca, view, expected);
   std::ranges::sort(expected.visible);
   EXPECT_GT(expected.visible.size(), 50u);
-  for (const char* name : {"iwcpa", "bvha", "saa"}) {
+  for (const char* name : {"iwcpa", "iwcpa?mapping=printed", "bvha", "saa"}) {
     const auto method = create_method(name, MethodSite{scene, &renderer});
     Frame frame;
     renderer.frame(view, [&](device::Recorder& recorder) {

@@ -85,7 +85,7 @@ TEST(NearestBox, IsTheSameForEveryMethodOnTheFiveModels) {
     const Scene scene = generate_world("strata?triangles=20000&model=" + std::to_string(model));
     const Trees trees(scene.bounds);
     const View view = *make_view(
-        {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 10000}, 1280,
+        {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 1e5f}, 1280,
         720);
     rays::RayGrid grid;
     grid.make(view, 100, 100);
@@ -128,8 +128,10 @@ TEST(NearestBox, OfAGridIsTheSameTileByTile) {
   const Scene scene = generate_world("strata?triangles=20000");
   const Trees trees(scene.bounds);
   rays::RayGrid grid;
-  grid.make(*make_view({.eye = scene.viewpoints[0].eye, .forward = scene.viewpoints[0].forward}, 640, 480),
-            53, 31);
+  grid.make(
+      *make_view({.eye = scene.viewpoints[0].eye, .forward = scene.viewpoints[0].forward, .far_plane = 1e5f},
+                 640, 480),
+      53, 31);
   rays::RayHits expected, found;
   cast_at_all_boxes(scene.bounds, grid.prepared, expected);
   rays::WideStack stack;
@@ -142,7 +144,7 @@ TEST(NearestBox, OfAGridIsTheSameForAnyNumberOfThreads) {
   const Trees trees(scene.bounds);
   rays::RayGrid grid;
   const View view = *make_view(
-      {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 10000}, 640, 480);
+      {.eye = scene.viewpoints[1].eye, .forward = scene.viewpoints[1].forward, .far_plane = 1e5f}, 640, 480);
   for (const std::uint32_t side : {3u, 31u, 32u, 133u}) {  // fewer rays than a piece, one piece, and many
     grid.make(view, side, side);
     rays::RayHits expected, first, found;

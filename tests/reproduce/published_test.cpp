@@ -11,6 +11,7 @@
 
 #include "workbench/reproduce/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum.hpp"
+#include "workbench/reproduce/ray_pvs.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
@@ -98,6 +99,10 @@ TEST(Published, EveryNumberOfTheDrawCallsStandsInItsCell) {
   expect_whole(draw_calls_reproduction({}), {{"draw_calls", {"triangles"}}, {"draw_calls_text", {"what"}}});
 }
 
+TEST(Published, EveryNumberOfTheRayPvsStandsInItsCell) {
+  expect_whole(ray_pvs_reproduction({}), {{"ray_pvs_models", {"model"}}, {"ray_pvs_times", {"model"}}});
+}
+
 TEST(Published, RefusesWhatIsNoTable) {
   EXPECT_THROW(Published("a,b\n1\n"), Error);
   EXPECT_THROW(static_cast<void>(published("nonesuch")), Error);
@@ -119,6 +124,9 @@ TEST(Reproduction, TellsRatiosToItsBase) {
   EXPECT_FALSE(table.published_ratio(2, 0));
   table.base_row = 1;
   EXPECT_EQ(table.our_ratio(0, 0), 4);
+  table.base = PaperTable::Base::column;
+  EXPECT_EQ(table.our_ratio(1, 0), 1);
+  table.base = PaperTable::Base::row;
   const report::Table text = text_table(table);
   EXPECT_EQ(text.rows[0], (std::vector<std::string>{"a", "4 (0.67)", "8.00 (4.00)"}));
   EXPECT_EQ(text.rows[2], (std::vector<std::string>{"c", "–", "1.00 (0.50)"}));

@@ -129,8 +129,12 @@ TEST(Worlds, StrataHaveThePublishedMeshCountsAndStandCentred) {
     EXPECT_NEAR(all.min.x + all.max.x, 0, 1e-2);
     EXPECT_NEAR(all.min.y + all.max.y, 0, 1e-2);
     EXPECT_NEAR(all.min.z + all.max.z, 0, 1e-2);
-    const Vec3 eye = scene.viewpoints[1].eye;
-    EXPECT_TRUE(eye.x > all.max.x || eye.y > all.max.y || eye.z > all.max.z);
+    // The paper's viewpoint, level, from which all of the model fits into a view.
+    EXPECT_EQ(scene.viewpoints[1].eye, (Vec3{40000, 0, 0}));
+    EXPECT_EQ(scene.viewpoints[1].forward, (Vec3{-1, 0, 0}));
+    const float nearest = 40000 - all.max.x;
+    EXPECT_GT(nearest, 0);
+    EXPECT_LT(std::max(all.max.y / 9, all.max.z / 16), nearest * std::tan(0.4f) / 9);
   }
 }
 

@@ -16,8 +16,15 @@
 
 namespace sightline::reproduce {
 
+namespace {
+
+std::string count(std::uint64_t number) {
+  return report::format_count(static_cast<double>(number));
+}
+
+}  // namespace
+
 RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress& progress) {
-  constexpr std::uint32_t kRays = 100;
   std::vector<Camera> cameras;
   for (const Viewpoint& from : scene.viewpoints) {
     if (cameras.size() == views) break;
@@ -31,7 +38,7 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
 
   const oracle::EmbreeJudge judge(scene);
   const auto guided = create_method(fmt::format("guided?target={}", kGuidedTarget), scene);
-  const auto triangles = create_method(fmt::format("triangle-pvs?rays={}", kRays), scene);
+  const auto triangles = create_method(fmt::format("triangle-pvs?rays={}", kRaySceneSide), scene);
   RayScene out;
   out.scene = scene.name;
   Frame frame;
@@ -53,7 +60,8 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
 
     cull(*triangles, view, frame);
     const oracle::Loss loss = oracle::compare_to_truth(truth, frame.visible);
-    const auto covers = oracle::objects_that_cover(truth, kRaySceneWidth / kRays, kRaySceneHeight / kRays);
+    const auto covers =
+        oracle::objects_that_cover(truth, kRaySceneWidth / kRaySceneSide, kRaySceneHeight / kRaySceneSide);
     out.triangle_lost += loss.lost.size();
     out.triangle_lost_pixels += loss.lost_pixels;
     for (const ObjectId object : loss.lost) {
@@ -66,23 +74,28 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
   return out;
 }
 
-report::Table ray_scene_table(std::span<const RayScene> scenes) {
+report::Table guided_table(std::span<const RayScene> scenes) {
   report::Table table;
-  table.header = {
-      "scene",        "views",       "guided: lost pixels",    "share",     "worst view",
-      "views over",   "rays a view", "of the pixels",          "ms a view", "triangle-pvs: lost objects",
-      "their pixels", "the largest", "with a whole 13x7 block"};
+  table.header = {"scene",      "views",       "lost pixels",   "share",    "worst view",
+                  "views over", "rays a view", "of the pixels", "ms a view"};
   for (const RayScene& s : scenes) {
     const double pixels = static_cast<double>(s.pixels), views = static_cast<double>(s.views),
                  rays = static_cast<double>(s.guided_rays);
-    const auto count = [](std::uint64_t n) { return report::format_count(static_cast<double>(n)); };
     table.rows.push_back({s.scene, count(s.views), count(s.guided_lost),
                           fmt::format("{:.5f} %", 100 * static_cast<double>(s.guided_lost) / pixels),
                           fmt::format("{:.5f} %", 100 * s.guided_worst), count(s.guided_over),
                           report::format_count(std::round(rays / views)),
-                          fmt::format("{:.2f}", rays / pixels), report::format_ms(s.guided_ms / views),
-                          count(s.triangle_lost), count(s.triangle_lost_pixels), count(s.triangle_most),
-                          count(s.triangle_covers)});
+                          fmt::format("{:.2f}", rays / pixels), report::format_ms(s.guided_ms / views)});
+  }
+  return table;
+}
+
+report::Table triangle_pvs_table(std::span<const RayScene> scenes) {
+  report::Table table;
+  table.header = {"scene", "lost objects", "their pixels", "the largest", "with a whole 13x7 block"};
+  for (const RayScene& s : scenes) {
+    table.rows.push_back({s.scene, count(s.triangle_lost), count(s.triangle_lost_pixels),
+                          count(s.triangle_most), count(s.triangle_covers)});
   }
   return table;
 }

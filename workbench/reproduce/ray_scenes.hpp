@@ -29,11 +29,13 @@ struct RayScene {
 
 /// The image that the rays are held against: 100 × 100 rays stand 13 × 7 pixels apart, each in the middle of
 /// a pixel, so that every block of 13 × 7 pixels has exactly one.
-inline constexpr std::uint32_t kRaySceneWidth = 1300, kRaySceneHeight = 700;
+inline constexpr std::uint32_t kRaySceneWidth = 1300, kRaySceneHeight = 700, kRaySceneSide = 100;
 inline constexpr double kGuidedTarget = 1e-4;
 
 /// The scene's viewpoints, and random views until there are `views`.
 RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress& progress = {});
-report::Table ray_scene_table(std::span<const RayScene> scenes);
+/// What each of the two lost.
+report::Table guided_table(std::span<const RayScene> scenes);
+report::Table triangle_pvs_table(std::span<const RayScene> scenes);
 
 }  // namespace sightline::reproduce

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostSideBySide = 4;
 
 std::string of(const std::optional<double>& number) {
-  return number ? report::format_ms(*number) : "–";
+  if (!number) return "–";
+  return (*number < 0 ? "-" : "") + report::format_ms(std::abs(*number));
 }
 
 std::string ratio_text(const std::optional<double>& ratio) {
@@ -36,10 +38,12 @@ std::string published_text(const Cell& cell) {
   return cell.published.empty() ? "–" : cell.published;
 }
 
-const Cell* base_of(const PaperTable& table, std::size_t column) {
+const Cell* base_of(const PaperTable& table, std::size_t row, std::size_t column) {
   switch (table.base) {
     case PaperTable::Base::row:
       return &table.rows[table.base_row].cells[column];
+    case PaperTable::Base::column:
+      return &table.rows[row].cells[table.base_column];
     case PaperTable::Base::cell:
       return &table.rows.front().cells.front();
     case PaperTable::Base::none:
@@ -92,6 +96,8 @@ report::Table line_by_line(const PaperTable& table) {
   out.header.emplace_back("");
   out.text_columns = table.keys.size() + 1;
   out.header.insert(out.header.end(), table.columns.begin(), table.columns.end());
+  bool both = false;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) both = both || has_published(table, c);
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto add = [&](const char* what, const auto& cell_text) {
       std::vector<std::string> line = table.rows[r].keys;
@@ -100,10 +106,10 @@ report::Table line_by_line(const PaperTable& table) {
       out.rows.push_back(std::move(line));
     };
     const std::vector<Cell>& cells = table.rows[r].cells;
-    add("published", [&](std::size_t c) { return published_text(cells[c]); });
+    if (both) add("published", [&](std::size_t c) { return published_text(cells[c]); });
     add("ours", [&](std::size_t c) { return ours_text(cells[c]); });
     if (table.base == PaperTable::Base::none) continue;
-    add("ratio, published", [&](std::size_t c) { return ratio_text(table.published_ratio(r, c)); });
+    if (both) add("ratio, published", [&](std::size_t c) { return ratio_text(table.published_ratio(r, c)); });
     add("ratio, ours", [&](std::size_t c) { return ratio_text(table.our_ratio(r, c)); });
   }
   return out;
@@ -151,13 +157,13 @@ Json section_json(const PaperSection& section) {
 }  // namespace
 
 std::optional<double> PaperTable::published_ratio(std::size_t row, std::size_t column) const {
-  const Cell* to = base_of(*this, column);
+  const Cell* to = base_of(*this, row, column);
   if (!to) return std::nullopt;
   return quotient(number_of(rows[row].cells[column].published), number_of(to->published));
 }
 
 std::optional<double> PaperTable::our_ratio(std::size_t row, std::size_t column) const {
-  const Cell* to = base_of(*this, column);
+  const Cell* to = base_of(*this, row, column);
   return to ? quotient(rows[row].cells[column].ours, to->ours) : std::nullopt;
 }
 

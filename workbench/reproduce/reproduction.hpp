@@ -22,8 +22,9 @@ struct PaperTable {
   /// What ratios are taken to.
   enum class Base : std::uint8_t {
     none,
-    row,   ///< the same column of the row `base_row`
-    cell,  ///< the first cell of all
+    row,     ///< the same column of the row `base_row`
+    column,  ///< the same row of the column `base_column`
+    cell,    ///< the first cell of all
   };
   struct Row {
     std::vector<std::string> keys;  ///< one a heading of `keys`
@@ -36,7 +37,7 @@ struct PaperTable {
   std::vector<std::string> columns;  ///< headings with units: "culling ms"
   std::vector<Row> rows;
   Base base = Base::none;
-  std::size_t base_row = 0;
+  std::size_t base_row = 0, base_column = 0;
   std::string note;  ///< sentences on what differs, and why
 
   /// The cell's ratio to its base; nothing where either is no number, or the base 0.

@@ -53,6 +53,7 @@ std::string table_chart(const PaperTable& table, const std::string& id) {
   made.bars = true;
   made.y = ratios ? "ratio" : "";
   double least = 1e300, most = 0;
+  bool negative = false;
   Series published{"published", {}}, ours{"ours", {}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (ratios && !table.has_ratios(c)) continue;
@@ -68,13 +69,17 @@ std::string table_chart(const PaperTable& table, const std::string& id) {
       ours.values.push_back(mine.value_or(0));
       for (const double value : {published.values.back(), ours.values.back()}) {
         if (value > 0) least = std::min(least, value), most = std::max(most, value);
+        negative = negative || value < 0;
       }
     }
   }
   if (made.labels.empty()) return "";
   made.id = id;
-  made.logarithmic = most > 30 * least;
-  made.series = {std::move(published), std::move(ours)};
+  made.logarithmic = most > 30 * least && !negative;
+  // What is ours alone stands without the paper's empty side.
+  if (std::ranges::any_of(published.values, [](double value) { return value != 0; }))
+    made.series.push_back(std::move(published));
+  made.series.push_back(std::move(ours));
   return chart(made);
 }
 

@@ -8,27 +8,13 @@
 #include "library/world/chunk_map.hpp"
 #include "workbench/device/renderer.hpp"
 #include "workbench/device/scene_buffers.hpp"
+#include "workbench/reproduce/painted.hpp"
 
 namespace sightline::reproduce {
 
 namespace {
 
-constexpr std::uint32_t kKept = 0xff1a8cffu, kCulled = 0xffb4b0a8u, kShared = 0xff302c28u;  // as ABGR
-
-/// The picture with every object in a colour of its own choice, lighter and darker as it was lit.
-device::Picture painted(device::Picture picture, const oracle::ItemBuffer& items,
-                        const std::vector<std::uint32_t>& colours) {
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    const ObjectId object = items.ids[i];
-    if (object == kNoObject) continue;
-    const auto byte = [](std::uint32_t colour, int channel) { return colour >> 8 * channel & 255; };
-    std::uint32_t lit = 0, out = 0xff000000u;
-    for (int c = 0; c < 3; ++c) lit += byte(picture.pixels[i], c);
-    for (int c = 0; c < 3; ++c) out |= byte(colours[object], c) * (400 + lit) / (400 + 3 * 255) << 8 * c;
-    picture.pixels[i] = out;
-  }
-  return picture;
-}
+constexpr std::uint32_t kShared = 0xff302c28u;  // as ABGR
 
 Camera aside_of(const Scene& scene) {
   const Box all = extent(scene);
@@ -68,8 +54,8 @@ std::vector<VertexChunkWorld::Picture> take_vertex_chunk_pictures(measure::Bench
   pictures.push_back(
       {world + "-near.png", "The near view, as vertex-chunk draws it.", bench.renderer()->picture()});
   subject.method->read_back(subject.frame);
-  std::vector<std::uint32_t> colours(scene.size(), kCulled);
-  for (const ObjectId object : subject.frame.visible) colours[object] = kKept;
+  std::vector<std::uint32_t> colours(scene.size(), kCulledColour);
+  for (const ObjectId object : subject.frame.visible) colours[object] = kKeptColour;
   const View aside = or_throw(make_view(aside_of(scene), near.width, near.height));
   measure::Subject everything{"none", create_method("none", MethodSite{scene, bench.renderer()})};
   bench.run(everything, aside);

@@ -1,11 +1,12 @@
-// Layered, faulted and folded geology with the mesh counts of Ye et al. 2023, table 5, whose models are not
-// public: every mesh is a closed piece of one stratum between two faults.
+// Layered, faulted and folded geology with the meshes and triangles of Ye et al. 2023, table 4, whose models
+// are not public: every mesh is a closed piece of one stratum between two faults.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "workbench/scene/random.hpp"
+#include "workbench/scene/strata.hpp"
 #include "workbench/scene/worlds.hpp"
 
 namespace sightline::scene {
@@ -20,18 +21,22 @@ constexpr std::array kStrataParameters{
     ParameterInfo{"seed", "of the random numbers", "1", 0, 4294967295.0, true},
 };
 
+// Wuzhishan's geology and its strata, Purmont, Northeast Guizhou, and Guizhou overall.
 struct Model {
   std::uint32_t meshes, layers;
-  double triangles;  // the first and the last are published, those between follow the meshes
+  double triangles;
 };
-constexpr std::array kModels{Model{1371, 12, 9.2e6}, Model{2684, 16, 29.5e6}, Model{4433, 18, 56.6e6},
-                             Model{6744, 20, 92.4e6}, Model{17773, 28, 263e6}};
+constexpr std::array kModels{Model{1371, 12, 9234330}, Model{2684, 16, 27512307}, Model{4433, 18, 46731152},
+                             Model{6744, 20, 263103774}, Model{17773, 28, 90415179}};
 
-constexpr float kSide = 2000;         // metres, of the square before it is folded
-constexpr float kHeight = 600;        // metres, all layers together
+// Drawn at this scale, the ground just fits into a picture from the paper's viewpoint, 40 km away.
+constexpr float kScale = 12;
+constexpr Vec3 kPaperViewpoint{40000, 0, 0};
+constexpr float kSide = 2000;         // of the square before it is folded
+constexpr float kHeight = 600;        // all layers together
 constexpr std::uint32_t kFaults = 3;  // each way across
 constexpr float kHeading = 0.45f;     // radians: faults do not run along the axes
-constexpr float kDip = 0.2f;          // metres a fault moves aside for each metre of depth
+constexpr float kDip = 0.2f;          // how far a fault moves aside for each unit of depth
 
 struct Fold {
   float along_u, along_v, phase, height;
@@ -100,6 +105,9 @@ void cut(const Rectangle& r, std::uint32_t pieces, Random& random, std::vector<R
 Vec3 minus(const Vec3& a, const Vec3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+Vec3 scaled(const Vec3& a) {
+  return {kScale * a.x, kScale * a.y, kScale * a.z};
+}
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -149,11 +157,25 @@ std::pair<std::uint32_t, std::uint32_t> quads(const Rectangle& r, double triangl
   return {static_cast<std::uint32_t>(std::lround(std::max(1.0, along_u))), m};
 }
 
-void add_piece(Scene& scene, const Ground& ground, const Rectangle& r, std::uint32_t layer, float thrown,
-               double triangles) {
-  const auto [n, m] = quads(r, triangles);
+// A piece before it is made.
+struct PlannedPiece {
+  Rectangle area;
+  std::uint32_t layer;
+  float thrown;
+  std::uint32_t columns, rows;  // quads along u and v
+};
+
+struct Plan {
+  Ground ground;
+  std::vector<PlannedPiece> pieces;
+};
+
+void add_piece(Scene& scene, const Ground& ground, const PlannedPiece& planned) {
+  const Rectangle& r = planned.area;
+  const std::uint32_t layer = planned.layer, n = planned.columns, m = planned.rows;
+  const float thrown = planned.thrown;
   const Vec3 middle = ground.at(layer, 0.5f * (r.u0 + r.u1), 0.5f * (r.v0 + r.v1), thrown);
-  const auto point = [&, n = n, m = m](std::uint32_t border, std::uint32_t i, std::uint32_t j) {
+  const auto point = [&](std::uint32_t border, std::uint32_t i, std::uint32_t j) {
     // The far corners are named exactly, so that neighbours share their borders to the bit.
     const float u = i == n ? r.u1 : r.u0 + (r.u1 - r.u0) * static_cast<float>(i) / static_cast<float>(n);
     const float v = j == m ? r.v1 : r.v0 + (r.v1 - r.v0) * static_cast<float>(j) / static_cast<float>(m);
@@ -165,20 +187,21 @@ void add_piece(Scene& scene, const Ground& ground, const Rectangle& r, std::uint
   piece.add_sheet(m, n, [&](U j, U i) { return point(1, i, j); });
   piece.add_sheet(n, m, [&](U i, U j) { return point(0, i, j); });
   piece.add_sheet(1, n, [&](U up, U i) { return point(up, i, 0); });
-  piece.add_sheet(n, 1, [&, m = m](U i, U up) { return point(up, i, m); });
+  piece.add_sheet(n, 1, [&](U i, U up) { return point(up, i, m); });
   piece.add_sheet(m, 1, [&](U j, U up) { return point(up, 0, j); });
-  piece.add_sheet(1, m, [&, n = n](U up, U j) { return point(up, n, j); });
-  scene.add_object(scene.add_mesh(piece.positions, piece.normals, piece.indices), place(middle, 1));
+  piece.add_sheet(1, m, [&](U up, U j) { return point(up, n, j); });
+  scene.add_object(scene.add_mesh(piece.positions, piece.normals, piece.indices),
+                   place(scaled(middle), kScale));
 }
 
-Scene make_strata(const Parameters& parameters) {
+Plan plan_strata(const Parameters& parameters) {
   const Model& model = kModels[parameters.count("model") - 1];
   double triangles = parameters.number("triangles");
   if (triangles == 0) triangles = model.triangles / 100;
   if (parameters.word("full") == "yes") triangles = model.triangles;
 
   Random random(parameters.count("seed"));
-  const Ground ground(random, model.layers);
+  Plan plan{Ground(random, model.layers), {}};
   std::vector<Rectangle> blocks;
   std::array<std::array<float, kFaults + 2>, 2> faults;
   for (auto& across : faults) {
@@ -198,7 +221,6 @@ Scene make_strata(const Parameters& parameters) {
 
   // Meshes over blocks and layers as evenly as whole numbers allow.
   const auto shares = static_cast<std::uint32_t>(blocks.size()) * model.layers;
-  Scene scene;
   std::vector<Rectangle> pieces;
   for (std::uint32_t share = 0; share < shares; ++share) {
     const std::uint32_t layer = share / static_cast<std::uint32_t>(blocks.size());
@@ -208,9 +230,17 @@ Scene make_strata(const Parameters& parameters) {
     cut(blocks[block], static_cast<std::uint32_t>(meshes * (share + 1) / shares - meshes * share / shares),
         random, pieces);
     for (const Rectangle& piece : pieces) {
-      add_piece(scene, ground, piece, layer, thrown[block], triangles / model.meshes);
+      const auto [columns, rows] = quads(piece, triangles / model.meshes);
+      plan.pieces.push_back({piece, layer, thrown[block], columns, rows});
     }
   }
+  return plan;
+}
+
+Scene make_strata(const Parameters& parameters) {
+  const Plan plan = plan_strata(parameters);
+  Scene scene;
+  for (const PlannedPiece& piece : plan.pieces) add_piece(scene, plan.ground, piece);
 
   // Centred on the origin, as the paper has it.
   const Box all = extent(scene);
@@ -221,8 +251,9 @@ Scene make_strata(const Parameters& parameters) {
     moved.rows[2].w -= 0.5f * (all.min.z + all.max.z);
     scene.move_object(object, moved);
   }
-  scene.viewpoints.push_back({"near", {0.1f * kSide, 0.25f * kSide, 0.8f * kSide}, {-0.1f, -0.25f, -0.6f}});
-  scene.viewpoints.push_back({"far", {0.6f * kSide, 0.5f * kSide, kSide}, {-0.6f, -0.5f, -1}});
+  scene.viewpoints.push_back(
+      {"near", scaled({0.1f * kSide, 0.25f * kSide, 0.8f * kSide}), {-0.1f, -0.25f, -0.6f}});
+  scene.viewpoints.push_back({"far", kPaperViewpoint, {-1, 0, 0}});
   return scene;
 }
 
@@ -230,5 +261,18 @@ Scene make_strata(const Parameters& parameters) {
 
 const WorldInfo kStrataWorld{"strata", "layered, faulted and folded ground (Ye et al. 2023)",
                              kStrataParameters, make_strata};
+
+StrataCount count_strata(std::string_view specification) {
+  const Plan plan = plan_strata(parse_parameters("world", specification, kStrataParameters));
+  StrataCount count;
+  for (const PlannedPiece& piece : plan.pieces) {
+    // Two sheets each of columns × rows, columns × 1 and rows × 1 quads, with vertices of their own.
+    const std::uint64_t n = piece.columns, m = piece.rows;
+    ++count.meshes;
+    count.triangles += 4 * (n * m + n + m);
+    count.vertices += 2 * ((n + 1) * (m + 1) + 2 * (n + 1) + 2 * (m + 1));
+  }
+  return count;
+}
 
 }  // namespace sightline::scene

@@ -1,4 +1,4 @@
-// BOCA, Ye et al. 2023, section 3.3: every ray down a bounding volume hierarchy, on the CPU.
+// BOCA, Ye et al. 2023, section 2.3: every ray down a bounding volume hierarchy, on the CPU.
 #include "workbench/methods/ray_pvs/nearest_box.hpp"
 #include "workbench/methods/ray_pvs/ray_method.hpp"
 

@@ -1,4 +1,4 @@
-// BVHA, Ye et al. 2023, section 3.4: the CPU walks the tree and collects candidate leaves, the GPU computes
+// BVHA, Ye et al. 2023: the CPU walks the tree and collects candidate leaves, the GPU computes
 // their distances and the nearest of each ray.
 #include <chrono>
 

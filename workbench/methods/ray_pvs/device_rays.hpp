@@ -76,7 +76,13 @@ private:
   device::Buffer slot_objects_, see_through_nodes_, object_marks_;  ///< where something hides nothing
 };
 
-std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene);
+/// How IWCPA's pairs of ray and box lie on lanes.
+enum class IwcpaMapping : std::uint8_t {
+  tuned,    ///< eight rays and many boxes a lane
+  printed,  ///< a lane a pair
+};
+std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene,
+                                       IwcpaMapping mapping = IwcpaMapping::tuned);
 std::unique_ptr<DeviceRays> make_bvha(device::Device& device, const Scene& scene);
 std::unique_ptr<DeviceRays> make_saa(device::Device& device, const Scene& scene);
 

@@ -13,17 +13,17 @@
 
 namespace sightline::methods {
 
-/// TOCA, section 3.2: every ray against every box.
+/// TOCA: every ray against every box.
 void cast_at_all_boxes(const Boxes& boxes, std::span<const PreparedRay> rays, rays::RayHits& hits);
 
-/// BOCA, section 3.3: every ray down the tree, to every leaf whose bounds it meets.
+/// BOCA, section 2.3: every ray down the tree, to every leaf whose bounds it meets.
 void cast_down_bvh(const rays::Bvh& bvh, std::span<const PreparedRay> rays, rays::RayHits& hits);
 
-/// SAA, section 3.5, on the CPU: no stack; a hit goes to i + 1, a miss to i + 1 + descendants of i.
+/// SAA, section 3.4.3, on the CPU: no stack; a hit goes to i + 1, a miss to i + 1 + descendants of i.
 void cast_by_skip_counts(std::span<const rays::BvhNode> nodes, std::span<const PreparedRay> rays,
                          rays::RayHits& hits);
 
-/// BVHA's first half, section 3.4: for each ray, the objects of the leaves that it meets. Those of ray r are
+/// BVHA's first half: for each ray, the objects of the leaves that it meets. Those of ray r are
 /// objects[first[r]] … objects[first[r + 1]).
 struct Candidates {
   std::vector<std::uint32_t> first;

@@ -1,4 +1,4 @@
-// SAA, Ye et al. 2023, section 3.5: the tree laid flat with skip counts, one ray a lane, 256 lanes a
+// SAA, Ye et al. 2023, section 3.4.3: the tree laid flat with skip counts, one ray a lane, 256 lanes a
 // workgroup.
 #include <algorithm>
 

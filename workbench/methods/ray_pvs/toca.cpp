@@ -1,4 +1,4 @@
-// TOCA, Ye et al. 2023, section 3.2: every ray against every box, on the CPU.
+// TOCA, Ye et al. 2023: every ray against every box, on the CPU.
 #include "workbench/methods/ray_pvs/nearest_box.hpp"
 #include "workbench/methods/ray_pvs/ray_method.hpp"
 

@@ -4,7 +4,7 @@
 #include "rays.h"
 layout(local_size_x = 256) in;
 
-// BVHA, section 3.4: the distances of the candidates that the CPU collected, one a lane.
+// BVHA: the distances of the candidates that the CPU collected, one a lane.
 layout(push_constant, scalar) uniform Push {
   RayBuffer rays;
   BoxSpanBuffer boxes;

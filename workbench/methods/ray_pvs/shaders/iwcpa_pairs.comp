@@ -5,7 +5,7 @@
 #include "rays.h"
 layout(local_size_x = 16, local_size_y = 16) in;
 
-// IWCPA, section 3.4: every (ray, box) pair, rays along x and boxes along y of workgroups of 16 by 16; -1 for a miss.
+// IWCPA, tuned: every (ray, box) pair, rays along x and boxes along y of workgroups of 16 by 16; -1 for a miss.
 // A lane takes eight rays and every sixteenth box of its workgroup's strip, and leaves its rays' nearest: lanes that
 // met at a barrier would cost a processor without one more than the distances themselves, and a box that is read once
 // serves eight rays.

@@ -33,6 +33,9 @@ layout(buffer_reference, scalar) readonly buffer NodeBuffer {
 layout(buffer_reference, scalar) buffer HitBuffer {
   Hit at[];
 };
+layout(buffer_reference, scalar) buffer DistanceBuffer {
+  float at[];
+};
 
 bool clip(float origin, float inverse, float low, float high, inout float entry, inout float exit) {
   if (inverse == 0) return origin >= low && origin <= high;

@@ -4,7 +4,7 @@
 #include "rays.h"
 layout(local_size_x = 256) in;
 
-// SAA, section 3.5: one ray a lane goes through Arr_a, the nodes depth first; a hit leads to the next node, a miss
+// SAA, section 3.4.3: one ray a lane goes through Arr_a, the nodes depth first; a hit leads to the next node, a miss
 // past the Arr_b[i] descendants. No stack.
 layout(push_constant, scalar) uniform Push {
   RayBuffer rays;
