@@ -9,7 +9,7 @@
 
 #include <sightline/workbench/io.hpp>
 
-#include "workbench/reproduce/draw_call_levels.hpp"
+#include "workbench/reproduce/draw_calls/draw_call_levels.hpp"
 
 namespace sightline {
 namespace {

@@ -1,5 +1,5 @@
 // What follows from the draw calls' measurements, and what the reproduction says of them.
-#include "workbench/reproduce/draw_calls.hpp"
+#include "workbench/reproduce/draw_calls/draw_calls.hpp"
 
 #include <gmock/gmock.h>
 
@@ -14,8 +14,8 @@
 #include <sightline/workbench/worlds.hpp>
 
 #include "support/temporary_folder.hpp"
-#include "workbench/reproduce/draw_call_sections.hpp"
-#include "workbench/reproduce/least_squares.hpp"
+#include "workbench/reproduce/draw_calls/draw_call_sections.hpp"
+#include "workbench/reproduce/draw_calls/least_squares.hpp"
 
 namespace sightline::reproduce {
 namespace {

@@ -1,6 +1,6 @@
 // Le Hoang Minh et al. 2022: the figures' walks, what the cells' size decides, occlusion after the frustum,
 // and every printed number in its own place.
-#include "workbench/reproduce/object_frustum.hpp"
+#include "workbench/reproduce/object_frustum/object_frustum.hpp"
 
 #include <gtest/gtest.h>
 

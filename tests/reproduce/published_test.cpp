@@ -9,11 +9,11 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "workbench/reproduce/draw_calls.hpp"
-#include "workbench/reproduce/object_frustum.hpp"
-#include "workbench/reproduce/ray_pvs.hpp"
+#include "workbench/reproduce/draw_calls/draw_calls.hpp"
+#include "workbench/reproduce/object_frustum/object_frustum.hpp"
+#include "workbench/reproduce/ray_pvs/ray_pvs.hpp"
 #include "workbench/reproduce/reproduction.hpp"
-#include "workbench/reproduce/vertex_chunk.hpp"
+#include "workbench/reproduce/vertex_chunk/vertex_chunk.hpp"
 
 namespace sightline::reproduce {
 namespace {

@@ -1,5 +1,5 @@
 // Ye et al. 2023: its numbers in their places, with and without ours beside them.
-#include "workbench/reproduce/ray_pvs.hpp"
+#include "workbench/reproduce/ray_pvs/ray_pvs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "workbench/device/device.hpp"
 #include "workbench/reproduce/published.hpp"
-#include "workbench/reproduce/ray_views.hpp"
+#include "workbench/reproduce/ray_pvs/ray_views.hpp"
 
 namespace sightline::reproduce {
 namespace {

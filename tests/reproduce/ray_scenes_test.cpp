@@ -1,5 +1,5 @@
 // Rays against triangles, against the item buffer: what they may lose and what not.
-#include "workbench/reproduce/ray_scenes.hpp"
+#include "workbench/reproduce/ray_pvs/ray_scenes.hpp"
 
 #include <gtest/gtest.h>
 
