@@ -76,16 +76,13 @@ RayScene measure_ray_scene(const Scene& scene, std::size_t views, const Progress
 
 report::Table guided_table(std::span<const RayScene> scenes) {
   report::Table table;
-  table.header = {"scene",      "views",       "lost pixels",   "share",    "worst view",
-                  "views over", "rays a view", "of the pixels", "ms a view"};
+  table.header = {"scene", "views", "lost pixels", "worst view", "views over", "rays a view", "ms a view"};
   for (const RayScene& s : scenes) {
-    const double pixels = static_cast<double>(s.pixels), views = static_cast<double>(s.views),
-                 rays = static_cast<double>(s.guided_rays);
+    const auto views = static_cast<double>(s.views);
     table.rows.push_back({s.scene, count(s.views), count(s.guided_lost),
-                          fmt::format("{:.5f} %", 100 * static_cast<double>(s.guided_lost) / pixels),
                           fmt::format("{:.5f} %", 100 * s.guided_worst), count(s.guided_over),
-                          report::format_count(std::round(rays / views)),
-                          fmt::format("{:.2f}", rays / pixels), report::format_ms(s.guided_ms / views)});
+                          report::format_count(std::round(static_cast<double>(s.guided_rays) / views)),
+                          report::format_ms(s.guided_ms / views)});
   }
   return table;
 }
