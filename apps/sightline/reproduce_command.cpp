@@ -7,7 +7,6 @@
 
 #include "command.hpp"
 #include "device.hpp"
-#include "page.hpp"
 #include "reproduce_ray_pvs.hpp"
 #include "workbench/device/renderer.hpp"
 #include "workbench/io/text_file.hpp"
@@ -27,48 +26,24 @@ struct ReproduceOptions {
   std::string report, device, json;
 };
 
-// Frame times of both methods, drawn by a device.
-void print_drawn_object_frustum(const std::string& name, bool quick) {
-  const auto device = open_device(name);
-  Scene scene = reproduce::object_frustum_scene();
-  measure::Bench bench(scene, reproduce::kObjectFrustumMethods, device.get());
-  measure::MeasureOptions measure;
-  measure.repeats = quick ? 2 : 5;
-  measure.warm_up = 1;
-  const measure::Comparison drawn =
-      measure::compare(bench, reproduce::object_frustum_path(scene), measure, progress("draw"));
-  expect_silence(device.get());
-  fmt::print("\nDrawn on {}, opaque front to back, then transparent back to front\n{}", drawn.device,
-             report::render(report::summary_table(drawn)));
-  const auto all = report::summarise(drawn);
-  fmt::print("\nfps, object-frustum / grid-cell: {:.2f}, published {:.2f}\n", all[1].fps() / all[0].fps(),
-             reproduce::kPublishedObjectFrustum.fps / reproduce::kPublishedGridCell.fps);
-}
-
-int run_object_frustum(const ReproduceOptions& options) {
-  Scene scene = reproduce::object_frustum_scene();
-  measure::Bench bench(scene, reproduce::kObjectFrustumMethods);
-  const auto result = reproduce::reproduce_object_frustum(bench, options.quick, progress("reproduce"));
-  fmt::print(
-      "Le Hoang Minh et al. 2022, table 2: {} trees on 1 km², eye at 8.9 m in the middle, ten runs\n\n{}\n",
-      scene.size(), report::render(result.runs));
-  fmt::print("object-frustum tests only the objects of crossing cells: {:.1f} % of all.\n\n{}\n",
-             100 * result.tested_share, report::render(result.ratios));
-  fmt::print("{}", report::render(report::summary_table(result.comparison)));
-  if (!options.report.empty()) write_page(options.report, bench, result.comparison);
-  if (options.device.empty() && device::list_devices().empty()) {
-    fmt::print("\nThere is no Vulkan device: nothing was drawn.\n");
-  } else if (options.device != "cpu") {
-    print_drawn_object_frustum(options.device.empty() ? "any" : options.device, options.quick);
-  }
-  return Exit::done;
-}
-
 // What a reproduction gives, as text and where it was asked for; pictures lie in the report's folder already.
 void give(const reproduce::Reproduction& reproduction, const ReproduceOptions& options) {
   fmt::print("{}", reproduce::text(reproduction));
   if (!options.json.empty()) io::write_file(options.json, reproduce::json(reproduction));
   if (!options.report.empty()) reproduce::write_reproduction(options.report, reproduction);
+}
+
+int run_object_frustum(const ReproduceOptions& options) {
+  const bool nothing_draws = options.device.empty() && device::list_devices().empty();
+  const auto device = open_device_or_cpu(nothing_draws            ? "cpu"
+                                         : options.device.empty() ? "any"
+                                                                  : options.device);
+  const reproduce::ObjectFrustumResult result = reproduce::measure_object_frustum(
+      device.get(), {.quick = options.quick, .pictures = !options.report.empty()}, progress("reproduce"));
+  expect_silence(device.get());
+  if (!options.report.empty()) reproduce::write_object_frustum_pictures(options.report, result);
+  give(reproduce::object_frustum_reproduction(result), options);
+  return Exit::done;
 }
 
 int run_vertex_chunk(const ReproduceOptions& options) {

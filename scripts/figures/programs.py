@@ -124,6 +124,8 @@ def method_rows(name, lines, drawn):
         rows.append(timed("frame", "frame_ms"))
     if any(line["cull_vertices"] for line in lines):
         rows.append(counted("vertices", "vertices", "cull_vertices"))
+    if any(line["tested"] for line in lines):
+        rows.append(counted("tested", "objects", "tested"))
     return rows + [counted("calls", "calls", "draw_calls"), counted("triangles", "triangles", "triangles"),
                    counted("visible", "objects", "truly_visible")]
 

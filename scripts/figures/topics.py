@@ -39,19 +39,15 @@ def frustum(quick):
     sizes = [10**n for n in range(4, 8)]
     compare_with(rows, {f"{mine}/{n}": f"{other}/{n}" for n in sizes
                         for mine, other in (("FlatSimd", "BareRead"), ("ScalarLoop", "FlatSimd"))})
-    said = sightline("reproduce", "object-frustum", "--device=cpu", *(["--quick"] if quick else []))
-    runs, _, summary = tables(said)
     paper = []
-    for line in summary:
-        low, high = re.search(r"\[([\d.]+)–([\d.]+)\]", line["cull ms [min–max]"]).groups()
-        kept = number(line["kept"])
-        judged = {"kept": kept, "lost": number(line["lost objects"]), "lost_pixels": number(line["lost pixels"]),
-                  "excess": number(line["excess"])}
-        paper.append(Row("forest", line["method"], "ms", number(line["cull ms [min–max]"]), float(low), float(high),
-                         len(runs) - 1, **judged))
-        paper.append(Row("forest-kept", line["method"], "objects", kept, repetitions=len(runs) - 1))
-    shares = [number(line["share tested"]) for line in runs if line["run"].isdigit()]
-    paper.append(row_of("forest-tested/object-frustum", "%", shares))
+    for row in compare("world:forest", "grid-cell,object-frustum", "forest", frames=3 if quick else 10):
+        method, what = row.case.split("/")
+        if what == "cull":
+            paper.append(Row("forest", method, "ms", row.median, row.min, row.max, row.repetitions, kept=row.kept,
+                             lost=row.lost, lost_pixels=row.lost_pixels, excess=row.excess))
+            paper.append(Row("forest-kept", method, "objects", row.kept, repetitions=row.repetitions))
+        elif what == "tested":
+            paper.append(Row("forest-tested", method, "%", 100 * row.median / 30000, repetitions=row.repetitions))
     return rows + compare_with(paper, {"forest/grid-cell": "forest/object-frustum",
                                        "forest-kept/grid-cell": "forest-kept/object-frustum"})
 

@@ -51,6 +51,8 @@ TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
   renderer.frame(view, [&](device::Recorder& frame) { renderer.draw(frame, list, draws); });
   const device::Picture picture = renderer.picture();
   EXPECT_TRUE(picture == expected);
+  renderer.frame(view, [&](device::Recorder& frame) { renderer.draw(frame, list, draws, true); });
+  EXPECT_TRUE(renderer.picture() == expected) << "a call a draw";
   EXPECT_GT(std::ranges::count_if(picture.pixels, [&](auto p) { return p != picture.pixels[0]; }), 1000);
   if (const char* folder = std::getenv("SIGHTLINE_TEST_PICTURES"))
     device::save_png(picture, std::string(folder) + "/forest.png");

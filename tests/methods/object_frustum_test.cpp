@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 
@@ -181,6 +182,86 @@ TEST(ObjectFrustum, TestsOnlyObjectsOfCrossingCells) {
   cull(*method, *make_view({.eye = {0, 8.9f, 0}, .far_plane = 600}, 1280, 720), frame);
   EXPECT_GT(frame.visible.size(), 500u);
   EXPECT_LT(frame.stats.tested, frame.visible.size());
+}
+
+// A column straight ahead is all that the printed walk keeps beyond the cells that the limits cross.
+TEST(ObjectFrustum, ThePrintedWalkLosesObjectsAndSaysSo) {
+  const Scene scene = generate_world("forest?trees=4000");
+  const auto exact = create_method("object-frustum?cell=100", scene),
+             printed = create_method("object-frustum?cell=100&walk=printed", scene);
+  EXPECT_EQ(exact->guarantee(), Guarantee::conservative);
+  EXPECT_EQ(printed->guarantee(), Guarantee::approximate);
+  for (const Vec3 forward : {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {
+    const View view = *make_view({.eye = {0, 8.9f, 0}, .forward = forward, .far_plane = 420}, 1280, 720);
+    const std::vector<ObjectId> all = kept(*exact, view), some = kept(*printed, view);
+    std::vector<ObjectId> lost, both;
+    std::ranges::set_difference(all, some, std::back_inserter(lost));
+    std::ranges::set_intersection(all, some, std::back_inserter(both));
+    EXPECT_GT(lost.size(), all.size() / 4) << forward.x << " " << forward.z;
+    EXPECT_GT(both.size(), all.size() / 8) << forward.x << " " << forward.z;
+  }
+}
+
+TEST(ObjectFrustum, LeavesOutLayersThatNobodyAsksFor) {
+  Scene scene = generate_world("forest?trees=3000&size=300");
+  scene.layers[5] = 6;
+  const View view = *make_view({.eye = {0, 8.9f, 120}}, 1280, 720);
+  for (const std::string name : {"grid-cell", "object-frustum"}) {
+    const std::vector<ObjectId> all = kept(*create_method(name, scene), view);
+    EXPECT_EQ(kept(*create_method(name + "?layers=7", scene), view), all);
+    for (const std::uint32_t layers : {1u, 2u, 4u, 8u}) {
+      const auto method = create_method(name + "?layers=" + std::to_string(layers), scene);
+      EXPECT_EQ(method->guarantee(), Guarantee::approximate);
+      std::vector<ObjectId> expected;
+      std::ranges::copy_if(all, std::back_inserter(expected),
+                           [&](ObjectId o) { return (scene.layers[o] & layers) != 0; });
+      EXPECT_EQ(kept(*method, view), expected) << name << layers;
+      EXPECT_LT(expected.size(), all.size());
+    }
+  }
+}
+
+TEST(ObjectFrustum, DrawsObjectByObjectWhereAskedTo) {
+  const Scene scene = generate_world("forest?trees=3000&size=300");
+  const View view = *make_view({.eye = {0, 8.9f, 120}}, 1280, 720);
+  for (const std::string name : {"grid-cell", "object-frustum"}) {
+    Frame instanced, objects;
+    cull(*create_method(name, scene), view, instanced);
+    cull(*create_method(name + "?submission=objects", scene), view, objects);
+    EXPECT_FALSE(instanced.one_by_one);
+    EXPECT_TRUE(objects.one_by_one);
+    ASSERT_EQ(objects.draws.size(), objects.visible.size());
+    EXPECT_EQ(objects.stats.draw_calls, objects.visible.size());
+    EXPECT_LT(instanced.stats.draw_calls, objects.stats.draw_calls);
+    EXPECT_EQ(objects.stats.triangles, instanced.stats.triangles);
+    float last = -INFINITY;
+    for (std::uint32_t i = 0; i < objects.draws.size(); ++i) {
+      const DrawCommand& draw = objects.draws[i];
+      const ObjectId object = objects.visible[i];
+      ASSERT_EQ(draw.first_instance, i);
+      ASSERT_EQ(draw.instance_count, 1u);
+      ASSERT_EQ(draw.first_index, scene.meshes[scene.mesh[object]].first_index);
+      // Front to back whatever the mesh, then back to front.
+      const float ahead = 120 - scene.sphere(object).centre.z;
+      const bool starts_over = i > 0 && scene.surface[object] != scene.surface[objects.visible[i - 1]];
+      if (!starts_over && scene.surface[object] == Surface::opaque) ASSERT_GE(ahead, last - 1e-3f);
+      if (!starts_over && scene.surface[object] != Surface::opaque) ASSERT_LE(ahead, last + 1e-3f);
+      last = ahead;
+    }
+    std::ranges::sort(instanced.visible);
+    std::ranges::sort(objects.visible);
+    EXPECT_EQ(instanced.visible, objects.visible);
+  }
+}
+
+TEST(ObjectFrustum, KeepsTheSameOverAnyGrid) {
+  const Scene scene = generate_world("forest?trees=3000&size=300");
+  const View view = *make_view({.eye = {0, 8.9f, 0}}, 1280, 720);
+  const std::vector<ObjectId> all = kept(*create_method("object-frustum", scene), view);
+  for (const std::string cells : {"?rows=4&columns=5", "?rows=6&columns=7", "?cell=60&rows=1"}) {
+    EXPECT_EQ(kept(*create_method("object-frustum" + cells, scene), view), all) << cells;
+    EXPECT_GT(kept(*create_method("grid-cell" + cells, scene), view).size(), all.size()) << cells;
+  }
 }
 
 }  // namespace

@@ -45,6 +45,29 @@ TEST(ObjectGrid, HoldsEveryObjectOnceInsideItsCell) {
   }
 }
 
+TEST(ObjectGrid, HasAsManyCellsAsAskedForAndKnowsWhereTheyLie) {
+  scene::Random random(3);
+  const Boxes boxes = random_boxes(random, 2000);
+  ObjectGrid grid;
+  grid.build(boxes, 10, {4, 7});
+  ASSERT_EQ(grid.rows(), 4u);
+  ASSERT_EQ(grid.columns(), 7u);
+  for (std::uint32_t r = 0; r < 4; ++r) {
+    for (std::uint32_t c = 0; c < 7; ++c) {
+      const Box ground = grid.cell_ground(r, c);
+      EXPECT_EQ(grid.cell_at(0.5f * (ground.min.x + ground.max.x), 0.5f * (ground.min.z + ground.max.z)),
+                std::pair(r, c));
+      const auto [begin, end] = grid.slots(r, c, c + 1);
+      for (std::uint32_t s = begin; s < end; ++s) {
+        const Box box = boxes[grid.order()[s]];
+        ASSERT_NEAR(0.5f * (box.min.x + box.max.x), 0.5f * (ground.min.x + ground.max.x), 0.51f * 400 / 7);
+        ASSERT_NEAR(0.5f * (box.min.z + box.max.z), 0.5f * (ground.min.z + ground.max.z), 0.51f * 400 / 4);
+      }
+    }
+  }
+  EXPECT_EQ(grid.cell_at(-1e6f, 1e6f), std::pair(3u, 0u));
+}
+
 TEST(ObjectGrid, KeepsGiantsApart) {
   scene::Random random(2);
   Boxes boxes = random_boxes(random, 500);

@@ -10,6 +10,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/reproduce/draw_calls.hpp"
+#include "workbench/reproduce/object_frustum.hpp"
 #include "workbench/reproduce/reproduction.hpp"
 #include "workbench/reproduce/vertex_chunk.hpp"
 
@@ -64,8 +65,9 @@ struct File {
   std::set<std::string> keys;
 };
 
-// What was measured is left out: what is printed must stand there all the same.
-void expect_whole(const Reproduction& reproduction, const std::vector<File>& files) {
+// What was measured is left out: what is printed must stand there all the same. `derived` cells hold what
+// follows from printed numbers.
+void expect_whole(const Reproduction& reproduction, const std::vector<File>& files, std::size_t derived = 0) {
   const Json document = Json::parse(json(reproduction));
   std::size_t numbers = 0;
   for (const File& file : files) {
@@ -79,7 +81,7 @@ void expect_whole(const Reproduction& reproduction, const std::vector<File>& fil
       }
     }
   }
-  EXPECT_EQ(published_cells(document), numbers) << "a number that no file holds, or one told twice";
+  EXPECT_EQ(published_cells(document), numbers + derived) << "a number that no file holds, or one told twice";
   EXPECT_GT(numbers, 10u);
 }
 
@@ -89,6 +91,11 @@ TEST(Published, EveryNumberOfTheVertexChunksStandsInItsCell) {
 
 TEST(Published, EveryNumberOfTheDrawCallsStandsInItsCell) {
   expect_whole(draw_calls_reproduction({}), {{"draw_calls", {"triangles"}}, {"draw_calls_text", {"what"}}});
+}
+
+TEST(Published, EveryNumberOfTheObjectFrustumStandsInItsCell) {
+  expect_whole(object_frustum_reproduction({}), {{"object_frustum", {"run"}}},
+               3);  // three ratios of its means
 }
 
 TEST(Published, RefusesWhatIsNoTable) {

@@ -93,9 +93,9 @@ TEST(Scene, RefusesMaterialsThatDoNotFit) {
     spoil(scene);
     return test::refusal([&] { check(scene); });
   };
-  for (const auto spoil :
-       {+[](Scene& s) { s.sides.clear(); }, +[](Scene& s) { s.material_sides.clear(); },
-        +[](Scene& s) { s.alpha_image.clear(); }, +[](Scene& s) { s.alpha_cutoff.clear(); }}) {
+  for (const auto spoil : {+[](Scene& s) { s.sides.clear(); }, +[](Scene& s) { s.material_sides.clear(); },
+                           +[](Scene& s) { s.layers.clear(); }, +[](Scene& s) { s.alpha_image.clear(); },
+                           +[](Scene& s) { s.alpha_cutoff.clear(); }}) {
     EXPECT_THAT(refusal_of(spoil), HasSubstr("length"));
   }
   EXPECT_THAT(refusal_of([](Scene& s) { s.alpha_image[0] = 1; }), HasSubstr("alpha image is out of range"));

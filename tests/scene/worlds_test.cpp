@@ -43,6 +43,31 @@ TEST(Worlds, HaveThePublishedSizes) {
   EXPECT_EQ(generate_world("regular?detail=2").triangles(0), 320u);
 }
 
+TEST(Worlds, AForestStandsOnItsGround) {
+  const Scene flat = generate_world("forest?trees=500"), hilly = generate_world("forest?trees=500&ground=64");
+  ASSERT_EQ(hilly.size(), flat.size() + 1);
+  EXPECT_EQ(hilly.triangles(500), 2u * 64 * 64);
+  const std::span ground = std::span(hilly.positions).subspan(hilly.meshes.back().first_vertex);
+  float lowest = 1e9f, highest = -1e9f;
+  for (ObjectId tree = 0; tree < 500; ++tree) {
+    const Vec3 was = transform_point(flat.transform[tree], {}),
+               is = transform_point(hilly.transform[tree], {});
+    EXPECT_EQ(was.x, is.x);
+    EXPECT_EQ(was.z, is.z);
+    EXPECT_EQ(was.y, 0);
+    // Corners of the mesh are less than 16 m apart, and a hill rises less than a quarter of that.
+    for (const Vec3& corner : ground) {
+      if (std::hypot(corner.x - is.x, corner.z - is.z) < 8) ASSERT_NEAR(corner.y, is.y, 1.5f);
+    }
+    lowest = std::min(lowest, is.y), highest = std::max(highest, is.y);
+    EXPECT_EQ(hilly.layers[tree], hilly.surface[tree] == Surface::opaque ? 1u : 2u);
+  }
+  EXPECT_GT(highest - lowest, 3);
+  EXPECT_EQ(hilly.layers[500], 4u);
+  EXPECT_FLOAT_EQ(flat.viewpoints[0].eye.y, 8.9f);
+  EXPECT_GT(hilly.viewpoints[0].eye.y, 8.9f);
+}
+
 TEST(Worlds, FoliageIsOfEveryKind) {
   const Scene scene = generate_world("foliage");
   EXPECT_GT(scene.size(), 800u);

@@ -177,25 +177,39 @@ Renderer::Commands Renderer::commands_of(const DrawBuffers& draws, DrawState sta
   return {draws.commands.handle(), draws.first_of(state), draws.count_of(state), draws.list.address(), state};
 }
 
-void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline,
-                             const Commands& commands, Recorder::Compare compare,
-                             vk::DeviceAddress extra) const {
-  if (commands.count == 0) return;
+void Renderer::bind(const Recorder& frame, const GraphicsPipeline& pipeline, const Commands& commands,
+                    Recorder::Compare compare, vk::DeviceAddress extra) const {
   frame.bind(pipeline, compare, 0, culled_in(commands.state));
   frame.push(DrawPush{buffers_.object_data.address(), commands.list, extra});
   frame.commands.bindVertexBuffers(0, buffers_.vertices.handle(), vk::DeviceSize{0});
   frame.commands.bindIndexBuffer(buffers_.indices.handle(), 0, vk::IndexType::eUint32);
+}
+
+void Renderer::submit(const Recorder& frame, const Commands& commands) {
   frame.commands.drawIndexedIndirect(commands.buffer, commands.first * kCommandSize, commands.count,
                                      kCommandSize);
 }
 
-void Renderer::draw_lit(const Recorder& frame, const Commands& commands) const {
+void Renderer::draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline,
+                             const Commands& commands, Recorder::Compare compare,
+                             vk::DeviceAddress extra) const {
+  if (commands.count == 0) return;
+  bind(frame, pipeline, commands, compare, extra);
+  submit(frame, commands);
+}
+
+void Renderer::bind_lit(const Recorder& frame, const Commands& commands) const {
   const bool solid = submission::is_solid(commands.state);
   const GraphicsPipeline& pipeline = solid                                  ? lit_pipeline_
                                      : commands.state == DrawState::cut_out ? cut_out_pipeline_
                                                                             : blend_pipeline_;
-  draw_indirect(frame, pipeline, commands, Recorder::Compare::nearer_or_equal,
-                solid ? 0 : buffers_.looks.address());
+  bind(frame, pipeline, commands, Recorder::Compare::nearer_or_equal, solid ? 0 : buffers_.looks.address());
+}
+
+void Renderer::draw_lit(const Recorder& frame, const Commands& commands) const {
+  if (commands.count == 0) return;
+  bind_lit(frame, commands);
+  submit(frame, commands);
 }
 
 void Renderer::draw_solid(const Recorder& frame, const DrawBuffers& draws, Style style, Clear clear,
@@ -227,7 +241,7 @@ void Renderer::draw_rest(const Recorder& frame, const DrawBuffers& draws) const 
 }
 
 void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
-                    std::span<const DrawCommand> draws) {
+                    std::span<const DrawCommand> draws, bool one_by_one) {
   if (host_list_.size() < visible.size_bytes())
     host_list_ = Buffer(device_, visible.size_bytes(), Memory::upload, "a draw list");
   if (host_commands_.size() < draws.size_bytes()) {
@@ -246,8 +260,17 @@ void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
   for (std::size_t first = 0, end = 0; first < draws.size(); first = end) {
     const DrawState state = state_of(draws[first]);
     while (end < draws.size() && state_of(draws[end]) == state) ++end;
-    draw_lit(frame, {host_commands_.handle(), static_cast<std::uint32_t>(first),
-                     static_cast<std::uint32_t>(end - first), host_list_.address(), state});
+    const Commands commands{host_commands_.handle(), static_cast<std::uint32_t>(first),
+                            static_cast<std::uint32_t>(end - first), host_list_.address(), state};
+    if (!one_by_one) {
+      draw_lit(frame, commands);
+      continue;
+    }
+    bind_lit(frame, commands);
+    for (const DrawCommand& draw : draws.subspan(first, end - first)) {
+      frame.commands.drawIndexed(draw.index_count, draw.instance_count, draw.first_index, draw.vertex_offset,
+                                 draw.first_instance);
+    }
   }
   frame.end_rendering();
 }

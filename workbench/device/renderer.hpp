@@ -58,8 +58,9 @@ public:
   [[nodiscard]] vk::DeviceAddress transparent_order();
 
   /// Draws what a CPU method hands over, in its order, which is by submission::DrawState: a cleared picture,
-  /// then one multi-draw-indirect call a state.
-  void draw(const Recorder& frame, std::span<const ObjectId> visible, std::span<const DrawCommand> draws);
+  /// then one multi-draw-indirect call a state, or each draw as a call of its own.
+  void draw(const Recorder& frame, std::span<const ObjectId> visible, std::span<const DrawCommand> draws,
+            bool one_by_one = false);
 
   /// The last frame's picture.
   [[nodiscard]] Picture picture() const;
@@ -76,8 +77,12 @@ private:
     submission::DrawState state;
   };
   static Commands commands_of(const DrawBuffers& draws, submission::DrawState state) noexcept;
+  void bind(const Recorder& frame, const GraphicsPipeline& pipeline, const Commands& commands,
+            Recorder::Compare compare, vk::DeviceAddress extra) const;
+  static void submit(const Recorder& frame, const Commands& commands);
   void draw_indirect(const Recorder& frame, const GraphicsPipeline& pipeline, const Commands& commands,
                      Recorder::Compare compare, vk::DeviceAddress extra) const;
+  void bind_lit(const Recorder& frame, const Commands& commands) const;
   void draw_lit(const Recorder& frame, const Commands& commands) const;
 
   Device& device_;

@@ -297,6 +297,7 @@ private:
     reorder(scene_.material_sides);
     reorder(scene_.alpha_image);
     reorder(scene_.alpha_cutoff);
+    reorder(scene_.layers);
     Boxes& b = scene_.bounds;
     for (auto* array : {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z}) reorder(*array);
   }

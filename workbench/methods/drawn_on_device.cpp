@@ -31,7 +31,7 @@ public:
     if (triangles_) {
       triangles_->draw(*context.recorder, frame.draws, geometry()->submission);
     } else {
-      renderer_.draw(*context.recorder, frame.visible, frame.draws);
+      renderer_.draw(*context.recorder, frame.visible, frame.draws, frame.one_by_one);
     }
   }
 

@@ -11,28 +11,24 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kMostCells = 4096;
 
-// Which cell along one axis a centre falls into.
-struct CellAxis {
-  float origin = 0, cell = 1;
-  std::uint32_t cells = 1;
-
-  CellAxis(float low, float high, float wanted) : origin(low) {
-    const float count = std::clamp(std::ceil((high - low) / wanted), 1.0f, kMostCells);
-    cells = static_cast<std::uint32_t>(count);
-    cell = std::max((high - low) / count, std::numeric_limits<float>::min());
-  }
-  [[nodiscard]] std::uint32_t of(float centre) const noexcept {
-    return std::min(static_cast<std::uint32_t>(std::max((centre - origin) / cell, 0.0f)), cells - 1);
-  }
-};
-
 float middle(float low, float high) noexcept {
   return 0.5f * low + 0.5f * high;
 }
 
 }  // namespace
 
-void ObjectGrid::build(const Boxes& b, float cell) {
+ObjectGrid::Axis::Axis(float low, float high, float wanted, std::uint32_t count) : origin(low) {
+  const float many =
+      std::clamp(count > 0 ? static_cast<float>(count) : std::ceil((high - low) / wanted), 1.0f, kMostCells);
+  cells = static_cast<std::uint32_t>(many);
+  cell = std::max((high - low) / many, std::numeric_limits<float>::min());
+}
+
+std::uint32_t ObjectGrid::Axis::of(float centre) const noexcept {
+  return std::min(static_cast<std::uint32_t>(std::max((centre - origin) / cell, 0.0f)), cells - 1);
+}
+
+void ObjectGrid::build(const Boxes& b, float cell, const Counts& counts) {
   const std::size_t n = b.size();
   float low_x = kInfinity, high_x = -kInfinity, low_z = kInfinity, high_z = -kInfinity;
   for (std::size_t i = 0; i < n; ++i) {
@@ -40,19 +36,19 @@ void ObjectGrid::build(const Boxes& b, float cell) {
     low_x = std::min(low_x, x), high_x = std::max(high_x, x);
     low_z = std::min(low_z, z), high_z = std::max(high_z, z);
   }
-  const CellAxis across(low_x, high_x, cell), along(low_z, high_z, cell);
-  columns_ = across.cells, rows_ = along.cells;
+  across_ = Axis(low_x, high_x, cell, counts.columns), along_ = Axis(low_z, high_z, cell, counts.rows);
+  columns_ = across_.cells, rows_ = along_.cells;
   const std::uint32_t cells = rows_ * columns_;
 
   // Counting sort by cell; a last bucket for what is larger than a cell and would widen its neighbours.
-  const float most_x = 2 * std::max(across.cell, cell), most_z = 2 * std::max(along.cell, cell);
+  const float most_x = 2 * std::max(across_.cell, cell), most_z = 2 * std::max(along_.cell, cell);
   std::vector<std::uint32_t> cell_of(n);
   cell_start_.assign(cells + 2, 0);
   for (std::size_t i = 0; i < n; ++i) {
     const bool oversize = b.max_x[i] - b.min_x[i] > most_x || b.max_z[i] - b.min_z[i] > most_z;
     cell_of[i] = oversize ? cells
-                          : along.of(middle(b.min_z[i], b.max_z[i])) * columns_ +
-                                across.of(middle(b.min_x[i], b.max_x[i]));
+                          : along_.of(middle(b.min_z[i], b.max_z[i])) * columns_ +
+                                across_.of(middle(b.min_x[i], b.max_x[i]));
     ++cell_start_[cell_of[i] + 1];
   }
   for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
@@ -90,6 +86,16 @@ Box ObjectGrid::cell_bounds(std::uint32_t r, std::uint32_t column) const noexcep
 bool ObjectGrid::is_empty(std::uint32_t row, std::uint32_t column) const noexcept {
   const auto [begin, end] = slots(row, column, column + 1);
   return begin == end;
+}
+
+std::pair<std::uint32_t, std::uint32_t> ObjectGrid::cell_at(float x, float z) const noexcept {
+  return {along_.of(z), across_.of(x)};
+}
+
+Box ObjectGrid::cell_ground(std::uint32_t row, std::uint32_t column) const noexcept {
+  const float x = across_.origin + static_cast<float>(column) * across_.cell;
+  const float z = along_.origin + static_cast<float>(row) * along_.cell;
+  return {{x, 0, z}, {x + across_.cell, 0, z + along_.cell}};
 }
 
 std::pair<std::uint32_t, std::uint32_t> ObjectGrid::slots(std::uint32_t row, std::uint32_t first,

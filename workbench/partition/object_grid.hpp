@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <sightline/frustum.hpp>
@@ -22,13 +23,23 @@ public:
     bool operator==(const Run&) const = default;
   };
 
+  /// How many cells there are along an axis: as many as this says, or where it says 0, as `cell` makes.
+  struct Counts {
+    std::uint32_t rows = 0, columns = 0;
+  };
+
   /// Bounds and extents: one box an object. `cell` in metres; the grid has at most 4096 cells a side.
-  void build(const Boxes& bounds, float cell);
+  void build(const Boxes& bounds, float cell, const Counts& counts = {0, 0});
 
   [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
   [[nodiscard]] Box cell_bounds(std::uint32_t row, std::uint32_t column) const noexcept;
   [[nodiscard]] bool is_empty(std::uint32_t row, std::uint32_t column) const noexcept;
+  /// The row and the column in which an object with this centre stands; of a place beyond the grid, the
+  /// nearest.
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> cell_at(float x, float z) const noexcept;
+  /// The cell's share of the ground, by their centres; y is 0.
+  [[nodiscard]] Box cell_ground(std::uint32_t row, std::uint32_t column) const noexcept;
 
   /// Object ids, cell by cell; behind the last cell those too large for any cell.
   [[nodiscard]] std::span<const ObjectId> order() const noexcept { return order_; }
@@ -43,6 +54,17 @@ public:
   std::uint32_t classify(const Frustum& frustum, std::vector<Run>& runs) const;
 
 private:
+  // Which cell along one axis a centre falls into.
+  struct Axis {
+    float origin = 0, cell = 1;
+    std::uint32_t cells = 1;
+
+    Axis() = default;
+    Axis(float low, float high, float wanted, std::uint32_t count);
+    [[nodiscard]] std::uint32_t of(float centre) const noexcept;
+  };
+
+  Axis across_, along_;
   std::uint32_t rows_ = 0, columns_ = 0;
   std::vector<std::uint32_t> cell_start_;  // rows × columns + 1 slots
   std::vector<ObjectId> order_;

@@ -48,7 +48,8 @@ Sides drawn_sides(Sides of_material, RasterState state) noexcept {
 
 void check_materials(const Scene& s) {
   const std::size_t n = s.size();
-  if (s.material_sides.size() != n || s.alpha_image.size() != n || s.alpha_cutoff.size() != n) {
+  if (s.material_sides.size() != n || s.alpha_image.size() != n || s.alpha_cutoff.size() != n ||
+      s.layers.size() != n) {
     throw Error("scene '" + s.name + "': object arrays differ in length");
   }
   for (std::size_t object = 0; object < n; ++object) {

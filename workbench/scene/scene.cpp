@@ -77,6 +77,7 @@ ObjectId Scene::add_object(std::uint32_t mesh_index, const Affine& object_transf
   material_sides.push_back(look.sides);
   alpha_image.push_back(look.alpha_image);
   alpha_cutoff.push_back(look.alpha_cutoff);
+  layers.push_back(kAllLayers);
   move_object(object, object_transform);
   return object;
 }

@@ -21,7 +21,12 @@ void append(const Mesh& mesh, std::uint32_t instances, std::uint32_t first, Fram
 
 }  // namespace
 
-DrawList::DrawList(const Scene& scene) : states_(scene.size()), instances_(scene.meshes.size(), 0) {
+CallOf call_from(const Parameters& parameters) noexcept {
+  return parameters.word("submission") == "objects" ? CallOf::object : CallOf::mesh;
+}
+
+DrawList::DrawList(const Scene& scene, CallOf call)
+    : call_(call), states_(scene.size()), instances_(scene.meshes.size(), 0) {
   std::array<std::size_t, kDrawStates> counts{};
   for (ObjectId id = 0; id < scene.size(); ++id) {
     states_[id] = draw_state(scene, id);
@@ -42,11 +47,14 @@ void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcep
         std::uint64_t{state == DrawState::blended ? ~near_first : near_first} << 32 | id);
   }
   frame.draws.clear();
+  frame.one_by_one = call_ == CallOf::object;
   std::uint32_t first = 0;
   for (std::size_t state = 0; state < keys_.size(); ++state) {
     std::vector<std::uint64_t>& keys = keys_[state];
     geometry::sort_by_high_bits(keys, scratch_, 32);
-    if (static_cast<DrawState>(state) == DrawState::blended) {
+    if (call_ == CallOf::object) {
+      draw_one_by_one(scene, keys, first, frame);
+    } else if (static_cast<DrawState>(state) == DrawState::blended) {
       draw_in_runs(scene, first, frame);
     } else {
       draw_by_mesh(scene, keys, first, frame);
@@ -80,6 +88,14 @@ void DrawList::draw_in_runs(const Scene& scene, std::uint32_t first, Frame& fram
     for (; i < far_first.size() && scene.mesh[id_of(far_first[i])] == mesh; ++i)
       frame.visible[first++] = id_of(far_first[i]);
     append(scene.meshes[mesh], first - run, run, frame);
+  }
+}
+
+void DrawList::draw_one_by_one(const Scene& scene, std::span<const std::uint64_t> keys, std::uint32_t first,
+                               Frame& frame) noexcept {
+  for (const std::uint64_t key : keys) {
+    frame.visible[first] = id_of(key);
+    append(scene.meshes[scene.mesh[id_of(key)]], 1, first++, frame);
   }
 }
 

@@ -37,11 +37,13 @@ struct CullStats {
 struct Frame {
   std::vector<ObjectId> visible;  ///< grouped by mesh as `draws` wants it; each object at most once
   std::vector<DrawCommand> draws;
+  bool one_by_one = false;  ///< each draw is a call of its own; else those of one state are one multi-draw
   CullStats stats;
 
   void clear() noexcept {
     visible.clear();
     draws.clear();
+    one_by_one = false;
     stats = {};
   }
 };

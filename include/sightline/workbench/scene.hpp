@@ -15,6 +15,7 @@
 #include <sightline/types.hpp>
 #include <sightline/workbench/affine.hpp>
 #include <sightline/workbench/level_pvs.hpp>
+#include <sightline/world.hpp>
 
 namespace sightline {
 
@@ -94,6 +95,7 @@ struct Scene {
   std::vector<Sides> material_sides;       ///< drawn, as the materials have it
   std::vector<std::uint32_t> alpha_image;  ///< of `alpha_images`, or kNoAlphaImage
   std::vector<std::uint8_t> alpha_cutoff;  ///< a cut-out is drawn where alpha >= this
+  std::vector<std::uint32_t> layers;       ///< a bit a layer that it is in, as World has them; all unless set
 
   // geometry
   std::vector<Mesh> meshes;

@@ -4,73 +4,91 @@
 //
 // The paper walks rows near to far and columns left and right on a grid turned to the view. Here each row's
 // interval of touched and of covered columns is found by bisection, which gives the same cells for any
-// heading.
+// heading; the walk as printed, which drops too much, is there to be compared with. Its list can go on to
+// occlusion, which the paper names as its future work.
 #include <array>
+#include <optional>
 
 #include "workbench/methods/object_frustum/grid_objects.hpp"
+#include "workbench/methods/object_frustum/printed_walk.hpp"
+#include "workbench/methods/object_frustum/visible_list.hpp"
+#include "workbench/methods/raster_occlusion/scene_occluders.hpp"
 
 namespace sightline::methods {
 
 namespace {
 
-constexpr std::array kObjectFrustumParameters{kCellParameter, submission::kBoundsParameter};
+constexpr std::array kObjectFrustumParameters{
+    kCellParameter,
+    kRowsParameter,
+    kColumnsParameter,
+    submission::kBoundsParameter,
+    submission::kSubmissionParameter,
+    kLayersParameter,
+    ParameterInfo{
+        "walk",
+        "how cells are sorted: by intervals of every row, or by the paper's steps as printed, which "
+        "lose objects",
+        "repaired", 0, 0, false, "repaired|printed"},
+    ParameterInfo{"occlusion", "what is in view goes through occlusion on the CPU, too, as in masked", "off",
+                  0, 0, false, "off|masked"}};
 
 class ObjectFrustum final : public CpuMethod {
 public:
   ObjectFrustum(const Scene& scene, const Parameters& parameters)
-      : CpuMethod(scene), objects_(scene, parameters), draw_list_(scene) {
+      : CpuMethod(scene),
+        objects_(scene, parameters),
+        printed_(parameters.word("walk") == "printed"),
+        list_(scene, parameters) {
+    if (parameters.word("occlusion") == "masked") occluders_.emplace(scene);
     reserve_runs();
   }
 
-  [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
+  [[nodiscard]] Guarantee guarantee() const noexcept override {
+    return printed_ || list_.leaves_out_layers() ? Guarantee::approximate : Guarantee::conservative;
+  }
   void do_update(std::span<const ObjectId> moved) override {
     if (moved.empty()) return;
     objects_.rebuild();
     reserve_runs();
+    if (occluders_) occluders_->update(moved);
   }
 
   void cull(const View& view, Frame& frame) noexcept override {
     frame.clear();
-    const partition::ObjectGrid& grid = objects_.grid;
     const Frustum frustum = make_frustum(view);
     runs_.clear();
-    grid.classify(frustum, runs_);
-
-    frame.visible.resize(objects_.scene.size() + kCullPadding);
-    std::size_t kept = 0;
-    for (const auto& run : runs_) {
-      frame.stats.nodes_visited += run.last_column - run.first_column;
-      const auto [begin, end] = grid.slots(run.row, run.first_column, run.last_column);
-      kept = run.overlap == Overlap::inside ? take(begin, end, kept, frame)
-                                            : test(frustum, begin, end, kept, frame);
+    if (printed_) {
+      walk_as_printed(objects_.grid, view, frustum, runs_);
+    } else {
+      objects_.grid.classify(frustum, runs_);
     }
-    const auto [begin, end] = grid.oversize_slots();
-    kept = test(frustum, begin, end, kept, frame);
-
-    frame.visible.resize(kept);
-    frame.stats.objects = objects_.scene.size();
-    frame.stats.culled_frustum = objects_.scene.size() - kept;
-    draw_list_.build(objects_.scene, view, frame);
+    objects_.test_cells(frustum, runs_, frame);
+    list_.keep_layers(frame);
+    if (occluders_) keep_unhidden(view, frame);
+    list_.draw(view, frame);
   }
 
 private:
-  void reserve_runs() { runs_.reserve(3 * std::size_t{objects_.grid.rows()}); }
-
-  std::size_t take(std::uint32_t begin, std::uint32_t end, std::size_t kept, Frame& frame) const noexcept {
-    const auto ids = objects_.bounds.ids().subspan(begin, end - begin);
-    std::copy(ids.begin(), ids.end(), frame.visible.begin() + static_cast<std::ptrdiff_t>(kept));
-    return kept + ids.size();
+  // Each row's runs by bisection are three at most; the printed walk lists cell by cell.
+  void reserve_runs() {
+    const std::size_t rows = objects_.grid.rows(), columns = objects_.grid.columns();
+    runs_.reserve(printed_ ? rows * columns : 3 * rows);
   }
 
-  std::size_t test(const Frustum& frustum, std::uint32_t begin, std::uint32_t end, std::size_t kept,
-                   Frame& frame) const noexcept {
-    frame.stats.tested += end - begin;
-    return kept + objects_.bounds.cull(frustum, begin, end - begin, std::span(frame.visible).subspan(kept));
+  // One object has nothing to hide behind; a view or scene beyond what the buffer takes hides nothing.
+  void keep_unhidden(const View& view, Frame& frame) {
+    const std::size_t in_view = frame.visible.size();
+    if (in_view < 2 || !occluders_->usable() || !occluders_->draw({view, {}}, frame.visible)) return;
+    frame.visible.resize(occluders_->keep_unhidden(frame.visible));
+    frame.stats.culled_occlusion = in_view - frame.visible.size();
   }
 
   GridObjects objects_;
   std::vector<partition::ObjectGrid::Run> runs_;
-  submission::DrawList draw_list_;
+  bool printed_;
+  VisibleList list_;
+  std::optional<SceneOccluders> occluders_;
 };
 
 }  // namespace
