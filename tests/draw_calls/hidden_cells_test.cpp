@@ -58,8 +58,8 @@ TEST(HiddenCells, WhatAWallHidesIsNotDrawn) {
   }
 }
 
-// What moves hides nothing from then on, and is hidden as any.
-TEST(HiddenCells, AWallThatMovesHidesNothing) {
+// What moves is hidden where it is, and hides nothing where it was.
+TEST(HiddenCells, WhatMovesHidesNothingWhereItWas) {
   Scene scene = behind_a_wall();
   const auto method = create_method("drawcall-wise-octree?occlusion=masked", scene);
   const std::array<ObjectId, 1> wall{0}, small{50};
@@ -75,7 +75,7 @@ TEST(HiddenCells, AWallThatMovesHidesNothing) {
   scene.move_object(0, at(500, 0, -10));
   method->update(wall);
   cull(*method, kOntoTheWall, frame);
-  EXPECT_EQ(frame.visible.size(), scene.size());  // its copy in the cells, too, which does no harm
+  EXPECT_GT(frame.visible.size(), scene.size() - 10);  // but for a few behind the square in front
 }
 
 // A cut-out may be looked through.

@@ -23,6 +23,7 @@ std::string_view to_string(Submission submission) noexcept {
 namespace sightline::methods {
 
 DrawCallMethod::DrawCallMethod(const Scene& scene, const DrawCallPlan& plan) : CpuMethod(scene), plan_(plan) {
+  if (plan_.occlusion) occluders_.emplace(scene);
   rebuild();
 }
 
@@ -63,7 +64,6 @@ void DrawCallMethod::rebuild() {
   }
   movers_.clear();
   is_mover_.assign(scene_.size(), 0);
-  if (plan_.occlusion) build_occluder(flat);
   if (plan_.strategy == Strategy::simple) {
     lists_.indices = std::move(flat.indices), lists_.objects = std::move(flat.objects);
   } else {
@@ -83,11 +83,9 @@ void DrawCallMethod::rebuild() {
 }
 
 void DrawCallMethod::describe() {
-  constexpr std::uint64_t kOccluderBytes = 300;  // a triangle, by the library's manual
   std::uint64_t bytes =
       lists_.positions.size() * sizeof(Vec3) + lists_.texture_coordinates.size() * sizeof(TextureCoordinate) +
       4 * (lists_.indices.size() + lists_.objects.size() + lists_.sources.size()) + 9 * scene_.size();
-  bytes += kOccluderBytes * occluder_.triangles();
   for (const Layer& layer : layers_) bytes += layer.partition.bytes() + layer.batches.bytes();
   geometry_ = {lists_.positions,           lists_.indices,   lists_.objects, lists_.sources,
                lists_.texture_coordinates, plan_.submission, bytes};
@@ -107,7 +105,7 @@ void DrawCallMethod::cull(const View& view, Frame& frame) noexcept {
   const Facing facing(view, plan_.facing);
   frame.stats.objects = scene_.size();
   // A view that the buffer refuses is culled by the frustum alone.
-  hides_ = plan_.occlusion && buffer_.begin({view, {}}) && buffer_.draw_mesh(occluder_);
+  hides_ = plan_.occlusion && draw_occluders(view, frustum);
   for (const Layer& layer : layers_) {
     runs_.clear(), ranges_.clear();
     frame.stats.nodes_visited += layer.partition.walk(frustum, runs_);

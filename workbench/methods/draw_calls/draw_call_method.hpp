@@ -2,13 +2,13 @@
 // eye or are not hidden, of them ranges of triangles, as draws.
 #pragma once
 
+#include <optional>
 #include <vector>
-
-#include <sightline/occlusion.hpp>
 
 #include "workbench/methods/draw_calls/blend_order.hpp"
 #include "workbench/methods/draw_calls/draw_batches.hpp"
 #include "workbench/methods/methods.hpp"
+#include "workbench/methods/raster_occlusion/scene_occluders.hpp"
 
 namespace sightline::methods {
 
@@ -78,9 +78,9 @@ private:
   void describe();
   void place(ObjectId object);
   void add_mover(ObjectId object);
-  void build_occluder(const FlatTriangles& flat);
   static void build_occludees(const FlatTriangles& flat, Layer& layer);
   void reach(ObjectId object, Reached how_far, Frame& frame) noexcept;
+  bool draw_occluders(const View& view, const Frustum& frustum) noexcept;
   void leave_out_hidden(const Layer& layer, Frame& frame) noexcept;
   void take_unhidden(const Layer& layer, Frame& frame) noexcept;
   void take_unhidden_of(const Layer& layer, std::uint32_t batch, Frame& frame) noexcept;
@@ -100,11 +100,11 @@ private:
   /// begin when all are counted through.
   std::vector<std::uint32_t> first_corner_, first_source_;
 
-  OccluderMesh occluder_;  ///< the opaque triangles of what has not moved, where there is occlusion
-  OcclusionBuffer buffer_;
+  std::optional<SceneOccluders> occluders_;  ///< where there is occlusion
 
   // of the frame
-  bool hides_ = false;  ///< whether the buffer can be asked
+  bool hides_ = false;  ///< whether the occluders can be asked
+  std::vector<ObjectId> candidates_;
   std::vector<partition::TrianglePartition::Run> runs_, seen_runs_;
   std::vector<TriangleRange> ranges_;
   std::vector<std::uint64_t> seen_;  ///< one an object: 4 · frame + Reached

@@ -7,6 +7,7 @@ namespace sightline::methods {
 
 void DrawCallMethod::do_update(std::span<const ObjectId> moved) {
   if (moved.empty()) return;
+  if (occluders_) occluders_->update(moved);
   std::size_t fresh = 0;
   for (const ObjectId object : moved) fresh += !is_mover_[object];
   if (lists_.indices.empty() || 4 * (movers_.size() + fresh) > scene_.size()) {
@@ -25,7 +26,6 @@ void DrawCallMethod::do_update(std::span<const ObjectId> moved) {
     place(object);
     if (!is_mover_[object]) add_mover(object);
   }
-  if (plan_.occlusion && fresh > 0) build_occluder(flatten(scene_));
   describe();
 }
 
@@ -57,7 +57,7 @@ void DrawCallMethod::take_movers(const Frustum& frustum, bool transparent, Frame
     if ((scene_.surface[mover.object] == Surface::transparent) != transparent) continue;
     ++frame.stats.tested;
     if (!overlaps(frustum, scene_.bounds[mover.object])) continue;
-    const bool hidden = hides_ && !buffer_.may_see(scene_.bounds[mover.object]);
+    const bool hidden = hides_ && !occluders_->buffer().may_see(scene_.bounds[mover.object]);
     reach(mover.object, hidden ? kInView : kSubmitted, frame);
     if (hidden) continue;
     ranges_.push_back(mover.range);

@@ -1,23 +1,18 @@
-// Occlusion among visible cells, on the CPU and as the method `masked` has it: all that is opaque and never
-// moved is drawn as one mesh into the library's depth buffer; cells that it hides by their boxes are not
-// drawn, and of the others what it hides of each object.
+// Occlusion among visible cells, on the CPU and with the occluders of the method `masked`: cells that they
+// hide by their boxes are not drawn, and of the others what they hide of each object.
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/methods/draw_calls/draw_call_method.hpp"
 
 namespace sightline::methods {
 
-void DrawCallMethod::build_occluder(const FlatTriangles& flat) {
-  std::vector<std::uint32_t> indices;
-  std::vector<Sides> sides;
-  for (std::size_t t = 0; t < flat.size(); ++t) {
-    const ObjectId object = flat.objects[t];
-    if (is_mover_[object] || scene_.surface[object] != Surface::opaque) continue;
-    const auto first = flat.indices.begin() + 3 * static_cast<std::ptrdiff_t>(t);
-    indices.insert(indices.end(), first, first + 3);
-    sides.push_back(flat.sides[object]);
+// Of what is in view the largest occlude, unless the scene does as one.
+bool DrawCallMethod::draw_occluders(const View& view, const Frustum& frustum) noexcept {
+  candidates_.clear();
+  for (ObjectId object = 0; !occluders_->as_one() && object < scene_.size(); ++object) {
+    if (overlaps(frustum, scene_.bounds[object])) candidates_.push_back(object);
   }
-  occluder_ = or_throw(OccluderMesh::make(flat.positions, indices, sides));
+  return occluders_->usable() && occluders_->draw({view, {}}, candidates_);
 }
 
 void DrawCallMethod::build_occludees(const FlatTriangles& flat, Layer& layer) {
@@ -41,7 +36,7 @@ void DrawCallMethod::leave_out_hidden(const Layer& layer, Frame& frame) noexcept
   seen_runs_.clear();
   for (const auto& run : runs_) {
     for (std::uint32_t cell = run.first_cell; cell < run.last_cell; ++cell) {
-      if (!buffer_.may_see(layer.partition.bounds(cell))) {
+      if (!occluders_->buffer().may_see(layer.partition.bounds(cell))) {
         const std::uint32_t first = batches.object_start[batches.cell_start[cell]],
                             end = batches.object_start[batches.cell_start[cell + 1]];
         for (std::uint32_t o = first; o < end; ++o) reach(batches.objects[o], kInView, frame);
@@ -76,7 +71,7 @@ void DrawCallMethod::take_unhidden_of(const Layer& layer, std::uint32_t batch, F
   for (std::uint32_t o = first; o < end; ++o) {
     const std::uint32_t begin = at, count = layer.occludees.triangles(o);
     at += count;
-    if (!buffer_.may_see(layer.occludees, o)) continue;
+    if (!occluders_->buffer().may_see(layer.occludees, o)) continue;
     if (open && begin - (ranges_.back().first + ranges_.back().count) < partition::kCallsWorth) {
       ranges_.back().count = at - ranges_.back().first;
       decide(o, kSubmitted);

@@ -18,6 +18,8 @@ namespace {
 
 using report::Colour;
 
+constexpr std::uint32_t kWidth = 320, kHeight = 180;  // of the views
+
 constexpr Colour kObjects{90, 110, 130, 18}, kCells{31, 119, 200, 110}, kDrawn{31, 119, 200, 60},
     kWay{217, 85, 63, 255};
 
@@ -30,7 +32,7 @@ class FromAbove {
 public:
   explicit FromAbove(const Scene& scene)
       : all_(extent(scene)),
-        scale_((kWidth - 2 * kMargin) / std::max(all_.max.x - all_.min.x, all_.max.z - all_.min.z)),
+        scale_((kAcross - 2 * kMargin) / std::max(all_.max.x - all_.min.x, all_.max.z - all_.min.z)),
         canvas_(static_cast<std::uint32_t>(x(all_.max.x) + kMargin),
                 static_cast<std::uint32_t>(z(all_.max.z) + kMargin)) {
     canvas_.fill_rectangle(0, 0, static_cast<float>(canvas_.width()), static_cast<float>(canvas_.height()),
@@ -49,7 +51,7 @@ public:
   void write(const std::filesystem::path& file) const { canvas_.halved().write_png(file); }
 
 private:
-  static constexpr float kWidth = 1400, kMargin = 20;
+  static constexpr float kAcross = 1400, kMargin = 20;
 
   [[nodiscard]] float x(float at) const { return kMargin + (at - all_.min.x) * scale_; }
   [[nodiscard]] float z(float at) const { return kMargin + (at - all_.min.z) * scale_; }
@@ -71,13 +73,22 @@ void draw_cells(const Scene& scene, const LevelWalk& walk, std::string_view stru
   picture.write(file);
 }
 
-// Objects of which something is drawn, seen from the walk's middle.
-void draw_kept(const Scene& scene, const LevelWalk& walk, const char* method_name,
-               const std::filesystem::path& file) {
-  const Camera& camera = walk.path.cameras[walk.path.cameras.size() / 2];
-  const auto method = create_method(method_name, scene);
+/// The walk's camera that has the most in view.
+const Camera& widest(const LevelWalk& walk, Method& method) {
+  const Camera* widest = nullptr;
+  std::size_t most = 0;
   Frame frame;
-  cull(*method, or_throw(make_view(camera, 320, 180)), frame);
+  for (const Camera& camera : walk.path.cameras) {
+    cull(method, or_throw(make_view(camera, kWidth, kHeight)), frame);
+    if (!widest || frame.visible.size() > most) widest = &camera, most = frame.visible.size();
+  }
+  return *widest;
+}
+
+// Objects of which something is drawn.
+void draw_kept(const Scene& scene, const Camera& camera, Method& method, const std::filesystem::path& file) {
+  Frame frame;
+  cull(method, or_throw(make_view(camera, kWidth, kHeight)), frame);
   FromAbove picture(scene);
   for (const ObjectId object : frame.visible) picture.fill(scene.bounds[object], kDrawn);
   const Vec3 ahead{camera.eye.x + 4 * camera.forward.x, camera.eye.y, camera.eye.z + 4 * camera.forward.z};
@@ -113,8 +124,11 @@ void write_level_pictures(const std::string& folder, const DrawCallMeasurement& 
     const Scene scene = load_scene(walk.level);
     for (const auto structure : kWalkStructures)
       draw_cells(scene, walk, structure, to / file_of_level(walk, structure));
-    draw_kept(scene, walk, "drawcall-wise-octree", to / file_of_level(walk, "plain"));
-    draw_kept(scene, walk, "drawcall-wise-octree?occlusion=masked", to / file_of_level(walk, "masked"));
+    const auto plain = create_method("drawcall-wise-octree", scene),
+               masked = create_method("drawcall-wise-octree?occlusion=masked", scene);
+    const Camera& camera = widest(walk, *plain);
+    draw_kept(scene, camera, *plain, to / file_of_level(walk, "plain"));
+    draw_kept(scene, camera, *masked, to / file_of_level(walk, "masked"));
   }
 }
 
