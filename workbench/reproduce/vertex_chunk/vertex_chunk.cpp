@@ -154,8 +154,9 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   measure.repeats = 1, measure.timed_passes = 0;
   world.rising = measure::compare(bench, rising_path(scene, options.quick ? 5 : 12), measure, progress);
   measure.repeats = options.quick ? 3 : 7;
-  world.near_views = measure::compare(bench, near, measure);
-  world.far_views = measure::compare(bench, far_path(scene, views), measure);
+  world.near_views = measure::compare(bench, near, measure, progress);
+  measure.repeats = 3;  // a far frame takes a second or two: it varies little, and there are many
+  world.far_views = measure::compare(bench, far_path(scene, views), measure, progress);
   if (options.pictures)
     world.pictures = take_vertex_chunk_pictures(bench, name, view, bench.subjects()[kChunk]);
   return world;
