@@ -24,8 +24,8 @@ std::function<void(std::size_t, std::size_t)> progress(std::string what) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   // Into a file goes a line now and then: a long silence looks like a hang.
   const auto pause = terminal ? std::chrono::milliseconds(100) : std::chrono::seconds(30);
-  // Rate and time left are of what was done here: what was resumed took no time. A count that falls is that of
-  // the next part of the work.
+  // Rate and time left are of what was done here: what was resumed took no time. A count that falls is that
+  // of the next part of the work.
   return [what = std::move(what), terminal, pause, start = Clock::now(), last = Clock::now(),
           first = std::size_t{0}, before = std::size_t(-1)](std::size_t done, std::size_t all) mutable {
     const auto now = Clock::now();

@@ -28,32 +28,32 @@ Reach reach_of(const glm::dmat4& rows) {
   return {glm::abs(eye), glm::abs(inverse[0]) + glm::abs(inverse[1]) + glm::abs(inverse[2]), rows[3]};
 }
 
-// A plane a·x + b·y + c·z + d >= 0 in double precision, normalised, rounded, and moved outwards by what
-// rounding the coefficients and evaluating signed_distance() within reach can lose: turned a little, where
-// reach grows with w.
-Plane round_outwards(const glm::dvec4& plane, const Reach& reach) {
+// A plane a·x + b·y + c·z + d >= 0 in double precision, normalised, rounded, and moved outwards by
+// `rounding`, what rounding the coefficients and evaluating signed_distance() within reach can lose: turned a
+// little, where reach grows with w.
+Plane round_outwards(const glm::dvec4& plane, const Reach& reach, double rounding) {
   constexpr Plane at_infinity{{0, 0, 0}, std::numeric_limits<float>::max()};  // never rejects
   const double length = glm::length(glm::dvec3(plane));
   if (!(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0) return at_infinity;
   const glm::dvec4 unit = plane / length;
   const glm::dvec3 size = glm::abs(glm::dvec3(unit));
   const double least = glm::dot(size, reach.at_eye) + std::fabs(unit.w);
-  glm::dvec4 moved =
-      unit + kPlaneRounding * (glm::dot(size, reach.per_w) * reach.w + glm::dvec4(0, 0, 0, least));
+  glm::dvec4 moved = unit + rounding * (glm::dot(size, reach.per_w) * reach.w + glm::dvec4(0, 0, 0, least));
   moved /= glm::length(glm::dvec3(moved));  // spheres compare it with their radius
   if (!std::isfinite(moved.x + moved.y + moved.z + moved.w)) return at_infinity;
   return {to_vec3(glm::dvec3(moved)), static_cast<float>(moved.w)};
 }
 
-Frustum frustum_within(const glm::dmat4& rows, const Vec3& forward, const Reach& reach) {
+Frustum frustum_within(const glm::dmat4& rows, const Vec3& forward, const Reach& reach,
+                       double rounding = kPlaneRounding) {
   Frustum frustum;
-  frustum.planes[Frustum::left] = round_outwards(rows[3] + rows[0], reach);
-  frustum.planes[Frustum::right] = round_outwards(rows[3] - rows[0], reach);
-  frustum.planes[Frustum::bottom] = round_outwards(rows[3] + rows[1], reach);
-  frustum.planes[Frustum::top] = round_outwards(rows[3] - rows[1], reach);
+  frustum.planes[Frustum::left] = round_outwards(rows[3] + rows[0], reach, rounding);
+  frustum.planes[Frustum::right] = round_outwards(rows[3] - rows[0], reach, rounding);
+  frustum.planes[Frustum::bottom] = round_outwards(rows[3] + rows[1], reach, rounding);
+  frustum.planes[Frustum::top] = round_outwards(rows[3] - rows[1], reach, rounding);
   // 0 <= z <= w: with reversed depth the first of these is the far plane, and the half spaces are the same.
-  const Plane z_low = round_outwards(rows[2], reach);
-  const Plane z_high = round_outwards(rows[3] - rows[2], reach);
+  const Plane z_low = round_outwards(rows[2], reach, rounding);
+  const Plane z_high = round_outwards(rows[3] - rows[2], reach, rounding);
   const Vec3& n = z_low.normal;
   const bool has_low = n.x != 0 || n.y != 0 || n.z != 0;
   const bool low_is_front = has_low && n.x * forward.x + n.y * forward.y + n.z * forward.z > 0;
@@ -74,6 +74,11 @@ Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const 
 
 Plane geometry::near_plane(const View& view) noexcept {
   return frustum_within(clip_rows(view), view_direction(view), {glm::dvec3(0)}).planes[Frustum::front];
+}
+
+Plane geometry::far_plane_within(const View& view) noexcept {
+  const glm::dmat4 rows = clip_rows(view);
+  return frustum_within(rows, view_direction(view), reach_of(rows), -kPlaneRounding).planes[Frustum::back];
 }
 
 Frustum make_frustum(const View& view) noexcept {

@@ -89,5 +89,8 @@ inline Vec3 largest(const Box& box) noexcept {
 Frustum frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept;
 /// The front plane rounded where it stands, without what evaluating it elsewhere loses.
 Plane near_plane(const View& view) noexcept;
+/// A plane a little before the far one: a point that signed_distance() says is on its inner side is within
+/// the frustum. Its normal is 0 where there is no far plane.
+Plane far_plane_within(const View& view) noexcept;
 
 }  // namespace sightline::geometry

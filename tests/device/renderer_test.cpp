@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <numeric>
 
+#include <sightline/frustum.hpp>
+
 #include "device/fixtures.hpp"
 #include "workbench/camera/random_views.hpp"
 #include "workbench/oracle/embree_judge.hpp"
@@ -96,6 +98,36 @@ TEST_F(RendererTest, MovedObjectsAreDrawnWhereTheyStand) {
   renderer.update(moved);
   device::Renderer fresh(device(), scene);
   EXPECT_TRUE(draw_all(renderer, view) == draw_all(fresh, view));
+}
+
+// With a near plane at 1 cm, depth in single precision ends some 2 km before or after a far plane at 18 km.
+TEST_F(ItemBufferTest, ShowsNothingBeyondTheFarPlane) {
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::uint32_t mesh =
+      scene.add_mesh(corners, std::vector<Vec3>(3, Vec3{0, 0, 1}), std::vector<std::uint32_t>{0, 1, 2});
+  constexpr int kAcross = 20;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const float away = 15000 + 15 * static_cast<float>(i), size = away * 0.02f;
+    const float x = away * 0.05f * (static_cast<float>(i % kAcross) - kAcross / 2),
+                y = away * 0.05f * (static_cast<float>(i) / kAcross - kAcross / 2);
+    scene.add_object(mesh, Affine{{Vec4{size, 0, 0, x}, Vec4{0, size, 0, y}, Vec4{0, 0, 1, -away}}});
+  }
+  device::Renderer renderer(device(), scene);
+  oracle::RasterItemBuffer judge(renderer);
+  for (const Depth depth : {Depth::standard, Depth::reversed}) {
+    const Camera camera{.near_plane = 0.01f, .far_plane = 18000, .depth = depth};
+    const View view = view_of(camera, 512, 512);
+    const oracle::ItemBuffer items = judge.render(view);
+    const Frustum frustum = make_frustum(view);
+    int seen = 0, beyond = 0;
+    for (ObjectId o = 0; o < scene.size(); ++o) {
+      seen += items.sees(o);
+      beyond += items.sees(o) && !overlaps(frustum, scene.bounds[o]);
+    }
+    EXPECT_EQ(beyond, 0);
+    EXPECT_GT(seen, depth == Depth::reversed ? 180 : 50);
+  }
 }
 
 TEST_F(ItemBufferTest, AgreesWithRaysThroughPixelCentresButForSilhouettes) {

@@ -23,6 +23,7 @@ constexpr std::array kFeatures{
     Feature{"multiDrawIndirect", true, &Core::multiDrawIndirect},
     Feature{"drawIndirectFirstInstance", true, &Core::drawIndirectFirstInstance},
     Feature{"fragmentStoresAndAtomics", true, &Core::fragmentStoresAndAtomics},
+    Feature{"shaderClipDistance", true, &Core::shaderClipDistance},
     Feature{"geometryShader", false, &Core::geometryShader},
     Feature{"bufferDeviceAddress", true, nullptr, &Vulkan12::bufferDeviceAddress},
     Feature{"scalarBlockLayout", true, nullptr, &Vulkan12::scalarBlockLayout},

@@ -22,6 +22,7 @@ struct ViewData {
   vec4 planes[6];  // inward, w = distance; 4 is the near plane, 5 the far one
   vec4 eye;        // w: 1 where the view is orthographic
   vec4 forward;    // unit
+  vec4 far_end;    // the far plane itself: nothing beyond is drawn, be depth rounded as it may
   float width, height;
   float pixels_per_metre;
   float metres_per_w;
@@ -74,7 +75,7 @@ struct CommandData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewData) == 64 + 96 + 32 + 28);
+static_assert(sizeof(ViewData) == 64 + 96 + 48 + 28);
 static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshData) == 16 &&
               sizeof(CommandData) == 20 && sizeof(CornerData) == 20);
 }  // namespace sightline::device::shared

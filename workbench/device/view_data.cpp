@@ -29,6 +29,15 @@ float most_between(const Plane& before, const Plane& behind, const Box& extent) 
                             (double{before.distance} - double{behind.distance}));
 }
 
+// Where near and far lie far apart, depth rounds to its end long before the far plane, or long after it: 2 km
+// at 18 km with a near plane at 1 cm.
+Vec4 far_end(const View& view) {
+  const Plane plane = geometry::far_plane_within(view);
+  const Vec3& n = plane.normal;
+  const bool endless = n.x == 0 && n.y == 0 && n.z == 0;
+  return endless ? Vec4{0, 0, 0, 1} : Vec4{n.x, n.y, n.z, plane.distance};
+}
+
 }  // namespace
 
 shared::ViewData view_data(const View& view, const Box& extent) noexcept {
@@ -39,6 +48,7 @@ shared::ViewData view_data(const View& view, const Box& extent) noexcept {
     const Plane& plane = frustum.planes[i];
     out.planes[i] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.distance};
   }
+  out.far_end = far_end(view);
   out.near_push = 1.01f * most_between(frustum.planes[Frustum::front], geometry::near_plane(view), extent);
   const Projector projector = make_projector(view, extent);
   const Vec3 forward = view_direction(view);

@@ -6,6 +6,7 @@ layout(location = 1) out vec3 world_normal;
 layout(location = 2) out flat uint object;
 layout(location = 3) out flat uint colour;
 invariant gl_Position;
+out float gl_ClipDistance[1];
 
 void place_object() {
   object = list.at[gl_InstanceIndex];
@@ -17,4 +18,5 @@ void place_object() {
   world_normal = vec3(dot(cross(b, c), normal), dot(cross(c, a), normal), dot(cross(a, b), normal));
   colour = data.colour;
   gl_Position = on_pixel_grid(world_position);
+  gl_ClipDistance[0] = before_far_end(world_position);
 }

@@ -3,6 +3,12 @@ layout(set = 0, binding = 0, scalar) uniform ViewBlock {
   ViewData view;
 };
 
+// How far before the far plane, in metres: what lies beyond is not drawn. Depth alone cannot tell where near
+// and far are far apart.
+float before_far_end(vec3 at) {
+  return dot(view.far_end.xyz, at) + view.far_end.w;
+}
+
 // Where the point goes in clip space, put on the grid of 1/256 pixel to which rasterisers snap vertices.
 // Coverage is decided on that grid; a rasteriser that takes the slope of depth from positions off it, as
 // llvmpipe does, extrapolates far beyond a triangle seen edge on, even to the near plane, and no box would
