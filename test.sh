@@ -2,10 +2,10 @@
 # The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
 # test: the suite in a release build (g++), what others feed under AddressSanitizer and UndefinedBehaviorSanitizer (clang),
 # what uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
-# clang-tidy's findings, what the documents show, the installed packages as their users see them, and what the library
-# answers on ARM and WebAssembly. --full adds what takes longer: every test under the sanitizers, a thousand views of more
-# scenes, the library's tests on the ports, and its build on a bare Debian; and writes build/full/RESULTS.csv, a row a
-# line: commit, line, seconds, result.
+# clang-tidy's findings, what the documents show, the installed packages as their users see them, what the library
+# answers on ARM and WebAssembly, and the npm package. --full adds what takes longer: every test under the sanitizers, a
+# thousand views of more scenes, the library's tests on the ports, and its build on a bare Debian; and writes
+# build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -81,5 +81,8 @@ if [ -z "$full" ]; then
 else
   scripts/run-full.sh "$start"
 fi
+
+stage "web"
+scripts/check-web.sh build/release $full
 
 echo "All tests passed in $(elapsed "$start")."

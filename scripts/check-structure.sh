@@ -35,6 +35,7 @@ bindings/c: face
 bindings/python: face
 examples: face bindings/c
 examples/method: face workbench/methods
+web: face
 "
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
@@ -80,6 +81,6 @@ packages="glm/ hwy/ roaring/ zstd.h sys/mman.h"
   echo "[includes]"
   grep -rnoP --include='*.[hc]pp' --include='*.[hc]' --include='*.comp' --include='*.vert' --include='*.frag' \
     --include='*.geom' --include='*.glsl' '^\s*#\s*include\s*["<]\K[^">]+' \
-    include library workbench apps bindings examples || true
+    include library workbench apps bindings examples $(ls -d web/wasm web/test 2>/dev/null) || true
 } | awk -v whole="${arrows_only:-yes}" -f "$here/check-structure.awk"
 [ -n "$arrows_only" ] || "$here/check-headers.sh" .

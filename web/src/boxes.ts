@@ -1,0 +1,56 @@
+// Boxes as calls take them.
+import { refuse } from './errors.js';
+import { Block, type Call, type Input } from './memory.js';
+
+/** Boxes in an array, in metres. Single precision may be about an `origin`. */
+export interface BoxArray {
+  data: Input<Float32Array> | Input<Float64Array>;
+  /** `min-max`: minimum x, y, z, maximum x, y, z, box after box. `centre-half`: centre and half size so. `columns`, of single
+   * precision: all minimum x, all minimum y …; the fastest to cull flat. */
+  layout?: 'min-max' | 'centre-half' | 'columns';
+  /** Numbers from a box to the next: 6, unless set. */
+  stride?: number;
+  /** What single precision counts from. */
+  origin?: ArrayLike<number>;
+}
+/** An array alone is `min-max`. */
+export type Boxes = BoxArray | Input<Float32Array> | Input<Float64Array>;
+
+const layouts = ['min-max', 'centre-half', 'columns'];
+
+/** How many there are, where they are to be placed, and the flat arguments a call takes. */
+export function readBoxes(what: string, boxes: Boxes): {
+  data: Input<Float32Array> | Input<Float64Array>;
+  count: number;
+  args: (pointer: number) => [number, number, number, number, number, number, number];
+} {
+  const given: BoxArray = boxes instanceof Block || ArrayBuffer.isView(boxes) ? { data: boxes } : boxes;
+  const { data, layout = 'min-max', stride = 6, origin = [0, 0, 0] } = given ?? {};
+  const kind = data instanceof Block ? data.kind : data?.constructor;
+  if (kind !== Float32Array && kind !== Float64Array)
+    refuse(`${what}: expected boxes as a Float32Array, a Float64Array or a Block of one`);
+  const form = layouts.indexOf(layout);
+  if (form < 0) refuse(`${what}: a layout of ${layout}, expected ${layouts.join(', ')}`);
+  const double = kind === Float64Array;
+  if (form === 2 && double) refuse(`${what}: columns of double precision, expected single`);
+  if (!Number.isInteger(stride) || stride < 6) refuse(`${what}: a stride of ${stride}, expected an integer of 6 or more`);
+  if (origin.length !== 3) refuse(`${what}: an origin of ${origin.length} numbers, expected 3`);
+  const step = form === 2 ? 6 : stride;
+  const count = (data.length + step - 6) / step;
+  if (!Number.isInteger(count) && data.length > 0)
+    refuse(`${what}: ${data.length} numbers, expected a multiple of ${step}`);
+  const code = form === 2 ? 4 : form * 2 + (double ? 1 : 0);
+  const whole = data.length > 0 ? count : 0;
+  return {
+    data,
+    count: whole,
+    args: (pointer) => [code, pointer, step * (double ? 8 : 4), whole, origin[0]!, origin[1]!, origin[2]!],
+  };
+}
+
+/** The same, placed. */
+export function placeBoxes(what: string, call: Call, boxes: Boxes): { count: number; args: number[] } {
+  const read = readBoxes(what, boxes);
+  const [pointer] = call.place(read.data);
+  return { count: read.count, args: read.args(pointer!) };
+}

@@ -1,0 +1,23 @@
+/** What kind of thing was refused, as the library numbers it. */
+export const codes = [
+  'ok', 'bad_argument', 'bad_box', 'stale_handle', 'bad_view', 'buffer_too_small', 'stale_buffer', 'bad_mesh', 'too_many',
+  'bad_file',
+] as const;
+export type Code = (typeof codes)[number] | 'not_ready' | 'unsupported' | 'disposed' | 'detached' | 'ended';
+
+/** A refusal: `message` is one sentence, `index` the offending element's, where one is to blame. What was refused has
+ * changed nothing. */
+export class SightlineError extends Error {
+  readonly code: Code;
+  readonly index: number | undefined;
+  constructor(code: Code, message: string, index?: number) {
+    super(message);
+    this.name = 'SightlineError';
+    this.code = code;
+    this.index = index;
+  }
+}
+
+export function refuse(message: string, code: Code = 'bad_argument'): never {
+  throw new SightlineError(code, message);
+}

@@ -1,0 +1,122 @@
+// Typed arrays that lie in the module's memory, and how calls take these and all others.
+import { refuse } from './errors.js';
+import { buffer, wasm } from './runtime.js';
+
+export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
+type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
+
+/** A typed array in the module's memory: the library reads and writes it where it is. */
+export class Block<T extends Numbers> {
+  readonly length: number;
+  /** @internal */
+  readonly kind: Kind<T>;
+  #pointer: number;
+  #array: T | undefined;
+
+  constructor(kind: Kind<T>, length: number) {
+    if (!Number.isInteger(length) || length < 0 || length > 2 ** 31)
+      refuse(`Block: a length of ${length}, expected an integer from 0 to 2^31`);
+    this.kind = kind;
+    this.length = length;
+    this.#pointer = wasm().allocate!(Math.max(length * kind.BYTES_PER_ELEMENT, 64)) >>> 0;
+    if (this.#pointer === 0) refuse(`Block: no memory for ${length} numbers`, 'too_many');
+  }
+  /** @internal */
+  get pointer(): number {
+    if (this.#pointer === 0) refuse('Block: used after dispose()', 'disposed');
+    return this.#pointer;
+  }
+  /** The array. Fetch it anew each frame: one that was fetched before the memory grew is empty, and refused. */
+  get array(): T {
+    if (this.#array?.buffer !== buffer() || this.#pointer === 0)
+      this.#array = new this.kind(buffer(), this.pointer, this.length);
+    return this.#array;
+  }
+  /** Gives the memory back. */
+  dispose(): void {
+    if (this.#pointer !== 0) wasm().release!(this.#pointer);
+    this.#pointer = 0;
+  }
+}
+
+/** `length` numbers of single precision in the module's memory. */
+export const floats = (length: number): Block<Float32Array> => new Block(Float32Array, length);
+/** `length` numbers of double precision in the module's memory: handles, boxes far away. */
+export const doubles = (length: number): Block<Float64Array> => new Block(Float64Array, length);
+/** `length` integers of 32 bits in the module's memory: layers, values, indices. */
+export const integers = (length: number): Block<Uint32Array> => new Block(Uint32Array, length);
+/** `length` bytes in the module's memory. */
+export const bytes = (length: number): Block<Uint8Array> => new Block(Uint8Array, length);
+
+/** An array of numbers: a Block, or any typed array, which is copied unless it lies in the module's memory. */
+export type Input<T extends Numbers> = T | Block<T>;
+
+/** Whether an array's buffer is gone, as after the module's memory has grown. */
+function detached(array: Numbers): boolean {
+  if (array.buffer.byteLength > 0) return false;
+  try {
+    return new Uint8Array(array.buffer) === undefined;
+  } catch {
+    return true; // only of such a buffer nothing can be made
+  }
+}
+
+/** The arrays of one call: placed in the module's memory for as long as it runs. */
+export class Call {
+  readonly #borrowed: number[] = [];
+
+  /** Pointers to the arrays, in order; 0 for none. */
+  place(...inputs: (Input<Numbers> | undefined)[]): number[] {
+    const found = inputs.map((input) => (input === undefined ? 0 : where(input)));
+    return found.map((pointer, i) => (pointer === undefined ? this.#copy(inputs[i] as Numbers) : pointer));
+  }
+  /** Room of its own. */
+  room(byteLength: number): number {
+    const pointer = wasm().allocate!(Math.max(byteLength, 64)) >>> 0;
+    if (pointer === 0) refuse(`sightline: no memory for ${byteLength} bytes`, 'too_many');
+    this.#borrowed.push(pointer);
+    return pointer;
+  }
+  end(): void {
+    for (const pointer of this.#borrowed) wasm().release!(pointer);
+  }
+
+  #copy(array: Numbers): number {
+    const pointer = this.room(array.byteLength);
+    new Uint8Array(buffer(), pointer, array.byteLength)
+      .set(new Uint8Array(array.buffer as ArrayBuffer, array.byteOffset, array.byteLength));
+    return pointer;
+  }
+}
+
+// Undefined where it has to be copied.
+function where(input: Input<Numbers>): number | undefined {
+  if (input instanceof Block) return input.pointer;
+  if (input.buffer === buffer()) return input.byteOffset;
+  if (detached(input))
+    refuse('sightline: an array is detached; the memory has grown since it was fetched, fetch it from its Block anew', 'detached');
+  return undefined;
+}
+
+/** Runs a call with arrays of its own. */
+export function calling<R>(body: (call: Call) => R): R {
+  const call = new Call();
+  try {
+    return body(call);
+  } finally {
+    call.end();
+  }
+}
+
+/** Throws unless it is an array of that kind. */
+export function expectKind<T extends Numbers>(what: string, input: unknown, kind: Kind<T>): asserts input is Input<T> {
+  if (input instanceof kind || (input instanceof Block && (input.kind as unknown) === kind)) return;
+  refuse(`${what}: expected a ${(kind as unknown as { name: string }).name} or a Block of one`);
+}
+
+/** Throws unless it has so many elements. */
+export function expectLength(what: string, input: Input<Numbers>, length: number): void {
+  if (input.length === length) return;
+  if (!(input instanceof Block) && length > 0 && detached(input)) where(input);
+  refuse(`${what}: ${input.length} elements, expected ${length}`);
+}

@@ -1,0 +1,85 @@
+// Occluders are drawn into a depth buffer on the CPU, then boxes are tested against it.
+import { placeBoxes, type Boxes } from './boxes.js';
+import { refuse } from './errors.js';
+import { calling, expectKind, expectLength, type Block, type Input } from './memory.js';
+import { buffer, check, need, Owned, wasm } from './runtime.js';
+import { viewBytes, writeView, type View } from './views.js';
+
+/** Triangles that occlude. What can be looked through must not be among them. */
+export class OccluderMesh extends Owned {
+  /** Three numbers a position, in metres; three indices a triangle. `front`: only the side from which corners turn
+   * counter-clockwise occludes. Some microseconds a triangle: build once. */
+  constructor(positions: Input<Float32Array>, indices: Input<Uint32Array>, sides: 'both' | 'front' = 'both') {
+    super('mesh_create', 'mesh_destroy', calling((call) => {
+      expectKind('OccluderMesh: positions', positions, Float32Array);
+      expectKind('OccluderMesh: indices', indices, Uint32Array);
+      if (positions.length % 3 !== 0)
+        refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
+      const [at, index] = call.place(positions, indices);
+      const made = need('mesh_create')(at!, positions.length / 3, index!, indices.length, sides === 'front' ? 1 : 0);
+      if (made === 0) check(bad_mesh);
+      return made;
+    }));
+  }
+  /** Triangles that are left. */
+  get triangles(): number {
+    return wasm().mesh_triangles!(this.pointer);
+  }
+}
+
+const bad_mesh = 7; // the code where there is no mesh; the library's sentence says why
+
+/** One view's depth of occluders: begin it with a view, draw occluders, ask. */
+export class OcclusionBuffer extends Owned {
+  constructor() {
+    super('occlusion_create', 'occlusion_destroy');
+  }
+  /** Empties it and takes the view, of at most 8192 pixels a side. */
+  begin(view: View): void {
+    calling((call) => {
+      const at = call.room(viewBytes);
+      writeView('begin', view, at);
+      check(wasm().occlusion_begin!(this.pointer, at));
+    });
+  }
+  /** Draws boxes of which every point inside is solid. */
+  drawBoxes(boxes: Boxes): void {
+    calling((call) => {
+      const { args } = placeBoxes('drawBoxes', call, boxes);
+      check(wasm().occlusion_draw_boxes!(this.pointer, ...args));
+    });
+  }
+  /** Draws solid spheres about the view's origin: four columns, centre x, y, z and radius. */
+  drawSpheres(spheres: Input<Float32Array>): void {
+    calling((call) => {
+      expectKind('drawSpheres', spheres, Float32Array);
+      if (spheres.length % 4 !== 0) refuse(`drawSpheres: ${spheres.length} numbers, expected a multiple of 4`);
+      const [at] = call.place(spheres);
+      check(wasm().occlusion_draw_spheres!(this.pointer, at!, spheres.length / 4));
+    });
+  }
+  /** Draws a mesh, moved by an affine matrix about the view's origin. */
+  drawMesh(mesh: OccluderMesh, transform: ArrayLike<number>): void {
+    if (transform.length !== 16) refuse(`drawMesh: a transform of ${transform.length} numbers, expected 16`);
+    calling((call) => {
+      const at = call.room(64);
+      new Float32Array(buffer(), at, 16).set(transform);
+      check(wasm().occlusion_draw_mesh!(this.pointer, mesh.pointer, at));
+    });
+  }
+  /** Whether some pixel centre may see each box: 1 or 0, where 0 is certain. */
+  maySee(boxes: Boxes, out: Block<Uint8Array>): void {
+    calling((call) => {
+      const { count, args } = placeBoxes('maySee', call, boxes);
+      expectKind('maySee: out', out, Uint8Array);
+      expectLength('maySee: out', out, count);
+      check(wasm().occlusion_may_see!(this.pointer, ...args, out.pointer));
+    });
+  }
+  /** 1 / depth of the occluder at each pixel (perspective), -depth (orthographic), -infinity where there is none; row by
+   * row from the top, as many as the view has pixels. */
+  readNearness(out: Block<Float32Array>): void {
+    expectKind('readNearness: out', out, Float32Array);
+    check(wasm().occlusion_read_nearness!(this.pointer, out.pointer, out.length));
+  }
+}

@@ -1,0 +1,68 @@
+// Visible sets that were baked for the cells of a grid, as arrays. (The library's files are packed with zstd, which
+// browsers do not unpack; whoever bakes writes the arrays, see docs/web.md.)
+import { refuse } from './errors.js';
+
+/** As CellPvs of <sightline/pvs.hpp>. Cells run x first, then y, then z. */
+export interface PvsArrays {
+  /** Of all cells together, in metres: minimum x, y, z, maximum x, y, z. */
+  bounds: ArrayLike<number>;
+  /** Cells along x, y and z. */
+  counts: ArrayLike<number>;
+  /** Objects of the scene. */
+  objects: number;
+  /** One a cell: 0 where nobody can be. */
+  open: Uint8Array;
+  /** Cell c's objects are visible[first[c]] to visible[first[c + 1] - 1]. */
+  first: Uint32Array;
+  /** Ascending within a cell. */
+  visible: Uint32Array;
+}
+
+/** Sets to ask. */
+export class CellPvs {
+  readonly #arrays: PvsArrays;
+
+  constructor(arrays: PvsArrays) {
+    const { bounds, counts, objects, open, first, visible } = arrays;
+    const cells = counts[0]! * counts[1]! * counts[2]!;
+    if (bounds.length !== 6 || counts.length !== 3) refuse('CellPvs: expected 6 numbers of bounds and 3 counts');
+    for (let axis = 0; axis < 3; ++axis) {
+      if (!(bounds[axis]! < bounds[3 + axis]!) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
+        refuse('CellPvs: bounds without extent or a count below 1, expected minimum < maximum and whole cells');
+    }
+    if (open.length !== cells || first.length !== cells + 1)
+      refuse(`CellPvs: ${open.length} open and ${first.length} first for ${cells} cells, expected one each and one more`);
+    if (first[0] !== 0 || first[cells] !== visible.length)
+      refuse('CellPvs: first does not run from 0 to the length of visible');
+    for (let c = 0; c < cells; ++c) {
+      if (first[c]! > first[c + 1]!) refuse(`CellPvs: first falls at cell ${c}, expected it to rise`);
+      for (let i = first[c]!; i < first[c + 1]!; ++i) {
+        if (visible[i]! >= objects || (i > first[c]! && visible[i]! <= visible[i - 1]!))
+          refuse(`CellPvs: the set of cell ${c} does not ascend below ${objects}`);
+      }
+    }
+    this.#arrays = arrays;
+  }
+
+  /** The open cell that holds the point, or undefined. */
+  cellAt(x: number, y: number, z: number): number | undefined {
+    const { bounds, counts, open } = this.#arrays;
+    let cell = 0, step = 1;
+    for (const [axis, at] of [x, y, z].entries()) {
+      const low = Math.fround(bounds[axis]!), high = Math.fround(bounds[3 + axis]!), count = counts[axis]!;
+      const p = Math.fround(at);
+      if (!(p >= low && p <= high)) return undefined;
+      const along = Math.min(Math.floor(((p - low) / (high - low)) * count), count - 1);
+      cell += along * step;
+      step *= count;
+    }
+    return open[cell] ? cell : undefined;
+  }
+  /** The objects of a cell, ascending. */
+  seenFrom(cell: number): Uint32Array {
+    const { first, open, visible } = this.#arrays;
+    if (!Number.isInteger(cell) || cell < 0 || cell >= open.length)
+      refuse(`seenFrom: cell ${cell}, expected an integer below ${open.length}`);
+    return visible.subarray(first[cell]!, first[cell + 1]!);
+  }
+}

@@ -1,0 +1,59 @@
+// Boxes to cast rays at, and what they meet first.
+import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
+import { refuse } from './errors.js';
+import { calling, expectKind, expectLength, type Block, type Input } from './memory.js';
+import { buffer, check, Owned, wasm } from './runtime.js';
+import { writeView, type View } from './views.js';
+
+/** The object of a ray that meets nothing. */
+export const noObject = 0xffffffff;
+
+/** A wide tree of boxes; answers are the same to the bit as testing all. */
+export class BoxBvh extends Owned {
+  constructor() {
+    super('bvh_create', 'bvh_destroy');
+  }
+  /** Takes the boxes; rays and views count from their origin. */
+  build(boxes: Boxes): void {
+    this.#take('bvh_build', 'build', boxes);
+  }
+  /** Takes over moved boxes, as many as were built with. */
+  refit(boxes: Boxes): void {
+    this.#take('bvh_refit', 'refit', boxes);
+  }
+  /** Boxes. */
+  get size(): number {
+    return wasm().bvh_size!(this.pointer);
+  }
+  /** Seven numbers a ray: origin, direction, most distance (Infinity for none). Writes the box that each meets first, or
+   * noObject, and how far it is in units of the direction, or -1. */
+  cast(rays: Input<Float32Array>, objects: Block<Uint32Array>, distances: Block<Float32Array>): void {
+    calling((call) => {
+      expectKind('cast: rays', rays, Float32Array);
+      expectKind('cast: objects', objects, Uint32Array);
+      expectKind('cast: distances', distances, Float32Array);
+      if (rays.length % 7 !== 0) refuse(`cast: ${rays.length} numbers of rays, expected a multiple of 7`);
+      const count = rays.length / 7;
+      expectLength('cast: objects', objects, count);
+      expectLength('cast: distances', distances, count);
+      const [at] = call.place(rays);
+      check(wasm().bvh_cast!(this.pointer, at!, count, objects.pointer, distances.pointer));
+    });
+  }
+  /** The boxes that at least one of columns x rows rays through the view's image meets first, ascending: an approximation
+   * of what is visible. */
+  visibleSet(view: View, columns: number, rows: number): Uint32Array {
+    return calling((call) => {
+      const viewAt = call.room(176), out = call.room(4 * this.size);
+      writeView('visibleSet', view, viewAt);
+      check(wasm().bvh_visible_set!(this.pointer, viewAt, columns, rows, out, viewAt + 168));
+      return new Uint32Array(buffer(), out, new Float64Array(buffer(), viewAt + 168, 1)[0]!).slice();
+    });
+  }
+
+  #take(name: string, what: string, boxes: Boxes): void {
+    const { count } = readBoxes(what, boxes);
+    if (name === 'bvh_refit' && count !== this.size) refuse(`refit: ${count} boxes, expected ${this.size}`);
+    calling((call) => check(wasm()[name]!(this.pointer, ...placeBoxes(what, call, boxes).args)));
+  }
+}

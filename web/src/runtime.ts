@@ -1,0 +1,143 @@
+// The one WebAssembly instance of a program: where it comes from, and how it is called.
+import { codes, refuse, SightlineError } from './errors.js';
+
+/** What the module exports; pointers and counts are numbers. */
+type Exports = Record<string, (...args: number[]) => number>;
+/** Bytes of a module, or whatever fetches them. */
+export type Source = BufferSource | WebAssembly.Module | Response | Promise<Response | BufferSource | WebAssembly.Module>;
+
+// A function of one SIMD instruction.
+const simd = new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
+
+/** Whether this browser runs the module: WebAssembly with SIMD, which all have since 2023. */
+export const supported: boolean = typeof WebAssembly === 'object' && WebAssembly.validate(simd);
+
+const unsupported =
+  'sightline: this browser has no WebAssembly with SIMD, expected one of 2023 or later; draw without culling';
+
+let exports: Exports | undefined;
+let memory: WebAssembly.Memory;
+let offered: { rank: number; inflate: () => Promise<BufferSource> } | undefined;
+let loading: Promise<void> | undefined;
+
+async function compile(source: Source): Promise<WebAssembly.Module> {
+  const given = await source;
+  if (given instanceof WebAssembly.Module) return given;
+  if (typeof Response !== 'undefined' && given instanceof Response) {
+    if (!given.ok) refuse(`sightline: ${given.url} could not be fetched (${given.status})`);
+    return WebAssembly.compile(await given.arrayBuffer());
+  }
+  return WebAssembly.compile(given as BufferSource);
+}
+
+async function start(source: Source): Promise<void> {
+  if (!supported) refuse(unsupported, 'unsupported');
+  const instance = await WebAssembly.instantiate(await compile(source), {});
+  const { memory: own, _initialize, ...functions } = instance.exports as unknown as Exports & {
+    memory: WebAssembly.Memory;
+  };
+  _initialize?.();
+  memory = own;
+  exports = Object.fromEntries(Object.entries(functions).map(([name, call]) => [name, guarded(call)]));
+}
+
+// The library does not come back from running out of memory.
+function guarded(call: (...args: number[]) => number): (...args: number[]) => number {
+  return (...args) => {
+    try {
+      return call(...args);
+    } catch (error) {
+      if (!(error instanceof WebAssembly.RuntimeError)) throw error;
+      const ended = () =>
+        refuse('sightline: the module has ended, most likely out of memory; load the page anew', 'ended');
+      exports = new Proxy({}, { get: () => ended });
+      return ended();
+    }
+  };
+}
+
+/** Starts the module from bytes of your own, instead of those that `sightline-culling` and `/core` bring along. Once. */
+export function initialise(source: Source): Promise<void> {
+  if (loading) refuse('initialise: the module is loaded already, expected one call');
+  loading = start(source);
+  settle(loading);
+  return ready;
+}
+
+let settle: (loaded: Promise<void>) => void;
+/** Resolves when everything can be called; rejects where it never can. */
+export const ready: Promise<void> = new Promise((resolve) => (settle = resolve));
+ready.catch(() => {}); // who does not ask is told by the first call
+
+/** An entry's own bytes. Of several entries that a program imports, the one that can most is loaded. */
+export function offer(rank: number, inflate: () => Promise<BufferSource>): void {
+  if (!offered || rank > offered.rank) offered = { rank, inflate };
+  queueMicrotask(() =>
+    setTimeout(() => {
+      if (!loading) settle((loading = start(supported ? offered!.inflate() : new ArrayBuffer(0))));
+    }, 0),
+  );
+}
+
+/** gzip in base64, as the entries carry them. */
+export async function inflate(base64: string): Promise<BufferSource> {
+  const packed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Response(stream).arrayBuffer();
+}
+
+/** The module's functions. */
+export function wasm(): Exports {
+  if (!exports) {
+    if (!supported) refuse(unsupported, 'unsupported');
+    refuse('sightline: not loaded yet, expected `await ready` before the first call', 'not_ready');
+  }
+  return exports;
+}
+
+export function buffer(): ArrayBuffer {
+  wasm();
+  return memory.buffer as ArrayBuffer;
+}
+
+/** Throws what the library said, where it refused. */
+export function check(code: number): void {
+  if (code === 0) return;
+  const { message, refused_index } = wasm();
+  const at = message!();
+  const bytes = new Uint8Array(memory.buffer);
+  const sentence = new TextDecoder().decode(bytes.slice(at, bytes.indexOf(0, at)));
+  const index = refused_index!();
+  throw new SightlineError(codes[code]!, index < 0 ? sentence : `${sentence} (index ${index})`, index < 0 ? undefined : index);
+}
+
+/** What stands in the module and has to be given back. */
+export abstract class Owned {
+  #pointer: number;
+  readonly #destroy: string;
+  constructor(create: string, destroy: string, pointer = need(create)()) {
+    this.#pointer = pointer;
+    this.#destroy = destroy;
+  }
+  /** @internal */
+  get pointer(): number {
+    if (this.#pointer === 0) refuse(`${this.constructor.name}: used after dispose()`, 'disposed');
+    return this.#pointer;
+  }
+  /** Whether dispose() was called. */
+  get disposed(): boolean {
+    return this.#pointer === 0;
+  }
+  /** Gives its memory back; using it afterwards throws. Doing so twice is nothing. */
+  dispose(): void {
+    if (this.#pointer === 0) return;
+    need(this.#destroy)(this.#pointer);
+    this.#pointer = 0;
+  }
+}
+
+/** A function that only the whole module has. */
+export function need(name: string): (...args: number[]) => number {
+  return wasm()[name] ?? refuse(`sightline: the module \`core\` has no ${name}, expected the whole one`, 'unsupported');
+}

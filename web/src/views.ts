@@ -1,0 +1,43 @@
+// Views as the library lays them out: WorldView of 160 bytes, CullView of 176.
+import { refuse } from './errors.js';
+import { buffer } from './runtime.js';
+
+/** A camera. Matrices are column-major and multiply columns, as in three.js and glTF. */
+export interface View {
+  /** 16 numbers, rigid; the eye looks down its own -z (three: camera.matrixWorldInverse). */
+  worldToEye: ArrayLike<number>;
+  /** 16 numbers, the projection; clip depth is 0 to 1, either way round (see clipZeroToOne). */
+  eyeToClip: ArrayLike<number>;
+  /** Pixels of the image. */
+  width: number;
+  height: number;
+  /** The view sees the world moved by -origin, in double precision, so that far away its matrices stay precise. */
+  origin?: ArrayLike<number>;
+}
+
+export const viewBytes = 160;
+export const cullViewBytes = 176;
+
+/** A projection whose clip depth is -1 to 1, as WebGL has it, as one whose depth is 0 to 1. */
+export function clipZeroToOne(projection: ArrayLike<number>): number[] {
+  const made = Array.from(projection);
+  for (let column = 0; column < 4; ++column) made[4 * column + 2] = (made[4 * column + 2]! + made[4 * column + 3]!) / 2;
+  return made;
+}
+
+/** Writes a view to the module's memory. */
+export function writeView(what: string, view: View, pointer: number): void {
+  const { worldToEye, eyeToClip, width, height, origin = [0, 0, 0] } = view ?? {};
+  if (worldToEye?.length !== 16 || eyeToClip?.length !== 16)
+    refuse(`${what}: a view needs worldToEye and eyeToClip, expected 16 numbers each`, 'bad_view');
+  if (origin.length !== 3) refuse(`${what}: an origin of ${origin.length} numbers, expected 3`, 'bad_view');
+  for (const side of [width, height]) {
+    if (!Number.isInteger(side) || side < 1 || side > 16384)
+      refuse(`${what}: an image of ${width} x ${height}, expected 1 to 16384 pixels a side`, 'bad_view');
+  }
+  const floats = new Float32Array(buffer(), pointer, 32);
+  for (let i = 0; i < 16; ++i) (floats[i] = worldToEye[i]!), (floats[16 + i] = eyeToClip[i]!);
+  const data = new DataView(buffer(), pointer, viewBytes);
+  data.setUint32(128, width, true), data.setUint32(132, height, true);
+  for (let axis = 0; axis < 3; ++axis) data.setFloat64(136 + 8 * axis, origin[axis]!, true);
+}

@@ -1,0 +1,105 @@
+// `sightline-culling/worker`: a world on another thread, which culls the next frame while this one is drawn. No shared
+// memory, so no special headers; what is seen is copied once a frame.
+import type { Boxes } from './boxes.js';
+import { refuse, SightlineError, type Code } from './errors.js';
+import type { View } from './views.js';
+import type { CullOptions } from './world.js';
+
+/** Boxes to post: typed arrays, not Blocks. */
+export type PostedBoxes = Exclude<Boxes, { pointer: number }>;
+/** A view without occlusion. */
+export interface PostedView extends View {
+  layers?: number;
+  minArea?: number;
+}
+/** What was seen, in arrays of your own. */
+export interface PostedCull {
+  ids: Uint32Array;
+  masks: Uint8Array;
+  tested: number;
+  nodesVisited: number;
+}
+
+/** @internal What goes there and comes back. */
+export interface Request { id: number; name: string; args: unknown[] }
+/** @internal */
+export interface Reply { id: number; value?: unknown; error?: { code: Code; message: string; index: number | undefined } }
+
+/** A thread as both browsers and Node make them. */
+interface Thread {
+  postMessage(message: unknown): void;
+  terminate(): unknown;
+  onmessage?: ((event: { data: Reply }) => void) | null;
+  on?(name: string, listener: (value: never) => void): void;
+}
+
+/** A World and its Culler on a thread of their own; calls are done in the order they were made. */
+export class WorkerWorld {
+  readonly #thread: Thread;
+  readonly #waiting = new Map<number, { resolve: (value: never) => void; reject: (error: Error) => void }>();
+  #next = 0;
+  #disposed = false;
+
+  private constructor(thread: Thread) {
+    this.#thread = thread;
+    const settle = (reply: Reply): void => {
+      const waiting = this.#waiting.get(reply.id);
+      this.#waiting.delete(reply.id);
+      if (reply.error) waiting?.reject(new SightlineError(reply.error.code, reply.error.message, reply.error.index));
+      else waiting?.resolve(reply.value as never);
+    };
+    if (thread.on) thread.on('message', settle as (value: never) => void);
+    else thread.onmessage = (event) => settle(event.data);
+  }
+
+  /** Starts the thread, and waits until it can be called. */
+  static async start(): Promise<WorkerWorld> {
+    const made = new WorkerWorld(await thread());
+    await made.#post('ready');
+    return made;
+  }
+
+  insert(boxes: PostedBoxes, columns: { layers?: Uint32Array; values?: Uint32Array } = {}): Promise<Float64Array> {
+    return this.#post('insert', boxes, columns);
+  }
+  move(handles: Float64Array, boxes: PostedBoxes): Promise<void> {
+    return this.#post('move', handles, boxes);
+  }
+  remove(handles: Float64Array): Promise<void> {
+    return this.#post('remove', handles);
+  }
+  setLayers(handles: Float64Array, layers: Uint32Array): Promise<void> {
+    return this.#post('setLayers', handles, layers);
+  }
+  setValues(handles: Float64Array, values: Uint32Array): Promise<void> {
+    return this.#post('setValues', handles, values);
+  }
+  cull(views: PostedView | readonly PostedView[], options: CullOptions = {}): Promise<PostedCull> {
+    return this.#post('cull', views, options);
+  }
+  /** Ends the thread; calls that still wait are refused. */
+  dispose(): void {
+    this.#disposed = true;
+    this.#thread.terminate();
+    for (const { reject } of this.#waiting.values())
+      reject(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
+    this.#waiting.clear();
+  }
+
+  #post<R>(name: string, ...args: unknown[]): Promise<R> {
+    if (this.#disposed) refuse('WorkerWorld: used after dispose()', 'disposed');
+    return new Promise<R>((resolve, reject) => {
+      const id = this.#next++;
+      this.#waiting.set(id, { resolve: resolve as (value: never) => void, reject });
+      this.#thread.postMessage({ id, name, args } satisfies Request);
+    });
+  }
+}
+
+async function thread(): Promise<Thread> {
+  if (typeof Worker === 'function')
+    return new Worker(new URL('./worker-thread.js', import.meta.url), { type: 'module' }) as unknown as Thread;
+  const threads = 'node:worker_threads'; // a name that bundlers for browsers do not look up
+  const { Worker: NodeWorker } = (await import(/* @vite-ignore */ threads)) as typeof import('node:worker_threads');
+  return new NodeWorker(new URL('./worker-thread.js', import.meta.url)) as unknown as Thread;
+}

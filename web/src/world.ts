@@ -1,0 +1,244 @@
+// Boxes that come, move and go, and their cull.
+import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
+import { refuse } from './errors.js';
+import { Block, bytes, calling, doubles, expectKind, expectLength, integers, type Input } from './memory.js';
+import { buffer, check, Owned, wasm } from './runtime.js';
+import { cullViewBytes, writeView, type View } from './views.js';
+
+/** Names an object for as long as it stands in its world: 31 bits of id and 22 of generation in one number. */
+export type Handle = number;
+/** The id of a handle: what cull() writes. */
+export const idOf = (handle: Handle): number => handle % 2 ** 31;
+/** In all layers. */
+export const allLayers = 0xffffffff;
+
+/** What objects are given besides their boxes, an element an object. */
+export interface Columns {
+  /** A bit a layer; none: all layers. A view sees what shares a bit with its own. */
+  layers?: Input<Uint32Array>;
+  /** Numbers of your own that cull() can write instead of ids. */
+  values?: Input<Uint32Array>;
+}
+/** Handles for a call: of many objects, or of one. */
+export type Handles = Input<Float64Array> | Handle;
+
+const list = (handles: Handles): Input<Float64Array> => {
+  const all = typeof handles === 'number' ? Float64Array.of(handles) : handles;
+  expectKind('handles', all, Float64Array);
+  return all;
+};
+
+/** A world of boxes, anywhere within 10¹¹ m of 0. A refused call changes nothing. */
+export class World extends Owned {
+  constructor() {
+    super('world_create', 'world_destroy');
+  }
+
+  /** Puts objects in. Returns their handles. Linear: some 0.3 µs an object. */
+  insert(boxes: Boxes, columns: Columns = {}): Float64Array {
+    return calling((call) => {
+      const { data, count, args } = readBoxes('insert', boxes);
+      for (const column of ['layers', 'values'] as const) {
+        const given = columns[column];
+        if (given === undefined) continue;
+        expectKind(`insert: ${column}`, given, Uint32Array);
+        expectLength(`insert: ${column}`, given, count);
+      }
+      const [at, layers, values] = call.place(data, columns.layers, columns.values);
+      const out = call.room(8 * count);
+      check(wasm().world_insert!(this.pointer, ...args(at!), layers!, values!, out));
+      return new Float64Array(buffer(), out, count).slice();
+    });
+  }
+  /** Gives each object a new box; one that is listed twice keeps the last. */
+  move(handles: Handles, boxes: Boxes): void {
+    calling((call) => {
+      const { data, count, args } = readBoxes('move', boxes);
+      const named = list(handles);
+      expectLength('move: handles', named, count);
+      const [at, numbers] = call.place(data, named);
+      check(wasm().world_move!(this.pointer, numbers!, ...args(at!)));
+    });
+  }
+  /** Takes objects out; their handles are stale from then on. */
+  remove(handles: Handles): void {
+    calling((call) => {
+      const named = list(handles);
+      const [numbers] = call.place(named);
+      check(wasm().world_remove!(this.pointer, numbers!, named.length));
+    });
+  }
+  /** Gives each object new layers. */
+  setLayers(handles: Handles, layers: Input<Uint32Array>): void {
+    this.#setColumn('world_set_layers', 'setLayers', handles, layers);
+  }
+  /** Gives each object a new value. */
+  setValues(handles: Handles, values: Input<Uint32Array>): void {
+    this.#setColumn('world_set_values', 'setValues', handles, values);
+  }
+
+  /** Objects. */
+  get size(): number {
+    return wasm().world_size!(this.pointer);
+  }
+  /** All ids lie below this: the length of an array by id. */
+  get idLimit(): number {
+    return wasm().world_id_limit!(this.pointer);
+  }
+  /** Whether the handle names an object of this world. */
+  contains(handle: Handle): boolean {
+    return wasm().world_contains!(this.pointer, handle) !== 0;
+  }
+  /** The handle of the object that has this id now. */
+  handle(id: number): Handle | undefined {
+    const handle = wasm().world_handle!(this.pointer, id);
+    return handle < 0 ? undefined : handle;
+  }
+  /** The box as it is kept, minimum and maximum: it holds what was given. */
+  box(handle: Handle): Float64Array {
+    return calling((call) => {
+      const out = call.room(48);
+      if (!wasm().world_box!(this.pointer, handle, out)) refuse('box: no object has this handle', 'stale_handle');
+      return new Float64Array(buffer(), out, 6).slice();
+    });
+  }
+  /** The object's layers. */
+  layers(handle: Handle): number {
+    if (!this.contains(handle)) refuse('layers: no object has this handle', 'stale_handle');
+    return wasm().world_layers!(this.pointer, handle) >>> 0;
+  }
+  /** The object's value. */
+  value(handle: Handle): number {
+    if (!this.contains(handle)) refuse('value: no object has this handle', 'stale_handle');
+    return wasm().world_value!(this.pointer, handle) >>> 0;
+  }
+
+  #setColumn(name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
+    calling((call) => {
+      const named = list(handles);
+      expectKind(what, column, Uint32Array);
+      expectLength(what, column, named.length);
+      const [numbers, at] = call.place(named, column);
+      check(wasm()[name]!(this.pointer, numbers!, at!, named.length));
+    });
+  }
+}
+
+/** A camera, an eye, a shadow cascade: whatever sees the world. */
+export interface CullView extends View {
+  /** Sees objects whose layers share a bit with these; none: all. */
+  layers?: number;
+  /** Pixels of area: drops what covers less, approximately; none: nothing. */
+  minArea?: number;
+  /** Begun with this same view, occluders drawn. */
+  occlusion?: { readonly pointer: number };
+}
+
+/** How a call culls. */
+export interface CullOptions {
+  /** Writes the objects' values instead of their ids. */
+  valuesForIds?: boolean;
+}
+
+/** What a cull wrote. The arrays lie in the module's memory, until this culler's next call; copy what has to last. */
+export interface Culled {
+  /** Ids, or values, of what at least one view may see. */
+  readonly ids: Uint32Array;
+  /** Bit v: view v may see the object. */
+  readonly masks: Uint8Array;
+  /** Objects tested one by one, nodes visited, and objects that only occlusion dropped. */
+  readonly tested: number;
+  readonly nodesVisited: number;
+  readonly culledOcclusion: number;
+}
+
+/** Culls worlds, and remembers from frame to frame what helps the next. */
+export class Culler extends Owned {
+  #ids: Block<Uint32Array> | undefined;
+  #masks: Block<Uint8Array> | undefined;
+  readonly #views = bytes(8 * cullViewBytes);
+  readonly #result = doubles(4);
+
+  constructor() {
+    super('culler_create', 'culler_destroy');
+  }
+
+  /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
+   * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
+  cull(world: World, views: CullView | readonly CullView[], options: CullOptions = {}): Culled {
+    const all = Array.isArray(views) ? (views as readonly CullView[]) : [views as CullView];
+    const count = this.#run(world, all, options.valuesForIds ?? false);
+    const [, tested, nodesVisited, culledOcclusion] = this.#result.array;
+    return {
+      ids: this.#ids!.array.subarray(0, count),
+      masks: this.#masks!.array.subarray(0, count),
+      tested: tested!, nodesVisited: nodesVisited!, culledOcclusion: culledOcclusion!,
+    };
+  }
+  /** @internal The same with values for ids, each below `limit` and no other object's, in ascending order. */
+  cullSorted(world: World, views: readonly CullView[], limit: number): { count: number; ids: number; masks: number } {
+    const count = this.#run(world, views, true);
+    wasm().sort_ids!(this.pointer, this.#ids!.pointer, this.#masks!.pointer, count, limit);
+    return { count, ids: this.#ids!.pointer, masks: this.#masks!.pointer };
+  }
+
+  override dispose(): void {
+    if (this.disposed) return;
+    for (const block of [this.#ids, this.#masks, this.#views, this.#result]) block?.dispose();
+    super.dispose();
+  }
+
+  #run(world: World, views: readonly CullView[], values: boolean): number {
+    const pointer = this.pointer;
+    if (!(world instanceof World)) refuse('cull: expected a World');
+    if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
+    const capacity = wasm().cull_capacity!(world.pointer);
+    if (!this.#ids || this.#ids.length < capacity) {
+      this.#ids?.dispose(), this.#masks?.dispose();
+      this.#ids = integers(capacity + (capacity >> 2));
+      this.#masks = bytes(this.#ids.length);
+    }
+    views.forEach((view, v) => this.#write(view, this.#views.pointer + v * cullViewBytes));
+    check(wasm().cull!(pointer, world.pointer, this.#views.pointer, views.length, values ? 1 : 0, this.#ids.pointer,
+      this.#masks!.pointer, this.#ids.length, this.#result.pointer));
+    return this.#result.array[0]!;
+  }
+
+  #write(view: CullView, at: number): void {
+    writeView('cull', view, at);
+    const data = new DataView(buffer(), at, cullViewBytes);
+    data.setUint32(160, view.occlusion?.pointer ?? 0, true);
+    data.setUint32(164, view.layers ?? allLayers, true);
+    data.setFloat32(168, view.minArea ?? 0, true);
+  }
+}
+
+/** The indices of the boxes that a view overlaps, ascending, into `out`, which has room for 64 more than there are boxes;
+ * returns how many. Linear: columns of single precision cost least. */
+export function cullBoxes(view: View, boxes: Boxes, out: Block<Uint32Array>): number {
+  return flat(view, out, (call, viewAt, result) => {
+    const { args } = placeBoxes('cullBoxes', call, boxes);
+    return wasm().flat_boxes!(viewAt, ...args, out.pointer, out.length, result);
+  });
+}
+
+/** The same for spheres about the view's origin: four columns, centre x, y, z and radius. */
+export function cullSpheres(view: View, spheres: Input<Float32Array>, out: Block<Uint32Array>): number {
+  return flat(view, out, (call, viewAt, result) => {
+    expectKind('cullSpheres', spheres, Float32Array);
+    if (spheres.length % 4 !== 0) refuse(`cullSpheres: ${spheres.length} numbers, expected a multiple of 4`);
+    const [at] = call.place(spheres);
+    return wasm().flat_spheres!(viewAt, at!, spheres.length / 4, out.pointer, out.length, result);
+  });
+}
+
+function flat(view: View, out: Block<Uint32Array>,
+  run: (call: import('./memory.js').Call, view: number, result: number) => number): number {
+  if (!(out instanceof Block) || out.kind !== Uint32Array) refuse('cull: expected a Block from integers() to write to');
+  return calling((call) => {
+    const viewAt = call.room(176), result = viewAt + 168;
+    writeView('cull', view, viewAt);
+    check(run(call, viewAt, result));
+    return new Float64Array(buffer(), result, 1)[0]!;
+  });
+}

@@ -1,0 +1,207 @@
+// What users rely on beside right answers: clear refusals, memory that is given back, handles, the worker.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import {
+  BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, noObject,
+  OccluderMesh, OcclusionBuffer, ready, SightlineError, supported, World } from 'sightline-culling';
+import { WorkerWorld } from 'sightline-culling/worker';
+
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const perspective = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.001, -1, 0, 0, -0.1001, 0];
+const view = { worldToEye: identity, eyeToClip: perspective, width: 64, height: 64 };
+const cube = (x, y, z, half = 1) => [x - half, y - half, z - half, x + half, y + half, z + half];
+const refusal = (code, words) => (error) => {
+  assert.ok(error instanceof SightlineError, String(error));
+  assert.equal(error.code, code);
+  assert.match(error.message, words);
+  return true;
+};
+
+test('it says so before it is loaded', () => {
+  assert.equal(supported, true);
+  assert.throws(() => new World(), refusal('not_ready', /await ready/));
+});
+
+test('objects in view are seen, in all layouts', async () => {
+  await ready;
+  const at = [[0, 0, -10], [0, 0, 10], [3, 1, -20]];
+  const world = new World(), culler = new Culler();
+  const handles = world.insert(Float32Array.from(at.flatMap(([x, y, z]) => cube(x, y, z))));
+  assert.deepEqual([...culler.cull(world, view).ids].sort(), [0, 2]);
+  assert.equal(world.size, 3);
+  assert.equal(idOf(handles[2]), 2);
+  world.move(handles, { data: Float64Array.from(at.flatMap((p) => [...p, 1, 1, 1])), layout: 'centre-half' });
+  assert.deepEqual([...culler.cull(world, view).ids].sort(), [0, 2]);
+  world.setValues(handles, Uint32Array.of(70, 80, 90));
+  assert.deepEqual([...culler.cull(world, view, { valuesForIds: true }).ids].sort(), [70, 90]);
+  world.setLayers(handles[0], Uint32Array.of(2));
+  assert.deepEqual([...culler.cull(world, { ...view, layers: 1 }).ids], [2]);
+  const both = culler.cull(world, [view, { ...view, layers: 2 }]);
+  assert.deepEqual([...both.ids].map((id, i) => [id, both.masks[i]]).sort(), [[0, 3], [2, 3]]);
+  world.remove(handles.subarray(0, 1));
+  assert.equal(world.contains(handles[0]), false);
+  assert.deepEqual([...culler.cull(world, view).ids], [2]);
+  assert.deepEqual([...world.box(handles[1])], [-1, -1, 9, 1, 1, 11]);
+});
+
+test('spheres and boxes are culled flat', async () => {
+  await ready;
+  const out = integers(66);
+  assert.equal(cullSpheres(view, Float32Array.of(0, 0, 0, 0, -10, 10, 1, 1), out), 1);
+  assert.equal(out.array[0], 0);
+  const small = integers(2);
+  assert.throws(() => cullBoxes(view, new Float32Array(12), small), refusal('buffer_too_small', /expected/));
+});
+
+test('bad input is refused with one sentence and changes nothing', async () => {
+  await ready;
+  const world = new World(), culler = new Culler();
+  assert.throws(() => world.insert(Float32Array.of(...cube(0, 0, 0), ...cube(NaN, 0, 0))), refusal('bad_box', /index 1/));
+  assert.throws(() => world.insert(new Float32Array(7)), refusal('bad_argument', /7 numbers, expected a multiple of 6/));
+  assert.throws(() => world.insert([1, 2, 3]), refusal('bad_argument', /Float32Array/));
+  assert.equal(world.size, 0);
+  const handles = world.insert(Float32Array.from(cube(0, 0, -5)));
+  assert.throws(() => world.move(handles, new Float32Array(12)), refusal('bad_argument', /1 elements, expected 2/));
+  assert.throws(() => world.remove(handles[0] + 2 ** 31), refusal('stale_handle', /./));
+  for (const nonsense of [NaN, -1, 1e300, 0.5]) assert.equal(world.contains(nonsense), false);
+  assert.throws(() => culler.cull(world, { ...view, eyeToClip: perspective.map(() => NaN) }), refusal('bad_view', /./));
+  assert.throws(() => culler.cull(world, { ...view, width: 1.5 }), refusal('bad_view', /1 to 16384/));
+  assert.throws(() => culler.cull(world, []), refusal('bad_argument', /1 to 8/));
+  assert.throws(() => culler.cull(world, { ...view, occlusion: new OcclusionBuffer() }), refusal('stale_buffer', /./));
+  assert.equal(culler.cull(world, view).ids.length, 1);
+  assert.throws(() => new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 3)), refusal('bad_mesh', /index 2/));
+});
+
+test('what was disposed of is not used', async () => {
+  await ready;
+  const made = [new World(), new Culler(), new OcclusionBuffer(), new BoxBvh()];
+  const block = floats(6);
+  for (const thing of [...made, block]) thing.dispose(), thing.dispose();
+  assert.throws(() => made[0].insert(Float32Array.from(cube(0, 0, 0))), refusal('disposed', /World: used after dispose/));
+  assert.throws(() => made[1].cull(new World(), view), refusal('disposed', /Culler/));
+  assert.throws(() => made[2].begin(view), refusal('disposed', /OcclusionBuffer/));
+  assert.throws(() => made[3].build(Float32Array.from(cube(0, 0, 0))), refusal('disposed', /BoxBvh/));
+  assert.throws(() => block.array, refusal('disposed', /Block/));
+});
+
+test('arrays in the module are used where they lie, and one from before it grew is refused', async () => {
+  await ready;
+  const world = new World();
+  const boxes = floats(6);
+  boxes.array.set(cube(0, 0, -5));
+  const old = boxes.array;
+  world.insert(old);
+  world.insert(boxes);
+  const large = doubles(2 ** 25);
+  assert.equal(old.length, 0);
+  assert.throws(() => world.insert(old), refusal('detached', /fetch it from its Block anew/));
+  assert.deepEqual([...boxes.array], cube(0, 0, -5));
+  world.insert(boxes.array);
+  assert.equal(world.size, 3);
+  large.dispose();
+});
+
+test('1,000 rounds of making and disposing leak nothing', async () => {
+  await ready;
+  const round = () => {
+    const world = new World(), culler = new Culler(), buffer = new OcclusionBuffer(), bvh = new BoxBvh();
+    const boxes = Float32Array.from(Array.from({ length: 200 }, (_, i) => cube(i % 14, 0, -i)).flat());
+    world.insert(boxes);
+    culler.cull(world, view);
+    buffer.begin(view), buffer.drawBoxes(boxes);
+    bvh.build(boxes);
+    const mesh = new OccluderMesh(Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), Uint32Array.of(0, 1, 2));
+    assert.throws(() => world.insert(Float32Array.of(1, 0, 0, 0, 0, 0)));
+    for (const thing of [world, culler, buffer, bvh, mesh]) thing.dispose();
+  };
+  for (let i = 0; i < 20; ++i) round();
+  const probe = bytes(1);
+  const size = probe.array.buffer.byteLength;
+  for (let i = 0; i < 1000; ++i) round();
+  assert.equal(probe.array.buffer.byteLength, size);
+});
+
+// Four million rounds: in `test.sh --full`.
+test('a slot whose generations are spent is retired', { skip: !process.env.SIGHTLINE_FULL }, async () => {
+  await ready;
+  const world = new World(), culler = new Culler();
+  const box = floats(6);
+  box.array.set(cube(0, 0, -5));
+  let handle = world.insert(box)[0];
+  const first = handle;
+  for (let i = 0; i < 2 ** 22 - 1; ++i) world.remove(handle), (handle = world.insert(box)[0]);
+  assert.equal(idOf(handle), idOf(first));
+  assert.equal(Math.floor(handle / 2 ** 31), 2 ** 22 - 1);
+  world.remove(handle);
+  assert.equal(world.size, 0);
+  assert.equal(world.contains(handle), false);
+  assert.equal(world.handle(idOf(handle)), undefined);
+  assert.throws(() => world.remove(handle), refusal('stale_handle', /./));
+  assert.equal(culler.cull(world, view).ids.length, 0);
+  const next = world.insert(box)[0];
+  assert.notEqual(idOf(next), idOf(first));
+  assert.throws(() => world.remove(Float64Array.of(next, handle)), refusal('stale_handle', /./));
+  assert.equal(world.contains(next), true);
+});
+
+test('what is hidden is culled, what shows is not', async () => {
+  await ready;
+  const buffer = new OcclusionBuffer(), world = new World(), culler = new Culler();
+  world.insert(Float32Array.from([...cube(0, 0, -20), ...cube(18, 0, -20)]));
+  buffer.begin(view);
+  buffer.drawBoxes(Float32Array.from(cube(0, 0, -10, 3)));
+  const culled = culler.cull(world, { ...view, occlusion: buffer });
+  assert.deepEqual([...culled.ids], [1]);
+  assert.equal(culled.culledOcclusion, 1);
+  const corners = Float32Array.of(-3, -3, -5, 3, -3, -5, 0, 4, -5);
+  buffer.begin(view);
+  buffer.drawMesh(new OccluderMesh(corners, Uint32Array.of(0, 1, 2), 'front'), identity);
+  const nearness = floats(64 * 64);
+  buffer.readNearness(nearness);
+  assert.ok(Math.abs(nearness.array[32 * 64 + 32] - 0.2) < 1e-3);
+  const seen = bytes(1);
+  buffer.maySee(Float32Array.from(cube(0, 0, -20, 0.5)), seen);
+  assert.equal(seen.array[0], 0);
+});
+
+test('rays meet the nearest box', async () => {
+  await ready;
+  const bvh = new BoxBvh(), objects = integers(2), distances = floats(2);
+  bvh.build(Float32Array.from([...cube(0, 0, -20), ...cube(0, 0, -10)]));
+  bvh.cast(Float32Array.of(0, 0, 0, 0, 0, -1, Infinity, 0, 0, 0, 0, 1, 0, Infinity), objects, distances);
+  assert.deepEqual([...objects.array], [1, noObject]);
+  assert.deepEqual([...distances.array], [9, -1]);
+  assert.deepEqual([...bvh.visibleSet(view, 16, 16)], [1]);
+  assert.throws(() => bvh.refit(new Float32Array(6)), refusal('bad_argument', /1 boxes, expected 2/));
+});
+
+test('visible sets are asked by cell', () => {
+  const arrays = {
+    bounds: [0, 0, 0, 2, 1, 1], counts: [2, 1, 1], objects: 3, open: Uint8Array.of(1, 0),
+    first: Uint32Array.of(0, 2, 2), visible: Uint32Array.of(0, 2) };
+  const pvs = new CellPvs(arrays);
+  assert.equal(pvs.cellAt(0.5, 0.5, 0.5), 0);
+  assert.equal(pvs.cellAt(1.5, 0.5, 0.5), undefined);
+  assert.equal(pvs.cellAt(3, 0.5, 0.5), undefined);
+  assert.deepEqual([...pvs.seenFrom(0)], [0, 2]);
+  assert.throws(() => new CellPvs({ ...arrays, visible: Uint32Array.of(2, 0) }), refusal('bad_argument', /cell 0/));
+});
+
+test('clip depth of WebGL becomes 0 to 1', () => {
+  const gl = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -3, -1, 0, 0, -4, 0]; // near 1, far 2
+  const made = clipZeroToOne(gl);
+  const depth = (z) => (made[10] * z + made[14]) / (made[11] * z + made[15]);
+  assert.equal(depth(-1), 0);
+  assert.equal(depth(-2), 1);
+});
+
+test('a worker culls', async () => {
+  const worker = await WorkerWorld.start();
+  const handles = await worker.insert(Float32Array.from([...cube(0, 0, -5), ...cube(0, 0, 5)]));
+  assert.equal(handles.length, 2);
+  assert.deepEqual([...(await worker.cull(view)).ids], [0]);
+  await assert.rejects(worker.insert(Float32Array.of(1, 0, 0, 0, 0, 0)), refusal('bad_box', /./));
+  const pending = worker.cull(view);
+  worker.dispose();
+  await assert.rejects(pending, refusal('disposed', /./));
+});

@@ -1,0 +1,252 @@
+// The module `core`: boxes that move and their cull, and flat culling.
+#include <algorithm>
+#include <cstdlib>
+#include <unordered_set>
+#include <vector>
+
+#include <sightline/frustum.hpp>
+#include <sightline/world.hpp>
+
+#include "web/wasm/glue.hpp"
+
+namespace sightline::web {
+
+namespace {
+
+// A handle is one number in JavaScript: 31 bits of index below 22 of generation, which a double holds.
+constexpr double kIndices = 2147483648.0;
+constexpr std::uint32_t kLastGeneration = (1u << 22) - 1;
+
+double number_of(const Handle& handle) noexcept {
+  return handle.generation * kIndices + handle.index;
+}
+
+Handle handle_of(double number) noexcept {
+  if (!(number >= 0 && number < 9007199254740992.0)) return {};
+  const auto generation = static_cast<std::uint32_t>(number / kIndices);
+  const Handle handle{static_cast<ObjectId>(number - generation * kIndices), generation};
+  return number_of(handle) == number ? handle : Handle{};  // a fraction names nothing
+}
+
+// A world, and the ids whose generations are spent: their objects stay in it, in no layer, so that no handle
+// of theirs is ever given out again.
+struct WebWorld {
+  World world;
+  std::unordered_set<ObjectId> retired;
+  std::vector<Handle> handles;  // of the call that is running
+
+  const std::vector<Handle>& read(const double* numbers, std::size_t count) {
+    handles.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Handle handle = handle_of(numbers[i]);
+      handles[i] = retired.contains(handle.index) ? Handle{} : handle;
+    }
+    return handles;
+  }
+};
+
+struct WebCuller {
+  Culler culler;
+  std::vector<std::uint8_t> mask_of;  // by value, while sorting
+};
+
+Status last;
+
+// Takes out what may come again, and hides what may not. Nothing changes where a handle is stale or stands
+// twice.
+Status remove(WebWorld& web, const double* numbers, std::size_t count) {
+  std::vector<Handle> all = web.read(numbers, count), spent;
+  const auto is_spent = [](const Handle& handle) { return handle.generation >= kLastGeneration; };
+  if (std::none_of(all.begin(), all.end(), is_spent)) return web.world.remove(all);
+
+  std::unordered_set<ObjectId> named;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!web.world.contains(all[i]) || !named.insert(all[i].index).second)
+      return {StatusCode::stale_handle, "handles: names no object of this world", i};
+  }
+  std::copy_if(all.begin(), all.end(), std::back_inserter(spent), is_spent);
+  std::erase_if(all, is_spent);
+  const std::vector<std::uint32_t> none(spent.size());
+  if (const Status status = web.world.set_layers(spent, none); !status) return status;
+  for (const Handle& handle : spent) web.retired.insert(handle.index);
+  return web.world.remove(all);
+}
+
+}  // namespace
+
+std::uint32_t keep(const Status& status) noexcept {
+  last = status;
+  return static_cast<std::uint32_t>(status.code());
+}
+
+extern "C" {
+
+SIGHTLINE_WEB(allocate) void* allocate(std::size_t bytes) {
+  return std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+}
+SIGHTLINE_WEB(release) void release(void* memory) {
+  std::free(memory);
+}
+SIGHTLINE_WEB(message) const char* message() {
+  return last.message();
+}
+/// Which element was refused, or -1.
+SIGHTLINE_WEB(refused_index) double refused_index() {
+  return last.index() == Status::kNoIndex ? -1 : static_cast<double>(last.index());
+}
+
+// --- the world ---
+
+SIGHTLINE_WEB(world_create) WebWorld* world_create() {
+  return new WebWorld;
+}
+SIGHTLINE_WEB(world_destroy) void world_destroy(WebWorld* web) {
+  delete web;
+}
+
+SIGHTLINE_WEB(world_insert)
+std::uint32_t world_insert(WebWorld* web, Layout layout, const void* first, std::size_t stride,
+                           std::size_t count, double x, double y, double z, const std::uint32_t* layers,
+                           const std::uint32_t* values, double* numbers) {
+  web->handles.resize(count);
+  ObjectColumns columns;
+  if (layers) columns.layers = {layers, count};
+  if (values) columns.values = {values, count};
+  const Status status =
+      web->world.insert(boxes_of(layout, first, stride, count, {x, y, z}), web->handles, columns);
+  if (status) std::transform(web->handles.begin(), web->handles.end(), numbers, number_of);
+  return keep(status);
+}
+
+SIGHTLINE_WEB(world_move)
+std::uint32_t world_move(WebWorld* web, const double* numbers, Layout layout, const void* first,
+                         std::size_t stride, std::size_t count, double x, double y, double z) {
+  return keep(web->world.move(web->read(numbers, count), boxes_of(layout, first, stride, count, {x, y, z})));
+}
+
+SIGHTLINE_WEB(world_remove)
+std::uint32_t world_remove(WebWorld* web, const double* numbers, std::size_t count) {
+  return keep(remove(*web, numbers, count));
+}
+
+SIGHTLINE_WEB(world_set_layers)
+std::uint32_t world_set_layers(WebWorld* web, const double* numbers, const std::uint32_t* layers,
+                               std::size_t count) {
+  return keep(web->world.set_layers(web->read(numbers, count), {layers, count}));
+}
+
+SIGHTLINE_WEB(world_set_values)
+std::uint32_t world_set_values(WebWorld* web, const double* numbers, const std::uint32_t* values,
+                               std::size_t count) {
+  return keep(web->world.set_values(web->read(numbers, count), {values, count}));
+}
+
+SIGHTLINE_WEB(world_size) std::size_t world_size(const WebWorld* web) {
+  return web->world.size() - web->retired.size();
+}
+SIGHTLINE_WEB(world_id_limit) std::size_t world_id_limit(const WebWorld* web) {
+  return web->world.id_limit();
+}
+SIGHTLINE_WEB(world_contains) bool world_contains(WebWorld* web, double number) {
+  return web->world.contains(web->read(&number, 1)[0]);
+}
+/// -1 where no object has the id.
+SIGHTLINE_WEB(world_handle) double world_handle(const WebWorld* web, ObjectId id) {
+  const Handle handle = web->world.handle(id);
+  return web->retired.contains(id) || !web->world.contains(handle) ? -1 : number_of(handle);
+}
+/// Writes minimum and maximum; 0 for a stale handle.
+SIGHTLINE_WEB(world_box) bool world_box(WebWorld* web, double number, double* box) {
+  const Handle handle = web->read(&number, 1)[0];
+  if (!web->world.contains(handle)) return false;
+  const WorldBox stored = web->world.box(handle);
+  const double numbers[] = {stored.min.x, stored.min.y, stored.min.z,
+                            stored.max.x, stored.max.y, stored.max.z};
+  std::copy(std::begin(numbers), std::end(numbers), box);
+  return true;
+}
+SIGHTLINE_WEB(world_layers) std::uint32_t world_layers(WebWorld* web, double number) {
+  return web->world.layers(web->read(&number, 1)[0]);
+}
+SIGHTLINE_WEB(world_value) std::uint32_t world_value(WebWorld* web, double number) {
+  return web->world.value(web->read(&number, 1)[0]);
+}
+
+// --- culling ---
+
+// web/src/views.ts writes these as they lie.
+static_assert(sizeof(WorldView) == 160 && offsetof(WorldView, origin) == 136);
+static_assert(sizeof(CullView) == 176 && offsetof(CullView, occlusion) == 160);
+static_assert(offsetof(CullView, layers) == 164 && offsetof(CullView, min_area) == 168);
+
+SIGHTLINE_WEB(culler_create) WebCuller* culler_create() {
+  return new WebCuller;
+}
+SIGHTLINE_WEB(culler_destroy) void culler_destroy(WebCuller* culler) {
+  delete culler;
+}
+SIGHTLINE_WEB(cull_capacity) std::size_t capacity(const WebWorld* web) {
+  return cull_capacity(web->world);
+}
+
+/// Writes count, tested, nodes visited and culled by occlusion to `result`.
+SIGHTLINE_WEB(cull)
+std::uint32_t cull(WebCuller* culler, const WebWorld* web, const CullView* views, std::size_t view_count,
+                   bool values_for_ids, std::uint32_t* ids, std::uint8_t* masks, std::size_t capacity,
+                   double* result) {
+  CullOptions options;
+  options.values_for_ids = values_for_ids;
+  CullOutput output{{ids, capacity}, {}};
+  if (masks) output.masks = {masks, capacity};
+  const auto culled = culler->culler.cull(web->world, {views, view_count}, options, output);
+  if (culled) {
+    const double numbers[] = {static_cast<double>(culled->count), static_cast<double>(culled->tested),
+                              static_cast<double>(culled->nodes_visited),
+                              static_cast<double>(culled->culled_occlusion)};
+    std::copy(std::begin(numbers), std::end(numbers), result);
+  }
+  return keep(culled.error());
+}
+
+/// Puts numbers below `limit`, all different, and their masks, none 0, in ascending order.
+SIGHTLINE_WEB(sort_ids)
+void sort_ids(WebCuller* culler, std::uint32_t* ids, std::uint8_t* masks, std::size_t count,
+              std::size_t limit) {
+  std::vector<std::uint8_t>& mask_of = culler->mask_of;
+  if (mask_of.size() < limit) mask_of.resize(limit);
+  for (std::size_t i = 0; i < count; ++i) mask_of[ids[i]] = masks[i];
+  std::size_t out = 0;
+  for (std::size_t id = 0; id < limit && out < count; ++id) {
+    if (mask_of[id] == 0) continue;
+    ids[out] = static_cast<std::uint32_t>(id), masks[out] = mask_of[id];
+    mask_of[id] = 0, ++out;
+  }
+}
+
+/// The indices of the boxes in view, ascending; their number to `result`.
+SIGHTLINE_WEB(flat_boxes)
+std::uint32_t flat_boxes(const WorldView* view, Layout layout, const void* first, std::size_t stride,
+                         std::size_t count, double x, double y, double z, ObjectId* ids, std::size_t capacity,
+                         double* result) {
+  if (const Status status = check(*view); !status) return keep(status);
+  const auto seen =
+      cull_boxes(make_frustum(*view), boxes_of(layout, first, stride, count, {x, y, z}), {ids, capacity});
+  if (seen) *result = static_cast<double>(*seen);
+  return keep(seen.error());
+}
+
+/// The same of spheres: four columns of `count` numbers, about the view's origin.
+SIGHTLINE_WEB(flat_spheres)
+std::uint32_t flat_spheres(const WorldView* view, const float* first, std::size_t count, ObjectId* ids,
+                           std::size_t capacity, double* result) {
+  if (const Status status = check(*view); !status) return keep(status);
+  const auto seen = cull_spheres(
+      make_frustum(*view),
+      SphereView::arrays(first, first + count, first + 2 * count, first + 3 * count, count), {ids, capacity});
+  if (seen) *result = static_cast<double>(*seen);
+  return keep(seen.error());
+}
+
+}  // extern "C"
+
+}  // namespace sightline::web
