@@ -15,8 +15,9 @@ namespace sightline {
 enum class Sides : std::uint8_t { both, front };
 
 /// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
-/// the seams between triangles are tight while the outline is drawn a little smaller than it is. What can be
-/// looked through (cut-outs, glass) must not be among them.
+/// the seams between triangles are tight while the outline is drawn a little smaller than it is. Seams are
+/// edges that two or more triangles share, and those that the edges of others cover in pieces (T-junctions)
+/// with corners exactly on them. What can be looked through (cut-outs, glass) must not be among them.
 ///
 /// Unless a function says otherwise: Errors: none. Cost: constant. Threads: any number may draw one mesh at
 /// once. Allocates: nothing.

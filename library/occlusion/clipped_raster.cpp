@@ -97,12 +97,39 @@ bool set_plane(const DepthTiles& tiles, const WidePlane& plane, const Outline& o
   return true;
 }
 
+// The line of an edge that reaches behind the eye, and of no other edge between the same points.
+SeamLine line_through(const EyeProjection& e, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 line = glm::cross(glm::dvec3(dot(e.x, a), dot(e.y, a), dot(e.w, a)),
+                                     glm::dvec3(dot(e.x, b), dot(e.y, b), dot(e.w, b)));
+  return {SeamLine::Kind::given, static_cast<float>(-line.z / line.x), static_cast<float>(-line.y / line.x)};
+}
+
+// Adds an edge's line to the side that the edge from corner i on bounds.
+void add_line(const Outline& outline, std::size_t i, bool turns_right, const SeamLine& line, Convex& out) {
+  const std::size_t next = (i + 1) % outline.count;
+  const float rise = outline.y[next] - outline.y[i];
+  // What rises less is bounded by the rows.
+  if (!(std::fabs(rise) >= kFlatEdge) || !std::isfinite(line.at) || !std::isfinite(line.slope)) return;
+  if ((rise > 0) == turns_right) {
+    out.right_at[out.right_edges] = line.at, out.right_slope[out.right_edges++] = line.slope;
+  } else {
+    out.left_at[out.left_edges] = line.at, out.left_slope[out.left_edges++] = line.slope;
+  }
+}
+
 // Adds the edge from corner i on, moved inwards by `inset` pixels.
 void add_edge(const Outline& outline, std::size_t i, bool turns_right, float inset, Convex& out) {
   const std::size_t next = (i + 1) % outline.count;
   const float ax = outline.x[i], ay = outline.y[i], bx = outline.x[next], by = outline.y[next];
   const float dy = by - ay;
-  if (!(std::fabs(dy) >= kFlatEdge)) return;
+  if (!(std::fabs(dy) >= kFlatEdge)) {
+    // Flat ones end the rows: those that run to the right lie above what turns right.
+    if ((bx > ax) == turns_right)
+      out.top = std::max(out.top, std::max(ay, by) + inset);
+    else
+      out.bottom = std::min(out.bottom, std::min(ay, by) - inset);
+    return;
+  }
   const float slope = (bx - ax) / dy, at = ax - ay * slope;
   const float inwards = inset * (1 + std::fabs(slope));
   if ((by > ay) == turns_right) {
@@ -114,8 +141,10 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
   }
 }
 
-// A polygon that lies on the plane, if it turns that way; 0: whichever way it turns.
-void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way) {
+// A polygon that lies on the plane, if it turns that way; 0: whichever way it turns. `seams` by the numbers
+// of its edges.
+void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way,
+                  std::span<const SeamLine> seams) {
   if (!clip_to_view(tiles, 0, polygon)) return;
   if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
   const Outline outline = outline_of(tiles.projection, polygon);
@@ -124,9 +153,14 @@ void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, fl
   Convex out;
   if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return;
   const float inset = kInset + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
-  for (std::size_t i = 0; i < outline.count; ++i) add_edge(outline, i, area > 0, inset, out);
-  out.left = outline.left + inset, out.right = outline.right - inset;
-  out.top = outline.top + inset, out.bottom = outline.bottom - inset;
+  out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
+  for (std::size_t i = 0; i < outline.count; ++i) {
+    const std::uint8_t edge = polygon.edge[i];
+    if (edge < seams.size() && seams[edge].kind != SeamLine::Kind::none)
+      add_line(outline, i, area > 0, seams[edge], out);
+    else
+      add_edge(outline, i, area > 0, inset, out);
+  }
   HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out);
 }
 
@@ -148,19 +182,27 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
       }
       glm::dvec3 normal(0);
       normal[a] = 1;
-      draw_clipped(tiles, face, {normal, at}, 0);
+      draw_clipped(tiles, face, {normal, at}, 0, {});
     }
   }
 }
 
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners,
-                           float way) noexcept {
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners, float way,
+                           const std::array<SeamLine, 3>& seams) noexcept {
   Polygon polygon;
-  for (const auto& c : corners) polygon.points[polygon.count++] = {c[0], c[1], c[2]};
+  for (const auto& c : corners) {
+    polygon.edge[polygon.count] = static_cast<std::uint8_t>(polygon.count);
+    polygon.points[polygon.count++] = {c[0], c[1], c[2]};
+  }
+  std::array<SeamLine, 3> lines = seams;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (lines[k].kind == SeamLine::Kind::through_near)
+      lines[k] = line_through(tiles.projection, polygon.points[k], polygon.points[(k + 1) % 3]);
+  }
   const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
   const glm::dvec3 normal = glm::cross(q - p, r - p);
   const double length = glm::length(normal);
-  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way);
+  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way, lines);
 }
 
 }  // namespace sightline::occlusion

@@ -58,10 +58,17 @@ struct DepthTiles {
 /// A box that crosses the near plane, about the eye.
 void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
                       const std::array<float, 3>& high) noexcept;
+/// Where another triangle goes on at an edge, so that it is drawn tight: along the line x = at + slope·y that
+/// the other has, too, or, `through_near`, along the one that both find where the near plane cuts the edge.
+struct SeamLine {
+  enum class Kind : std::uint8_t { none, given, through_near };
+  Kind kind = Kind::none;
+  float at = 0, slope = 0;
+};
 /// A triangle that crosses the near plane, about the eye; drawn only if it turns that way on the image, 1 or
-/// -1, or whichever way it turns for 0.
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners,
-                           float way) noexcept;
+/// -1, or whichever way it turns for 0. Edge k goes from corner k to the next.
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners, float way,
+                           const std::array<SeamLine, 3>& seams) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// Allocates until it has seen its largest mesh.

@@ -92,6 +92,18 @@ HWY_INLINE bool draw_quad(DepthTiles& tiles, const ReadyTriangles& ready, int i)
   return true;
 }
 
+// Where triangle i, which the near plane cuts, is to be drawn tight.
+HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::size_t i) {
+  std::array<SeamLine, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(ready.seam[k] >> i & 1)) continue;
+    const bool whole = ready.whole[k] >> i & 1;
+    out[k] = {whole ? SeamLine::Kind::given : SeamLine::Kind::through_near, ready.edge_at[k][i],
+              ready.slope[k][i]};
+  }
+  return out;
+}
+
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group) {
   ReadyTriangles ready;
@@ -110,7 +122,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     const bool one_sided = mesh.groups[group].one_sided >> i & 1;
     draw_clipped_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i),
-                          one_sided ? tiles.mesh.front : 0);
+                          one_sided ? tiles.mesh.front : 0, seams_of(ready, i));
   }
 }
 

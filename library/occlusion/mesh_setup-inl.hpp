@@ -28,9 +28,31 @@ HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopol
   return out;
 }
 
-// Which way a triangle turns on the image: 1 or -1; 0: too small, or not drawn from this side; kCut: the near
-// plane cuts it.
+// Which way a triangle turns on the image: 1 or -1; 0: too small, or not drawn from this side; kCut times
+// that: the near plane cuts it.
 constexpr float kCut = 2;
+
+// Which way triangles turn whose image is not known, by the side of their planes that the eye is on; 0 where
+// that is unsure.
+HWY_INLINE VF turn_by_plane(const DepthTiles& tiles, const Corners& corners) {
+  const F f;
+  const PixelRays& rays = tiles.rays;
+  const bool orthographic = tiles.projection.orthographic;
+  const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+  const VF along = orthographic ? dot(normal, rays.forward) : dot(normal, corners[0]);
+  const VF least = orthographic
+                       ? hn::Set(f, static_cast<float>(kEdgeOnSine))
+                       : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
+                                 hn::Set(f, static_cast<float>(kEdgeOnDistance)));
+  const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));
+  const VF to_right = hn::Set(f, rays.turns_right ? 1.0f : -1.0f);
+  return hn::IfThenElseZero(sure, hn::IfThenElse(hn::Lt(along, hn::Zero(f)), to_right, hn::Neg(to_right)));
+}
+
+// Not a number counts as behind.
+HWY_INLINE hn::Mask<F> before_near(const DepthTiles& tiles, const VPoints& corner) {
+  return hn::Ge(dot_row(tiles.rays.near_plane, corner), hn::Zero(F()));
+}
 
 HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image,
                         std::uint32_t one_sided) {
@@ -39,14 +61,15 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
   VF facing = hn::IfThenElse(hn::Gt(area, least), one,
                              hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
-  const auto from_behind = hn::And(mask_of(f, one_sided), hn::Eq(facing, hn::Set(f, -tiles.mesh.front)));
-  facing = hn::IfThenZeroElse(from_behind, facing);
-  // Not a number counts as behind, too.
-  const auto before = [&](std::size_t k)
-                          HWY_ATTR { return hn::Ge(dot_row(tiles.rays.near_plane, corners[k]), zero); };
-  const auto a = before(0), b = before(1), c = before(2);
-  return hn::IfThenElse(hn::And(hn::And(a, b), c), facing,
-                        hn::IfThenElseZero(hn::Or(hn::Or(a, b), c), hn::Set(f, kCut)));
+  const auto a = before_near(tiles, corners[0]), b = before_near(tiles, corners[1]),
+             c = before_near(tiles, corners[2]);
+  const auto whole = hn::And(hn::And(a, b), c), cut = hn::AndNot(whole, hn::Or(hn::Or(a, b), c));
+  facing = hn::IfThenElseZero(whole, facing);
+  if (!hn::AllFalse(f, cut))
+    facing = hn::IfThenElse(cut, hn::Mul(turn_by_plane(tiles, corners), hn::Set(f, kCut)), facing);
+  const auto from_behind =
+      hn::And(mask_of(f, one_sided), hn::Lt(hn::Mul(facing, hn::Set(f, tiles.mesh.front)), zero));
+  return hn::IfThenZeroElse(from_behind, facing);
 }
 
 // Found when first asked for.
@@ -70,6 +93,8 @@ struct ReadyTriangles {
   alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
   std::array<std::uint32_t, 3> on_right{}, steep{};  // a bit a triangle: the edge bounds it to the right
   std::uint32_t drawn = 0, cut = 0;
+  // Of cut ones: the edge is a seam; both its ends lie before the near plane.
+  std::array<std::uint32_t, 3> seam{}, whole{};
   // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
   std::uint32_t sound = 0, to_right = 0, flat = 0;
 };
@@ -190,14 +215,17 @@ HWY_INLINE Edges edges_of(const DepthTiles& tiles, const OccluderTopology& mesh,
 // Edge k of each triangle, moved inwards by `inset` where no other triangle that turns the same way goes on
 // there; what bounds the rows narrows `outline`.
 HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
-                         std::size_t k, VF inset, Rectangles& outline, ReadyTriangles& out) {
+                         std::size_t k, VF inset, std::uint32_t shared, Rectangles& outline,
+                         ReadyTriangles& out) {
   const F f;
   const I i32;
   const VF* y = c.image.y;
   const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
   const auto has_other = hn::Gt(other, hn::Set(i32, -1));
   const VF others = hn::GatherIndex(f, tiles.mesh.facing.data(), hn::Max(other, hn::Zero(i32)));
-  const auto seam = hn::And(hn::RebindMask(f, has_other), hn::Eq(others, c.facing));
+  const auto goes_on = hn::Gt(hn::Mul(others, c.facing), hn::Zero(f));
+  const auto seam = hn::Or(hn::And(hn::RebindMask(f, has_other), goes_on), mask_of(f, shared));
+  out.seam[k] |= bits_of(f, seam) << c.lane;
   const auto falls = hn::Gt(y[(k + 1) % 3], y[k]);
   const auto on_right = hn::Not(hn::Xor(falls, hn::Gt(c.facing, hn::Zero(f))));
   const auto [ax, ay, bx, by] = edges_of(tiles, mesh, c, k);
@@ -219,16 +247,48 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
   outline.bottom = hn::IfThenElse(hn::AndNot(above, bounds), bottom, outline.bottom);
 }
 
+// The edges of cut triangles that lie before the near plane from end to end.
+HWY_INLINE void set_whole_edges(const DepthTiles& tiles, const Candidates& c, ReadyTriangles& out) {
+  const F f;
+  const std::array<hn::Mask<F>, 3> before{before_near(tiles, c.corners[0]), before_near(tiles, c.corners[1]),
+                                          before_near(tiles, c.corners[2])};
+  for (std::size_t k = 0; k < 3; ++k)
+    out.whole[k] |= bits_of(f, hn::And(before[k], before[(k + 1) % 3])) << c.lane;
+}
+
+// Of a group's edges that have more than one other or a row of them, those where others go on all along; a
+// bit a triangle and edge. Facings are known.
+inline std::array<std::uint32_t, 3> shared_seams(const DepthTiles& tiles, const OccluderTopology& mesh,
+                                                 std::size_t group) {
+  std::array<std::uint32_t, 3> out{};
+  const float* facing = tiles.mesh.facing.data();
+  for (std::uint32_t i = mesh.groups[group].first_shared; i < mesh.groups[group].end_shared; ++i) {
+    const OccluderTopology::SharedEdge& edge = mesh.shared[i];
+    const float turns = facing[edge.triangle];
+    bool all = true, piece = false;
+    for (std::uint32_t o = edge.first; o < edge.end && all; ++o) {
+      const std::uint32_t other = mesh.others[o];
+      const float turn = turns * facing[other / 4];
+      piece = piece || (other & 2 ? turn < 0 : turn > 0);
+      if (other & 1) all = piece, piece = false;
+    }
+    out[edge.edge] |= std::uint32_t{all} << edge.triangle % kGroup;
+  }
+  return out;
+}
+
 // Triangles 16·group + lane … of the mesh.
 HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                        std::size_t group, std::size_t lane, ReadyTriangles& out) {
   const F f;
   Candidates c = candidates_of(tiles, mesh, transform, group, lane);
-  const std::uint32_t cut = bits_of(f, hn::Eq(c.facing, hn::Set(f, kCut)));
+  std::uint32_t cut = bits_of(f, hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut)));
   const VF exact = hn::Zero(f);
-  if (cut != 0) out.cut |= (cut & ~beyond_a_side(tiles, c.corners, {exact, exact, exact})) << lane;
-  if (!keep_those_that_show(tiles, c)) return;
-  set_planes(tiles, c, out);
+  if (cut != 0) cut &= ~beyond_a_side(tiles, c.corners, {exact, exact, exact});
+  out.cut |= cut << lane;
+  const bool some = keep_those_that_show(tiles, c);
+  if (!some && cut == 0) return;
+  if (some) set_planes(tiles, c, out);
   out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << lane;
   know_facing(tiles, mesh, transform, group);
   const OccluderTopology::Group& its = mesh.groups[group];
@@ -236,9 +296,12 @@ HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Ro
     know_facing(tiles, mesh, transform, mesh.beside[i]);
   const VF inset = inset_of(widest_of(c.outline));
   Rectangles outline = c.outline;
-  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, outline, out);
+  const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
+  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> lane, outline, out);
+  if (cut != 0) set_whole_edges(tiles, c, out);
   // Where only seams bound a corner of the outline, rounding may carry them beyond it.
-  store(shrunk(outline, inset), out, lane);
+  store(outline, out, lane);
+  if (!some) return;
   out.drawn |= bits_of(f, c.drawn) << lane;
 }
 

@@ -17,8 +17,11 @@ bool clip(const Vec4& plane, double slack, Polygon& polygon) {
     const glm::dvec3 &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
     const double at = side(a), next = side(b);
     if (out.count + 2 > Polygon::kMost) return false;
-    if (at >= 0) out.points[out.count++] = a;
-    if ((at >= 0) != (next >= 0)) out.points[out.count++] = a + (b - a) * (at / (at - next));
+    if (at >= 0) out.edge[out.count] = polygon.edge[i], out.points[out.count++] = a;
+    if ((at >= 0) != (next >= 0)) {
+      out.edge[out.count] = at >= 0 ? Polygon::kClipped : polygon.edge[i];
+      out.points[out.count++] = a + (b - a) * (at / (at - next));
+    }
   }
   polygon = out;
   return true;

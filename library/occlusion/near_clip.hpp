@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "library/occlusion/depth_tiles.hpp"
 
@@ -14,7 +15,11 @@ namespace sightline::occlusion {
 /// eye, and its plane must still be right before it.
 struct Polygon {
   static constexpr std::size_t kMost = 12;
+  static constexpr std::uint8_t kClipped = 0xff;
   std::array<glm::dvec3, kMost> points;
+  /// Of the edge from a point to the next: what whoever made the polygon wrote, or kClipped where a plane
+  /// made the edge.
+  std::array<std::uint8_t, kMost> edge{};
   std::size_t count = 0;
 };
 

@@ -43,7 +43,8 @@ void add_triangles(OccluderTopology& mesh, std::span<const Vec3> positions,
   }
 }
 
-// The second triangle at an edge makes both neighbours; a third parts them again.
+// The second triangle at an edge makes both neighbours, if it is wound as they are on a surface; a third
+// parts them again.
 void find_neighbours(OccluderTopology& mesh) {
   struct Sides {
     std::uint32_t triangle[2], edge[2], count = 0;
@@ -61,6 +62,9 @@ void find_neighbours(OccluderTopology& mesh) {
   }
   for (const auto& [key, sides] : edges) {
     if (sides.count != 2) continue;
+    // Two that are wound alike turn opposite ways on the image where one goes on where the other ends.
+    if (mesh.triangles[sides.triangle[0]][sides.edge[0]] == mesh.triangles[sides.triangle[1]][sides.edge[1]])
+      continue;
     mesh.neighbours[sides.triangle[0]][sides.edge[0]] = sides.triangle[1];
     mesh.neighbours[sides.triangle[1]][sides.edge[1]] = sides.triangle[0];
   }
@@ -109,6 +113,7 @@ Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
   sort_along_curve(*mesh.topology_);
   find_neighbours(*mesh.topology_);
   pair_up(*mesh.topology_);
+  find_shared_edges(*mesh.topology_);
   mesh.topology_->lay_out();
   return mesh;
 }

@@ -59,11 +59,19 @@ void OccluderTopology::lay_out() {
   corners.resize(count * 9 * kGroup);
   neighbour.assign(count * 3 * kGroup, -1);
   box.assign((count + 15) / 16 * 96, 0);
+  std::uint32_t first_shared = 0;
   for (std::size_t g = 0; g < count; ++g) {
     Group& group = groups[g];
     Bounds bounds;
     group.first_beside = static_cast<std::uint32_t>(beside.size());
     for (std::size_t i = 0; i < kGroup; ++i) store_triangle(*this, g, i, bounds);
+    group.first_shared = first_shared;
+    for (; first_shared < shared.size() && shared[first_shared].triangle / kGroup == g; ++first_shared) {
+      for (std::uint32_t i = shared[first_shared].first; i < shared[first_shared].end; ++i) {
+        if (others[i] / 4 / kGroup != g) beside.push_back(others[i] / 4 / kGroup);
+      }
+    }
+    group.end_shared = first_shared;
     std::sort(beside.begin() + group.first_beside, beside.end());
     beside.erase(std::unique(beside.begin() + group.first_beside, beside.end()), beside.end());
     group.end_beside = static_cast<std::uint32_t>(beside.size());

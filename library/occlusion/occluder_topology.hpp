@@ -18,6 +18,17 @@ struct OccluderTopology {
   /// Of edge k, from corner k to corner k+1: the only other triangle there, or kNone.
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  /// An edge without such a neighbour, at which others go on all the same: three and more triangles that
+  /// share it, some that are wound the other way, or a row of them whose edges lie exactly on it
+  /// (T-junctions). `others` holds them piece by piece of the edge; of each piece one must go on for the seam
+  /// to be tight.
+  struct SharedEdge {
+    std::uint32_t triangle = 0, edge = 0;
+    std::uint32_t first = 0, end = 0;  ///< in `others`
+  };
+  std::vector<SharedEdge> shared;  ///< by triangle
+  /// Triangle · 4, + 2 where it is wound the other way, + 1 for the last of a piece.
+  std::vector<std::uint32_t> others;
   /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
   /// diagonal.
   std::vector<std::uint8_t> first_half;
@@ -30,6 +41,7 @@ struct OccluderTopology {
     std::uint32_t first_half = 0;                    ///< a bit a triangle
     std::uint32_t one_sided = 0;                     ///< the same
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
+    std::uint32_t first_shared = 0, end_shared = 0;  ///< in `shared`
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …
   std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
@@ -45,6 +57,8 @@ struct OccluderTopology {
 
 /// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
 void sort_along_curve(OccluderTopology& mesh);
+/// Finds `shared`. Neighbours are known, and triangles numbered for good.
+void find_shared_edges(OccluderTopology& mesh);
 /// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
 /// places.
 void pair_up(OccluderTopology& mesh);
