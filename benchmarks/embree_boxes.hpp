@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <span>
+#include <vector>
 
 #include <sightline/rays.hpp>
 #include <sightline/workbench/scene.hpp>
@@ -12,17 +13,23 @@
 
 namespace sightline::benchmarks {
 
+/// A box as Embree's callbacks find it: in one line of memory.
+struct alignas(32) EmbreeBox {
+  Box box;
+};
+
 class EmbreeBoxes {
 public:
-  EmbreeBoxes(const Boxes& boxes, RTCSceneFlags flags);
+  /// `config` as rtcNewDevice takes it.
+  EmbreeBoxes(const Boxes& boxes, RTCSceneFlags flags, const char* config = "threads=1");
   ~EmbreeBoxes();
   EmbreeBoxes(const EmbreeBoxes&) = delete;
   EmbreeBoxes& operator=(const EmbreeBoxes&) = delete;
 
-  void cast(std::span<const Ray> rays, std::span<const PreparedRay> prepared, rays::RayHits& hits) const;
+  [[nodiscard]] RTCScene scene() const { return scene_; }
 
 private:
-  const Boxes& boxes_;
+  std::vector<EmbreeBox> boxes_;
   RTCDevice device_;
   RTCScene scene_;
 };

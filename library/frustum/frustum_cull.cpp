@@ -41,33 +41,49 @@ HWY_INLINE VF distance(const WidePlane& plane, const Points& p) {
   return hn::Add(geometry::HWY_NAMESPACE::dot(plane.normal, p), plane.distance);
 }
 
-// Calls test(first) -> mask for each vector and packs the indices that pass; the rest that fills no vector
-// goes through `test_one`.
-template <class Test, class TestOne>
+// What is looked at together: a cache line of each array.
+constexpr std::size_t kGroup = 16;
+constexpr std::size_t kVectors = (kGroup + hn::MaxLanes(F()) - 1) / hn::MaxLanes(F());
+
+// Writes the indices of what no plane has behind it. sides(i) and others(i) tell of the vector from i on what
+// lies behind one of some planes; `keep` of one element, where they fill no group. A group that the first
+// planes reject is done with: next to none where ids lie anyhow, most where neighbours have neighbouring ids,
+// so that the branch is foreseen.
+template <class Sides, class Others, class Keep>
 HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY_RESTRICT out,
-                            const Test& test, const TestOne& test_one) {
+                            const Sides& sides, const Others& others, const Keep& keep) {
   const F f;
   const U u;
   const std::size_t lanes = hn::Lanes(f);
-  std::size_t kept = 0, i = 0;
-  const auto one_by_one = [&](std::size_t end) {
-    for (; i < end; ++i) {
+  // By value, so that neither count lives in memory through the loop below.
+  const auto one_by_one = [&keep, out](std::size_t first, std::size_t end, std::size_t kept) {
+    for (std::size_t i = first; i < end; ++i) {
       out[kept] = static_cast<ObjectId>(i);
-      kept += test_one(i) ? 1 : 0;
+      kept += keep(i) ? 1 : 0;
     }
+    return kept;
   };
   // Large arrays start alike within a cache line: from the next line on no load crosses two.
   const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
-  one_by_one(std::min(count, (lanes - behind_line) % lanes));
-  for (; i + lanes <= count; i += lanes) {
-    const auto mask = test(i);
-    if (hn::AllFalse(f, mask)) continue;
-    const auto ids = hn::Iota(u, static_cast<std::uint32_t>(i));
-    const auto keep = hn::RebindMask(u, mask);
-    kept += geometry::HWY_NAMESPACE::store_kept(u, ids, keep, out + kept);
+  std::size_t i = std::min(count, (lanes - behind_line) % lanes);
+  std::size_t kept = one_by_one(0, i, 0);
+  auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
+  const auto step = hn::Set(u, static_cast<std::uint32_t>(kGroup));
+  for (; i + kGroup <= count; i += kGroup) {
+    const auto group_ids = first_ids;
+    first_ids = hn::Add(first_ids, step);
+    hn::Mask<F> gone[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) gone[v] = sides(i + v * lanes);
+    auto all = gone[0];
+    for (std::size_t v = 1; v < kVectors; ++v) all = hn::And(all, gone[v]);
+    if (hn::AllTrue(f, all)) continue;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const auto left = hn::Not(hn::Or(gone[v], others(i + v * lanes)));
+      const auto ids = hn::Add(group_ids, hn::Set(u, static_cast<std::uint32_t>(v * lanes)));
+      kept += geometry::HWY_NAMESPACE::store_kept(u, ids, hn::RebindMask(u, left), out + kept);
+    }
   }
-  one_by_one(count);
-  return kept;
+  return one_by_one(i, count, kept);
 }
 
 // The corner of each box that lies farthest along a plane's normal: one choice for all boxes.
@@ -87,16 +103,17 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
                   p4 = spread(p[4]), p5 = spread(p[5]);
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
-  const auto at = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
-    return distance(plane, {hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)});
+  const auto behind = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
+    const Points corner{hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)};
+    return hn::Lt(distance(plane, corner), hn::Zero(f));
   };
   return pack(
       boxes.count, boxes.min_x, out,
+      // Left and right reject what lies behind the eye, too.
+      [&](std::size_t i) HWY_ATTR { return hn::Or(behind(p0, n0, i), behind(p1, n1, i)); },
       [&](std::size_t i) HWY_ATTR {
-        // The smallest distance of all planes decides: one comparison instead of six.
-        const VF a = hn::Min(at(p0, n0, i), at(p1, n1, i)), b = hn::Min(at(p2, n2, i), at(p3, n3, i)),
-                 c = hn::Min(at(p4, n4, i), at(p5, n5, i));
-        return hn::Not(hn::Lt(hn::Min(hn::Min(a, b), c), hn::Zero(f)));
+        return hn::Or(hn::Or(behind(p2, n2, i), behind(p3, n3, i)),
+                      hn::Or(behind(p4, n4, i), behind(p5, n5, i)));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Box{{boxes.min_x[i], boxes.min_y[i], boxes.min_z[i]},
@@ -109,15 +126,24 @@ std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* 
   const auto& p = frustum.planes;
   const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
                   p4 = spread(p[4]), p5 = spread(p[5]);
+  const auto at = [&](std::size_t i) HWY_ATTR {
+    return Points{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
+  };
+  const auto deepest = [&](std::size_t i) HWY_ATTR {
+    return hn::Neg(hn::Mul(hn::LoadU(f, s.radius + i), hn::Set(f, geometry::kRadiusGrowth)));
+  };
   return pack(
       s.count, s.x, out,
       [&](std::size_t i) HWY_ATTR {
-        const Points at{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
-        const VF deepest = hn::Neg(hn::Mul(hn::LoadU(f, s.radius + i), hn::Set(f, geometry::kRadiusGrowth)));
-        const VF a = hn::Min(distance(p0, at), distance(p1, at)),
-                 b = hn::Min(distance(p2, at), distance(p3, at)),
-                 c = hn::Min(distance(p4, at), distance(p5, at));
-        return hn::Not(hn::Lt(hn::Min(hn::Min(a, b), c), deepest));
+        const Points c = at(i);
+        const VF d = deepest(i);
+        return hn::Or(hn::Lt(distance(p0, c), d), hn::Lt(distance(p1, c), d));
+      },
+      [&](std::size_t i) HWY_ATTR {
+        const Points c = at(i);
+        const VF d = deepest(i);
+        return hn::Or(hn::Or(hn::Lt(distance(p2, c), d), hn::Lt(distance(p3, c), d)),
+                      hn::Or(hn::Lt(distance(p4, c), d), hn::Lt(distance(p5, c), d)));
       },
       [&](std::size_t i) {
         return overlaps(frustum, Sphere{{s.x[i], s.y[i], s.z[i]}, s.radius[i]});

@@ -13,9 +13,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include <sightline/frustum.hpp>
 #include <sightline/types.hpp>
@@ -28,9 +30,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A bit a lane, from the lowest; of at most 32 lanes.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
+#if HWY_TARGET == HWY_WASM  // where Highway writes the lanes to memory and reads them one by one
+  if constexpr (hn::MaxLanes(D()) == 4 && sizeof(hn::TFromD<D>) == 4) {
+    (void)d;
+    return static_cast<std::uint32_t>(wasm_i32x4_bitmask(static_cast<v128_t>(mask.raw)));
+  }
+#endif
+  // Read back as wide as it is written, or else the read waits until the write has reached memory.
+  constexpr std::size_t kLanes = hn::MaxLanes(D());
+  using Wide = std::conditional_t<kLanes <= 16, std::uint16_t, std::uint32_t>;
+  using Bits = std::conditional_t<kLanes <= 8, std::uint8_t, Wide>;
+  std::uint8_t bytes[8];
   hn::StoreMaskBits(d, mask, bytes);
-  std::uint32_t bits;
+  Bits bits;
   std::memcpy(&bits, bytes, sizeof bits);
   return bits & static_cast<std::uint32_t>((std::uint64_t{1} << hn::Lanes(d)) - 1);
 }
@@ -46,11 +58,40 @@ HWY_INLINE hn::Mask<D> mask_of(D d, std::uint64_t bits) {
 
 // Writes the values of the mask's lanes one after another and returns how many there are; a whole vector is
 // written. Packed in a register first: the packing store is microcoded on some processors.
+#if HWY_TARGET == HWY_WASM  // by bits_of(), see there
+struct PackedBytes {
+  alignas(16) std::uint8_t from[16][16] = {};
+
+  constexpr PackedBytes() {
+    for (std::uint32_t bits = 0; bits < 16; ++bits) {
+      std::uint32_t to = 0;
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        if ((bits >> lane & 1) == 0) continue;
+        for (std::uint32_t byte = 0; byte < 4; ++byte)
+          from[bits][4 * to + byte] = static_cast<std::uint8_t>(4 * lane + byte);
+        ++to;
+      }
+    }
+  }
+};
+inline constexpr PackedBytes kPackedBytes;
+
+template <class D>
+HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
+  static_assert(hn::MaxLanes(D()) == 4);
+  const hn::Repartition<std::uint8_t, D> bytes;
+  const std::uint32_t bits = bits_of(d, keep);
+  const auto from = hn::Load(bytes, kPackedBytes.from[bits]);
+  hn::StoreU(hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, values), from)), d, out);
+  return static_cast<std::size_t>(std::popcount(bits));
+}
+#else
 template <class D>
 HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
   hn::StoreU(hn::Compress(values, keep), d, out);
   return hn::CountTrue(d, keep);
 }
+#endif
 
 // Lets `from` point at a vector of values each: where fewer than a vector's are left they are copied to
 // `room`, the last one repeated, rather than read beyond.

@@ -17,6 +17,7 @@ namespace sightline::rays {
 struct WideStack {
   std::vector<std::uint64_t> entries;
   std::vector<std::uint32_t> rays;
+  std::vector<std::uint32_t> alone;  ///< rays that nobody goes along with
 };
 
 /// Casts the rays whose indices stand in `order`, or all as they stand where it is empty; neighbours in that

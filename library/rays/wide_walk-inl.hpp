@@ -72,6 +72,16 @@ HWY_INLINE std::uint64_t waiting(float distance, std::uint32_t child) {
   return std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 | child;
 }
 
+// The nearest box so far, of equally near ones the lowest.
+struct WideResult {
+  float distance;
+  ObjectId object;
+
+  void offer(float t, ObjectId id) {
+    if (t < distance || (t == distance && id < object)) distance = t, object = id;
+  }
+};
+
 struct Work {
   std::uint64_t inner = 0, leaves = 0;  // nodes looked at, times rays
 };

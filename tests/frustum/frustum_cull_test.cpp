@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "support/random_views.hpp"
 
@@ -94,6 +95,41 @@ TEST(FrustumCull, ReadsAnyLayoutAndKeepsWhatIsLargerThanTheView) {
       ASSERT_LT(boxes.size(), 333u);
       ASSERT_EQ(std::vector(out.begin(), out.begin() + *cull_boxes(frustum, structs, out)), boxes);
       ASSERT_EQ(std::vector(out.begin(), out.begin() + *cull_spheres(frustum, spheres, out)), round);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+// Nobody promises anything of them, but what one processor keeps the others keep, wherever in the array it
+// stands.
+TEST(FrustumCull, JudgesWhatIsNoNumberAlikeForEverySimdTarget) {
+  scene::Random random(4);
+  World world = random_world(random, 777);
+  const float odd[] = {std::nanf(""),
+                       -std::nanf(""),
+                       std::numeric_limits<float>::infinity(),
+                       -std::numeric_limits<float>::infinity(),
+                       std::numeric_limits<float>::max(),
+                       -0.0f};
+  for (std::size_t i = 0; i < 777; i += 2) {
+    const auto some = [&] { return odd[random.below(6)]; };
+    Boxes& b = world.boxes;
+    std::vector<float>* const columns[] = {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z};
+    for (std::uint32_t n = 1 + random.below(3); n > 0; --n) (*columns[random.below(6)])[i] = some();
+    (random.below(2) ? world.x : world.radius)[i] = some();
+  }
+  for (int v = 0; v < 40; ++v) {
+    const Frustum frustum = make_frustum(test::random_view(random, test::kAround));
+    std::vector<ObjectId> expected_boxes, expected_spheres;
+    for (ObjectId i = 0; i < 777; ++i) {
+      if (overlaps(frustum, world.boxes[i])) expected_boxes.push_back(i);
+      if (overlaps(frustum, Sphere{{world.x[i], world.y[i], world.z[i]}, world.radius[i]}))
+        expected_spheres.push_back(i);
+    }
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      ASSERT_EQ(boxes_in(frustum, world), expected_boxes) << hwy::TargetName(target);
+      ASSERT_EQ(spheres_in(frustum, world), expected_spheres) << hwy::TargetName(target);
     }
   }
   hwy::SetSupportedTargetsForTest(0);

@@ -257,6 +257,17 @@ void print_rays(const std::vector<NamedView>& views) {
     print("rays.objects." + named.name, hits.object);
     print("rays.distances." + named.name, hits.distance);
   }
+  // From anywhere, any way: few go along with their neighbours.
+  grid.prepared.clear(), grid.order.clear();
+  for (std::uint32_t i = 0; i < 4001; ++i) {
+    const Vec3 to{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+    grid.prepared.emplace_back(Ray{random.inside(kSpace), to});
+    grid.order.push_back(i);
+  }
+  grid.rays.resize(grid.prepared.size());
+  rays::cast_wide(tree, grid, stack, hits);
+  print("rays.objects.anywhere", hits.object);
+  print("rays.distances.anywhere", hits.distance);
 }
 
 }  // namespace

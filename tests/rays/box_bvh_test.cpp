@@ -1,6 +1,7 @@
 #include <sightline/rays.hpp>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <vector>
@@ -55,6 +56,47 @@ TEST(BoxBvh, MeetsWhatTestingEveryBoxMeets) {
     boxes = random_boxes(random, 400);
     ASSERT_TRUE(bvh.refit(boxes));
   }
+}
+
+// Neighbours go down the tree together: from one point and from near ones, into one octant and over its
+// borders, along axes, so that rays part from their packet at once, later and never.
+TEST(BoxBvh, MeetsTheSameWithNeighboursTogetherForEverySimdTarget) {
+  Random random(5);
+  const std::vector<Box> boxes = random_boxes(random, 600);
+  std::vector<Ray> rays;
+  for (int bundle = 0; bundle < 250; ++bundle) {
+    const Vec3 from = random.inside(test::kAround), way = bundle % 5 ? random.direction() : Vec3{0, 0, 1};
+    const float spread = bundle % 3 ? 0.02f : 0.4f, apart = bundle % 2 ? 2.0f : 0.0f;
+    const auto about = [&](float at, float most) { return at + random.between(-1, 1) * most; };
+    for (int i = 0; i < 16; ++i) {
+      rays.push_back({{about(from.x, apart), about(from.y, apart), about(from.z, apart)},
+                      {about(way.x, spread), about(way.y, spread), about(way.z, spread)}});
+      if (i == bundle % 17) rays.back().direction.x = 0;
+      if (i == bundle % 19) rays.back().max_distance = 50;
+      if (i == bundle % 64) rays.back().origin.y = std::nanf("");
+    }
+  }
+  rays.resize(rays.size() - 3);  // the last packet is not full
+  std::vector<std::pair<ObjectId, float>> expected;
+  for (const Ray& ray : rays)
+    expected.push_back(std::isnan(ray.origin.y) ? std::pair{kNoObject, -1.0f} : nearest(boxes, ray));
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    BoxBvh bvh;
+    ASSERT_TRUE(bvh.build(boxes));
+    std::vector<ObjectId> objects(rays.size());
+    std::vector<float> distances(rays.size());
+    ASSERT_TRUE(bvh.cast(rays, objects, distances));
+    std::size_t hits = 0;
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+      ASSERT_EQ(objects[r], expected[r].first) << hwy::TargetName(target) << ", ray " << r;
+      ASSERT_EQ(distances[r], expected[r].second) << hwy::TargetName(target) << ", ray " << r;
+      hits += objects[r] != kNoObject;
+    }
+    EXPECT_GT(hits, rays.size() / 4);
+    EXPECT_LT(hits, rays.size());
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(BoxBvh, FindsASetThatAViewSees) {
