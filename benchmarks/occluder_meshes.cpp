@@ -62,7 +62,9 @@ public:
 class Ours : public Contestant {
 public:
   Ours(const Occluders& occluders, Sides sides)
-      : mesh_(or_throw(OccluderMesh::make(occluders.positions, occluders.indices, sides))) {}
+      : mesh_(
+            or_throw(OccluderMesh::make(occluders.positions, occluders.indices, sides, TJunctions::closed))) {
+  }
   std::string name() const override { return "sightline"; }
   void draw(const Camera&, const View& view) override {
     or_throw(buffer_.begin({view, {}}));

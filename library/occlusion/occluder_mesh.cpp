@@ -105,15 +105,15 @@ OccluderMesh& OccluderMesh::operator=(OccluderMesh&& other) noexcept {
 }
 
 Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
-                                        std::span<const std::uint32_t> indices,
-                                        std::span<const Sides> sides) {
+                                        std::span<const std::uint32_t> indices, std::span<const Sides> sides,
+                                        TJunctions junctions) {
   if (const Status sound = check_mesh(positions, indices, sides); !sound) return sound;
   OccluderMesh mesh;
   add_triangles(*mesh.topology_, positions, indices, sides);
   sort_along_curve(*mesh.topology_);
   find_neighbours(*mesh.topology_);
   pair_up(*mesh.topology_);
-  find_shared_edges(*mesh.topology_);
+  find_shared_edges(*mesh.topology_, junctions == TJunctions::closed);
   mesh.topology_->lay_out();
   return mesh;
 }

@@ -19,9 +19,9 @@ struct OccluderTopology {
   std::vector<std::array<std::uint32_t, 3>> neighbours;
   static constexpr std::uint32_t kNone = 0xffffffffu;
   /// An edge without such a neighbour, at which others go on all the same: three and more triangles that
-  /// share it, some that are wound the other way, or a row of them whose edges lie exactly on it
-  /// (T-junctions). `others` holds them piece by piece of the edge; of each piece one must go on for the seam
-  /// to be tight.
+  /// share it, some that are wound the other way, or, if asked for, a row of them whose edges lie exactly on
+  /// it (T-junctions). `others` holds them piece by piece; of each piece one must go on for the seam to be
+  /// tight.
   struct SharedEdge {
     std::uint32_t triangle = 0, edge = 0;
     std::uint32_t first = 0, end = 0;  ///< in `others`
@@ -57,8 +57,9 @@ struct OccluderTopology {
 
 /// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
 void sort_along_curve(OccluderTopology& mesh);
-/// Finds `shared`. Neighbours are known, and triangles numbered for good.
-void find_shared_edges(OccluderTopology& mesh);
+/// Finds `shared`, T-junctions only where they are to be closed. Neighbours are known, and triangles numbered
+/// for good.
+void find_shared_edges(OccluderTopology& mesh, bool close_junctions);
 /// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
 /// places.
 void pair_up(OccluderTopology& mesh);

@@ -76,7 +76,8 @@ struct Cover {
 
 class Covers {
 public:
-  explicit Covers(const OccluderTopology& mesh, double reach) : mesh_(mesh), reach_(reach) {}
+  Covers(const OccluderTopology& mesh, double reach, bool junctions)
+      : mesh_(mesh), reach_(reach), junctions_(junctions) {}
 
   // Those of edge i of all open ones, which are sorted by line and place.
   const std::vector<Cover>& of(std::span<const OpenEdge> edges, std::size_t i) {
@@ -86,12 +87,21 @@ public:
     for (std::size_t j = first; j < end; ++j) {
       const OpenEdge& other = edges[j];
       if (other.line != edge.line || other.triangle == edge.triangle) continue;
+      if (!junctions_ && !same_ends(edge, other)) continue;
       if (other.low < edge.high && other.high > edge.low) add(edge, other);
     }
     return found_;
   }
 
 private:
+  bool same_ends(const OpenEdge& a, const OpenEdge& b) const {
+    const auto end = [&](const OpenEdge& of, std::uint32_t k) {
+      return mesh_.triangles[of.triangle][(of.edge + k) % 3];
+    };
+    const auto is = [&](std::uint32_t k) { return end(a, 0) == end(b, k) && end(a, 1) == end(b, 1 - k); };
+    return is(0) || is(1);
+  }
+
   glm::dvec3 point(const OpenEdge& of, std::uint32_t end) const {
     return to_double(mesh_.positions[mesh_.triangles[of.triangle][(of.edge + end) % 3]]);
   }
@@ -113,6 +123,7 @@ private:
 
   const OccluderTopology& mesh_;
   double reach_;
+  bool junctions_;
   std::vector<Cover> found_;
 };
 
@@ -137,12 +148,12 @@ bool append_pieces(const std::vector<Cover>& covers, std::vector<double>& ends,
 
 }  // namespace
 
-void find_shared_edges(OccluderTopology& mesh) {
+void find_shared_edges(OccluderTopology& mesh, bool close_junctions) {
   double reach = 1e-30;
   for (const Vec3& p : mesh.positions)
     reach = std::max({reach, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
   const std::vector<OpenEdge> edges = open_edges(mesh, reach);
-  Covers covers(mesh, reach);
+  Covers covers(mesh, reach, close_junctions);
   std::vector<double> ends;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.others.size());
