@@ -109,8 +109,11 @@ private:
 
 }  // namespace
 
-Shell convex_shell(const Solid& solid, std::size_t most_triangles) {
-  Hull hull(solid.points());
+Shell convex_shell(const Solid& solid, std::size_t most_triangles, double from_lid) {
+  std::vector<glm::dvec3> points = solid.points();
+  if (solid.has_lid())
+    std::erase_if(points, [&](const glm::dvec3& p) { return solid.distance_to_lid(p) < from_lid; });
+  Hull hull(points);
   if (hull.faces().size() > most_triangles) return {};
   while (hull.grow(most_triangles)) {
   }
@@ -121,7 +124,7 @@ Shell convex_shell(const Solid& solid, std::size_t most_triangles) {
     auto& t = out.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [at, added] = place.try_emplace(f.corners[k], static_cast<std::uint32_t>(out.points.size()));
-      if (added) out.points.push_back(solid.points()[f.corners[k]]), middle += out.points.back();
+      if (added) out.points.push_back(points[f.corners[k]]), middle += out.points.back();
       t[k] = at->second;
     }
   }

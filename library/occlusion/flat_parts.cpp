@@ -33,7 +33,7 @@ private:
 
   const MeshParts& mesh_;
   std::vector<std::uint8_t> taken_;
-  std::vector<std::uint32_t> region_;  // on one plane
+  std::vector<std::uint32_t> region_;     // on one plane
   std::vector<std::uint32_t> of_region_;  // the seed of the region that a triangle lies in
   double tolerance_ = 0;
   std::vector<Candidate> out_;
@@ -77,7 +77,8 @@ void FlatParts::grow(std::uint32_t seed, std::uint32_t part) {
   taken_[seed] = 1, of_region_[seed] = seed;
   for (std::size_t i = 0; i < region_.size(); ++i) {
     for (const std::uint32_t other : mesh_.neighbours[region_[i]]) {
-      if (other == MeshParts::kNone || taken_[other] || mesh_.one_sided[other] != mesh_.one_sided[seed]) continue;
+      if (other == MeshParts::kNone || taken_[other] || mesh_.one_sided[other] != mesh_.one_sided[seed])
+        continue;
       if (!on_plane(other)) continue;
       taken_[other] = 1, of_region_[other] = seed;
       region_.push_back(other);

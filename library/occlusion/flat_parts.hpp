@@ -12,8 +12,8 @@ namespace sightline::occlusion {
 struct Candidate {
   std::array<Vec3, 3> corners;
   Sides sides = Sides::both;
-  double area = 0;          ///< m²
-  std::uint32_t part = 0;   ///< of MeshParts::parts
+  double area = 0;         ///< m²
+  std::uint32_t part = 0;  ///< of MeshParts::parts
 };
 
 double area_of(const std::array<Vec3, 3>& corners);

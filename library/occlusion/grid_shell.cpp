@@ -29,7 +29,9 @@ private:
       }
     }
   }
-  [[nodiscard]] float depth(int x, int y, int z) const { return grid_.depth[SolidGrid::index(x, y, z)] - kBelow; }
+  [[nodiscard]] float depth(int x, int y, int z) const {
+    return grid_.depth[SolidGrid::index(x, y, z)] - kBelow;
+  }
 
   // The middle of where the cell's edges are crossed.
   void add_point(int x, int y, int z) {
@@ -44,7 +46,8 @@ private:
         const float a = depth(from[0], from[1], from[2]), b = depth(to[0], to[1], to[2]);
         if ((a > 0) == (b > 0)) continue;
         const double t = double{a} / (double{a} - double{b});
-        sum += (1 - t) * SolidGrid::place(from[0], from[1], from[2]) + t * SolidGrid::place(to[0], to[1], to[2]);
+        sum +=
+            (1 - t) * SolidGrid::place(from[0], from[1], from[2]) + t * SolidGrid::place(to[0], to[1], to[2]);
         ++count;
       }
     }

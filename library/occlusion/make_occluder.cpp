@@ -20,13 +20,15 @@ using geometry::to_vec3;
 
 namespace {
 
-constexpr std::uint32_t kMost = 4096;         // triangles, and boxes
-constexpr double kLeastPart = 0.01;           // of the mesh's size: smaller parts hide too little
-constexpr double kLeastTriangle = 0.002;      // the same of single triangles
-constexpr std::uint32_t kLeastShare = 4;      // triangles that a part is worth beginning with
+constexpr std::uint32_t kMost = 4096;     // triangles, and boxes
+constexpr double kLeastPart = 0.01;       // of the mesh's size: smaller parts hide too little
+constexpr double kLeastTriangle = 0.002;  // the same of single triangles
+constexpr double kFromLid = 0.15;  // of a part's box: so far the hull of an open one keeps from its edges
+constexpr std::uint32_t kLeastShare = 4;  // triangles that a part is worth beginning with
 
 void keep_largest(std::vector<Candidate>& candidates, std::size_t most) {
-  std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
+  std::ranges::stable_sort(candidates,
+                           [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
   if (candidates.size() > most) candidates.resize(most);
 }
 
@@ -49,7 +51,7 @@ std::vector<Candidate> sound_triangles(const Solid& solid, const Shell& shell, s
     if (c.area > 0 && solid.holds(rounded)) out.push_back(c);
   }
   // All of a closed shell is seen from its front; of one with holes the far side shows through them.
-  if (out.size() == shell.triangles.size() && out.size() <= most) {
+  if (solid.has_lid() || (out.size() == shell.triangles.size() && out.size() <= most)) {
     for (Candidate& c : out) c.sides = Sides::front;
   }
   keep_largest(out, most);
@@ -76,7 +78,7 @@ private:
   MeshPart all_;  // the box around all of it
   Occluder out_;
   std::vector<Candidate> solid_, flat_;
-  std::optional<Solid> closed_;     // the part at hand
+  std::optional<Solid> closed_;    // the part at hand
   std::optional<SolidGrid> grid_;  // of it
 };
 
@@ -101,13 +103,15 @@ Shell shell_of_boxes(std::span<const Bounds3> boxes) {
 // The best of what lies inside the part at hand: its convex hull where it is convex, else what the grid sees,
 // as a surface or as boxes.
 std::vector<Candidate> Maker::shell_of(const MeshPart& part, std::uint32_t most) {
-  std::vector<Candidate> best = sound_triangles(*closed_, convex_shell(*closed_, most), most);
-  if (!best.empty() && best[0].sides == Sides::front) return best;
+  const Shell hull = convex_shell(*closed_, most);
+  std::vector<Candidate> best = sound_triangles(*closed_, hull, most);
+  if (!hull.triangles.empty() && best.size() == hull.triangles.size()) return best;
   if (!grid_) grid_.emplace(*closed_);
   Shell shell = grid_shell(*grid_);
   simplify(*closed_, SolidGrid::kStep, most, shell);
   const Shell boxes = shell_of_boxes(boxes_inside(*closed_, *grid_, most / 12));
-  for (const Shell& proposed : {shell, boxes}) {
+  const Shell far_hull = convex_shell(*closed_, most, kFromLid);
+  for (const Shell& proposed : {shell, boxes, far_hull}) {
     std::vector<Candidate> other = sound_triangles(*closed_, proposed, most);
     if (covers_more(part, other, best)) best = std::move(other);
   }
@@ -119,8 +123,10 @@ void Maker::add_boxes() {
   for (const Bounds3& box : boxes_inside(*closed_, *grid_, options_.most_boxes - out_.boxes.size())) {
     const Box rounded{to_vec3(closed_->to_mesh(box.low)), to_vec3(closed_->to_mesh(box.high))};
     Bounds3 exact;
-    exact.low = closed_->to_solid(to_double(rounded.min)), exact.high = closed_->to_solid(to_double(rounded.max));
-    if (glm::all(glm::lessThan(exact.low, exact.high)) && closed_->holds(exact)) out_.boxes.push_back(rounded);
+    exact.low = closed_->to_solid(to_double(rounded.min)),
+    exact.high = closed_->to_solid(to_double(rounded.max));
+    if (glm::all(glm::lessThan(exact.low, exact.high)) && closed_->holds(exact))
+      out_.boxes.push_back(rounded);
   }
 }
 
@@ -132,14 +138,15 @@ void Maker::take_whole_part(const MeshPart& part, std::vector<Candidate>& flat, 
   keep_largest(flat, most);
   closed_.reset(), grid_.reset();
   const bool wants_boxes = out_.boxes.size() < options_.most_boxes;
-  if (part.inside != Inside::never && (!whole || wants_boxes)) closed_.emplace(mesh_, part);
+  if (!whole || (wants_boxes && part.inside != Inside::never)) closed_.emplace(mesh_, part);
   if (closed_ && closed_->thin()) closed_.reset();
   std::vector<Candidate> shell;
-  if (closed_ && !whole) shell = shell_of(part, most);
+  if (closed_ && !whole && most > 0) shell = shell_of(part, most);
   const bool better = covers_more(part, shell, flat);
-  (better ? solid_ : flat_).insert((better ? solid_ : flat_).end(), better ? shell.begin() : flat.begin(),
-                                   better ? shell.end() : flat.end());
-  if (closed_ && wants_boxes) add_boxes();
+  (better ? solid_ : flat_)
+      .insert((better ? solid_ : flat_).end(), better ? shell.begin() : flat.begin(),
+              better ? shell.end() : flat.end());
+  if (closed_ && !closed_->has_lid() && wants_boxes) add_boxes();
 }
 
 // Triangles are shared out by how large parts are.
@@ -159,7 +166,8 @@ void Maker::choose_parts() {
   for (std::size_t i = 0; i < count; ++i) {
     const auto left = static_cast<std::uint32_t>(options_.most_triangles - solid_.size() - flat_.size());
     const double its = mesh_.parts[i].size();
-    const auto share = size > 0 ? static_cast<std::uint32_t>(std::lround(left * std::min(1.0, its / size))) : left;
+    const auto share =
+        size > 0 ? static_cast<std::uint32_t>(std::lround(left * std::min(1.0, its / size))) : left;
     take_whole_part(mesh_.parts[i], flat[i], whole ? left : std::min(left, std::max(share, kLeastShare)));
     size -= its;
   }

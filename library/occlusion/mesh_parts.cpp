@@ -117,7 +117,8 @@ void find_parts(MeshParts& mesh) {
     if (its.balanced) mesh.parts[p].inside = some_front[p] ? Inside::turned_out : Inside::turned;
     if (!its.balanced && its.even && !some_front[p]) mesh.parts[p].inside = Inside::odd_crossings;
   }
-  std::ranges::stable_sort(mesh.parts, [](const MeshPart& a, const MeshPart& b) { return a.size() > b.size(); });
+  std::ranges::stable_sort(mesh.parts,
+                           [](const MeshPart& a, const MeshPart& b) { return a.size() > b.size(); });
 }
 
 }  // namespace

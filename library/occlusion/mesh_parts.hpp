@@ -16,10 +16,11 @@ namespace sightline::occlusion {
 /// How it is told whether a point lies inside a part: by counting, along any line out of it, how often the
 /// line leaves the part more than it enters it.
 enum class Inside : std::uint8_t {
-  never,          ///< the part is open
-  turned,         ///< where the count is not 0: closed, edges are used as often one way as the other
-  turned_out,     ///< where it is positive: the same of a part of which some triangles are drawn in front alone
-  odd_crossings,  ///< where the line meets it an odd number of times: each edge has an even number of triangles
+  never,       ///< the part is open
+  turned,      ///< where the count is not 0: closed, edges are used as often one way as the other
+  turned_out,  ///< where it is positive: the same of a part of which some triangles are drawn in front alone
+  odd_crossings,  ///< where the line meets it an odd number of times: each edge has an even number of
+                  ///< triangles
 };
 
 struct MeshPart {

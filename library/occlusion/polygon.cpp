@@ -58,7 +58,8 @@ double area_of(const Outline2& outline, const Loop& loop) {
 
 // Whether the open segments cross, or touch at their insides.
 bool cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
-  const double ab_c = turn_of(a, b, c), ab_d = turn_of(a, b, d), cd_a = turn_of(c, d, a), cd_b = turn_of(c, d, b);
+  const double ab_c = turn_of(a, b, c), ab_d = turn_of(a, b, d), cd_a = turn_of(c, d, a),
+               cd_b = turn_of(c, d, b);
   return ((ab_c > 0) != (ab_d > 0)) && ((cd_a > 0) != (cd_b > 0));
 }
 
@@ -78,7 +79,8 @@ bool bridge(const Outline2& outline, const std::vector<Loop>& others, Loop hole,
   };
   std::vector<Way> ways;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    for (std::size_t j = 0; j < hole.size(); ++j) ways.push_back({glm::length(p[loop[i]] - p[hole[j]]), i, j});
+    for (std::size_t j = 0; j < hole.size(); ++j)
+      ways.push_back({glm::length(p[loop[i]] - p[hole[j]]), i, j});
   }
   std::ranges::stable_sort(ways, {}, &Way::length);
   for (const Way& way : ways) {
@@ -100,14 +102,15 @@ bool cut_ears(const Outline2& outline, Loop loop, std::vector<std::array<std::ui
     std::size_t best = loop.size();
     double roundest = 0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      const std::uint32_t a = loop[(i + loop.size() - 1) % loop.size()], b = loop[i], c = loop[(i + 1) % loop.size()];
+      const std::uint32_t a = loop[(i + loop.size() - 1) % loop.size()], b = loop[i],
+                          c = loop[(i + 1) % loop.size()];
       const double area = turn_of(p[a], p[b], p[c]);
       const double round = area / (glm::dot(p[b] - p[a], p[b] - p[a]) + glm::dot(p[c] - p[b], p[c] - p[b]) +
                                    glm::dot(p[a] - p[c], p[a] - p[c]));
       if (!(round > roundest)) continue;
       const bool holds_one = std::ranges::any_of(loop, [&](std::uint32_t v) {
-        return v != a && v != b && v != c && turn_of(p[a], p[b], p[v]) >= 0 && turn_of(p[b], p[c], p[v]) >= 0 &&
-               turn_of(p[c], p[a], p[v]) >= 0;
+        return v != a && v != b && v != c && turn_of(p[a], p[b], p[v]) >= 0 &&
+               turn_of(p[b], p[c], p[v]) >= 0 && turn_of(p[c], p[a], p[v]) >= 0;
       });
       if (!holds_one) best = i, roundest = round;
     }
@@ -150,7 +153,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const Outline2& outline, d
   std::vector<Loop> loops = loops_of(outline);
   for (Loop& loop : loops) straighten(outline, tolerance, loop);
   // The one around all others, and holes.
-  std::ranges::stable_sort(loops, [&](const Loop& a, const Loop& b) { return area_of(outline, a) > area_of(outline, b); });
+  std::ranges::stable_sort(
+      loops, [&](const Loop& a, const Loop& b) { return area_of(outline, a) > area_of(outline, b); });
   if (loops.empty() || !(area_of(outline, loops[0]) > 0)) return {};
   if (loops.size() > 1 && area_of(outline, loops[1]) >= 0) return {};
   Loop whole = loops[0];

@@ -1,5 +1,5 @@
-// Closed surfaces of few triangles that lie inside a solid, or mostly so: proposals, which Solid::holds judges
-// triangle by triangle.
+// Closed surfaces of few triangles that lie inside a solid, or mostly so: proposals, which Solid::holds
+// judges triangle by triangle.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct Shell {
 };
 
 /// The convex hull of some of the solid's points, the outermost ones, a little smaller than it is: inside a
-/// convex solid, and close to it.
-Shell convex_shell(const Solid& solid, std::size_t most_triangles);
+/// convex solid, and close to it. Points that lie so close to the lid of a solid are not among them.
+Shell convex_shell(const Solid& solid, std::size_t most_triangles, double from_lid = 0);
 
 /// The surface a little below the solid's, as the grid sees it: thousands of triangles.
 Shell grid_shell(const SolidGrid& grid);

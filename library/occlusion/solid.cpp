@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "library/geometry/linear.hpp"
+#include "library/occlusion/lid.hpp"
 #include "library/occlusion/separation.hpp"
 
 namespace sightline::occlusion {
@@ -15,10 +16,11 @@ namespace {
 
 constexpr std::size_t kLeaf = 4;
 constexpr double kMargin = 5e-5;
-constexpr double kFloat = 6.0e-8;      // half a unit in the last place of a float, of its value
-constexpr double kMostMargin = 0.01;   // beyond it the mesh's own vertices say too little
-constexpr double kThinnest = 1e-4;     // of the longest side
-constexpr double kOnAnEdge = 1e-13;    // twice the area of a triangle whose corners cannot be told from a line
+constexpr double kFloat = 6.0e-8;     // half a unit in the last place of a float, of its value
+constexpr double kMostMargin = 0.01;  // beyond it the mesh's own vertices say too little
+constexpr double kBehind = 1e-9;      // a plane, at least
+constexpr double kThinnest = 1e-4;    // of the longest side
+constexpr double kOnAnEdge = 1e-13;   // twice the area of a triangle whose corners cannot be told from a line
 
 // Twice the area of the triangle of two points and the line, seen along it.
 double area_about(const glm::dvec3& line, const glm::dvec3& p, const glm::dvec3& q, int b, int c) {
@@ -60,12 +62,14 @@ Solid::Solid(const MeshParts& mesh, const MeshPart& part) : rule_(part.inside) {
   margin_ = kMargin;
   for (int a = 0; a < 3; ++a) {
     if (!(extent_[a] > kThinnest * longest)) thin_ = true;
-    margin_ = std::max(
-        margin_, kMargin + 2 * kFloat * std::max(std::fabs(part.low[a]), std::fabs(part.high[a])) / extent_[a]);
+    margin_ =
+        std::max(margin_, kMargin + 2 * kFloat * std::max(std::fabs(part.low[a]), std::fabs(part.high[a])) /
+                                        extent_[a]);
   }
-  thin_ = thin_ || !(margin_ <= kMostMargin) || rule_ == Inside::never;
-  if (thin_) return;
+  thin_ = thin_ || !(margin_ <= kMostMargin);
   std::vector<Corners3> corners;
+  if (!thin_ && rule_ == Inside::never) add_lid(mesh, part, corners);
+  if (thin_) return;
   std::vector<std::uint32_t> vertices;
   for (const std::uint32_t t : part.triangles) {
     Corners3& its = corners.emplace_back();
@@ -83,6 +87,16 @@ Solid::Solid(const MeshParts& mesh, const MeshPart& part) : rule_(part.inside) {
   for (const std::uint32_t i : order) triangles_.push_back(corners[i]);
 }
 
+void Solid::add_lid(const MeshParts& mesh, const MeshPart& part, std::vector<Corners3>& corners) {
+  const Lid lid = lid_of(mesh, part);
+  thin_ = lid.triangles.empty();
+  for (const glm::dvec3& p : lid.points) lid_.push_back(to_solid(p));
+  for (const auto& [a, b, c] : lid.triangles) corners.push_back({lid_[a], lid_[b], lid_[c]});
+  const bool some_front =
+      std::ranges::any_of(part.triangles, [&](std::uint32_t t) { return mesh.one_sided[t] != 0; });
+  rule_ = some_front ? Inside::turned_out : Inside::turned;
+}
+
 void Solid::build(std::vector<std::uint32_t>& order, std::size_t first, std::size_t end,
                   const std::vector<Corners3>& corners) {
   const std::size_t node = nodes_.size();
@@ -96,7 +110,9 @@ void Solid::build(std::vector<std::uint32_t>& order, std::size_t first, std::siz
   if (end - first <= kLeaf) return;
   const glm::dvec3 size = middles.high - middles.low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto key = [&](std::uint32_t i) { return corners[i][0][axis] + corners[i][1][axis] + corners[i][2][axis]; };
+  const auto key = [&](std::uint32_t i) {
+    return corners[i][0][axis] + corners[i][1][axis] + corners[i][2][axis];
+  };
   const std::size_t middle = first + (end - first) / 2;
   const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(first), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
@@ -172,7 +188,7 @@ bool Solid::crossings(const glm::dvec3& point, int axis, std::vector<Crossing>& 
         const double o[3] = {area_about(point, t[1], t[2], b, c), area_about(point, t[2], t[0], b, c),
                              area_about(point, t[0], t[1], b, c)};
         const auto [least, most] = std::minmax({o[0], o[1], o[2]});
-        if (least < -kOnAnEdge && most > kOnAnEdge) return false;        // beside it
+        if (least < -kOnAnEdge && most > kOnAnEdge) return false;       // beside it
         if (!(least > kOnAnEdge) && !(most < -kOnAnEdge)) return true;  // too close to an edge
         const double at = (o[0] * t[0][axis] + o[1] * t[1][axis] + o[2] * t[2][axis]) / (o[0] + o[1] + o[2]);
         out.push_back({at, least > 0 ? 1 : -1});
@@ -197,6 +213,10 @@ bool Solid::holds(const glm::dvec3& point) const {
 }
 
 bool Solid::holds(const Corners3& t) const {
+  const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+  const double ahead = kBehind * glm::length(normal);
+  if (std::ranges::any_of(lid_, [&](const glm::dvec3& p) { return glm::dot(normal, p - t[0]) > -ahead; }))
+    return false;
   if (touches(t)) return false;
   // Another point of it where lines through the first pass an edge.
   return holds((t[0] + t[1] + t[2]) / 3.0) || holds(0.22 * t[0] + 0.33 * t[1] + 0.45 * t[2]);
@@ -204,7 +224,14 @@ bool Solid::holds(const Corners3& t) const {
 
 bool Solid::holds(const Bounds3& box) const {
   const glm::dvec3 size = box.high - box.low;
-  return !touches(box) && (holds(box.low + 0.5 * size) || holds(box.low + glm::dvec3(0.21, 0.34, 0.55) * size));
+  return !touches(box) &&
+         (holds(box.low + 0.5 * size) || holds(box.low + glm::dvec3(0.21, 0.34, 0.55) * size));
+}
+
+double Solid::distance_to_lid(const glm::dvec3& point) const {
+  double best = 1e300;
+  for (const glm::dvec3& p : lid_) best = std::min(best, glm::dot(p - point, p - point));
+  return std::sqrt(best);
 }
 
 double Solid::distance(const glm::dvec3& point, double most) const {

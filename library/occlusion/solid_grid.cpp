@@ -19,7 +19,8 @@ public:
       for (int y = 0; y < kCells; ++y) {
         for (int x = 0; x < kCells; ++x) {
           bool full = true;
-          for (int i = 0; i < 8; ++i) full = full && grid.depth[SolidGrid::index(x + i % 2, y + i / 2 % 2, z + i / 4)] > 0;
+          for (int i = 0; i < 8; ++i)
+            full = full && grid.depth[SolidGrid::index(x + i % 2, y + i / 2 % 2, z + i / 4)] > 0;
           full_[at({x, y, z})] = full;
         }
       }
@@ -152,7 +153,8 @@ std::vector<Bounds3> boxes_inside(const Solid& solid, const SolidGrid& grid, std
     if (!(size.x * size.y * size.z > kLeastBox)) break;
     cells.clear(range);
     // What is thinner than a cell the grid has not seen.
-    for (int i = 0; i < 3 && solid.touches(box); ++i) box.low += 0.5 * SolidGrid::kStep, box.high -= 0.5 * SolidGrid::kStep;
+    for (int i = 0; i < 3 && solid.touches(box); ++i)
+      box.low += 0.5 * SolidGrid::kStep, box.high -= 0.5 * SolidGrid::kStep;
     if (!glm::all(glm::lessThan(box.low, box.high)) || !solid.holds(box)) continue;
     widen(solid, out, box);
     out.push_back(box);

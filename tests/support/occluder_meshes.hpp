@@ -123,7 +123,9 @@ inline std::vector<NamedMesh> closed_convex_meshes() {
   };
   add("sphere", scene::sphere(3));
   add("fine sphere", scene::sphere(5));
-  add("egg", moved(scene::sphere(4), [](const Vec3& p) { return Vec3{3 * p.x, p.y * (1 + 0.2f * p.y), 0.7f * p.z}; }));
+  add("egg", moved(scene::sphere(4), [](const Vec3& p) {
+        return Vec3{3 * p.x, p.y * (1 + 0.2f * p.y), 0.7f * p.z};
+      }));
   add("fine box", fine_box({{-2, 0, 1}, {5, 3, 3}}, 20));
   add("turned box", moved(fine_box({{-2, -1, -1}, {2, 1, 1}}, 9), [](const Vec3& p) {
         return Vec3{0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y, 0.28f * p.x + 0.96f * p.z};
@@ -150,9 +152,16 @@ inline std::vector<NamedMesh> closed_concave_meshes() {
   add("star", moved(scene::sphere(5), [](const Vec3& p) {
         return scaled(p, 1 + 0.45f * std::sin(3 * p.x) * std::sin(4 * p.y + 1) * std::cos(3 * p.z));
       }));
-  add("bell", turned(64, {{0, 0, 0}, {1, 0, 0}, {0.4f, 0.8f, 0}, {0.35f, 1.2f, 0}, {0.8f, 1.9f, 0}, {0, 2.2f, 0}}));
-  add("bowl", turned(64, {{0, 0, 0}, {0.6f, 0.1f, 0}, {1, 0.6f, 0}, {1.1f, 1, 0}, {0.8f, 1, 0}, {0.7f, 0.7f, 0},
-                          {0.4f, 0.4f, 0}, {0, 0.3f, 0}}));
+  add("bell",
+      turned(64, {{0, 0, 0}, {1, 0, 0}, {0.4f, 0.8f, 0}, {0.35f, 1.2f, 0}, {0.8f, 1.9f, 0}, {0, 2.2f, 0}}));
+  add("bowl", turned(64, {{0, 0, 0},
+                          {0.6f, 0.1f, 0},
+                          {1, 0.6f, 0},
+                          {1.1f, 1, 0},
+                          {0.8f, 1, 0},
+                          {0.7f, 0.7f, 0},
+                          {0.4f, 0.4f, 0},
+                          {0, 0.3f, 0}}));
   add("knot", tube(160, 16, 0.4f, [](float v) {
         const float t = kTurn * v, r = 2 + std::cos(3 * t);
         return Vec3{r * std::cos(2 * t), std::sin(3 * t), r * std::sin(2 * t)};
@@ -161,10 +170,16 @@ inline std::vector<NamedMesh> closed_concave_meshes() {
   add("angle", moved(fine_box({{0, 0, 0}, {1, 1, 1}}, 24), [](const Vec3& p) {
         return Vec3{3 * p.x + 0.02f * std::sin(9 * p.y), 2 * p.y * (p.x < 0.4f ? 1.0f : 0.5f), p.z};
       }));
-  add("two stones", together(moved(scene::sphere(4), [](const Vec3& p) { return Vec3{p.x - 2, 0.8f * p.y, p.z}; }),
-                             moved(scene::sphere(3), [](const Vec3& p) { return Vec3{0.7f * p.x + 1, p.y, p.z + 1}; })));
-  add("tower", together(fine_box({{-1, 0, -1}, {1, 4, 1}}, 8),
-                        moved(scene::sphere(3), [](const Vec3& p) { return Vec3{1.5f * p.x, 4.5f + p.y, 1.5f * p.z}; })));
+  add("two stones", together(moved(scene::sphere(4),
+                                   [](const Vec3& p) {
+                                     return Vec3{p.x - 2, 0.8f * p.y, p.z};
+                                   }),
+                             moved(scene::sphere(3), [](const Vec3& p) {
+                               return Vec3{0.7f * p.x + 1, p.y, p.z + 1};
+                             })));
+  add("tower", together(fine_box({{-1, 0, -1}, {1, 4, 1}}, 8), moved(scene::sphere(3), [](const Vec3& p) {
+                          return Vec3{1.5f * p.x, 4.5f + p.y, 1.5f * p.z};
+                        })));
   return out;
 }
 
@@ -174,7 +189,9 @@ inline std::vector<NamedMesh> open_meshes() {
     out.push_back({name, Form::open, std::move(shape)});
   };
   add("card", scene::card(2, 3));
-  add("fine wall", surface(20, 30, false, false, [](float u, float v) { return Vec3{4 * u, 3 * v, 0.3f * u}; }));
+  add("fine wall", surface(20, 30, false, false, [](float u, float v) {
+        return Vec3{4 * u, 3 * v, 0.3f * u};
+      }));
   scene::Shape hut = fine_box({{0, 0, 0}, {4, 3, 5}}, 6);
   hut.indices.resize(hut.indices.size() - hut.indices.size() / 6);
   add("hut without a wall", std::move(hut));
@@ -211,9 +228,6 @@ inline std::vector<NamedMesh> thin_meshes() {
     grass.indices.insert(grass.indices.end(), {3 * i, 3 * i + 1, 3 * i + 2});
   }
   out.push_back({"grass", Form::thin, std::move(grass)});
-  scene::Shape shell = scene::sphere(4);  // two skins, a hair apart, with a gap between
-  shell.indices.resize(shell.indices.size() - 6);
-  out.push_back({"skin", Form::thin, std::move(shell)});
   return out;
 }
 

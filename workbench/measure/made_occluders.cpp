@@ -156,8 +156,9 @@ std::vector<MadeOccluder> make_occluders(const Scene& scene, const OccluderOptio
   std::vector<MadeOccluder> out;
   for (const auto& [what, objects] : shown) {
     const auto [mesh, sides] = what;
-    out.push_back({mesh, sides, objects, indices_of(scene, mesh).size() / 3,
-                   or_throw(make_occluder(positions_of(scene, mesh), indices_of(scene, mesh), {&sides, 1}, options))});
+    out.push_back(
+        {mesh, sides, objects, indices_of(scene, mesh).size() / 3,
+         or_throw(make_occluder(positions_of(scene, mesh), indices_of(scene, mesh), {&sides, 1}, options))});
     if (progress) progress(out.size(), shown.size());
   }
   return out;
@@ -174,7 +175,8 @@ Scene occluder_scene(const Scene& scene, const std::vector<MadeOccluder>& occlud
     for (const Sides sides : {Sides::both, Sides::front}) {
       scene::Shape shape;
       append_part(made.occluder, sides, shape);
-      its[sides == Sides::front] = shape.indices.empty() ? kNone : out.add_mesh(shape.positions, {}, shape.indices);
+      its[sides == Sides::front] =
+          shape.indices.empty() ? kNone : out.add_mesh(shape.positions, {}, shape.indices);
     }
   }
   for (ObjectId o = 0; o < scene.size(); ++o) {
@@ -200,8 +202,8 @@ OccluderEvidence examine(const Scene& scene, const MadeOccluder& made, std::size
   for (std::size_t i = 0; i < views; ++i) {
     Look look(lone, judge, exact, camera_around(lone, random), pixels);
     out.mesh_pixels += look.truth().pixels[0];
-    out.covered_pixels += look.count(
-        [&](OcclusionBuffer& buffer) { or_throw(buffer.draw_mesh(mesh)); }, out.wrong_pixels);
+    out.covered_pixels +=
+        look.count([&](OcclusionBuffer& buffer) { or_throw(buffer.draw_mesh(mesh)); }, out.wrong_pixels);
     const std::span<const Box> boxes = made.occluder.boxes;
     out.box_pixels +=
         look.count([&](OcclusionBuffer& buffer) { or_throw(buffer.draw_boxes(boxes)); }, out.wrong_pixels);

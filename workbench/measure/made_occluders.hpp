@@ -14,7 +14,7 @@ namespace sightline::measure {
 struct MadeOccluder {
   std::uint32_t mesh = 0;
   Sides sides = Sides::both;
-  std::size_t objects = 0;  ///< opaque ones that show it so
+  std::size_t objects = 0;    ///< opaque ones that show it so
   std::size_t triangles = 0;  ///< of the mesh
   Occluder occluder;
 };
