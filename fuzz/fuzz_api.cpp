@@ -164,6 +164,19 @@ void flat_is_exact(Numbers& in, const View& view) {
   require(static_cast<std::ptrdiff_t>(*of_arrays) == std::ranges::count_if(structs, overlapping));
 }
 
+// What is made of a mesh that may be drawn may be drawn, too, and keeps within its means.
+void make_occluder_of(Numbers& in, std::span<const Vec3> points, std::span<const std::uint32_t> indices,
+                      std::span<const Sides> sides) {
+  const OccluderOptions options{in.byte() % 32u, in.byte() % 4u};
+  const auto made = make_occluder(points, indices, sides, options);
+  require(static_cast<bool>(made));
+  require(made->sides.size() <= options.most_triangles && made->boxes.size() <= options.most_boxes);
+  require(made->indices.size() == 3 * made->sides.size() && made->solid_triangles <= made->sides.size());
+  require(static_cast<bool>(OccluderMesh::make(made->positions, made->indices, made->sides)));
+  for (const Box& box : made->boxes)
+    require(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z);
+}
+
 Status draw(Numbers& in, OcclusionBuffer& buffer) {
   std::vector<Vec3> points(in.byte() % 40);
   std::vector<std::uint32_t> indices(3 * (in.byte() % 30));
@@ -174,6 +187,7 @@ Status draw(Numbers& in, OcclusionBuffer& buffer) {
   for (Sides& s : sides) s = in.byte() & 1 ? Sides::front : Sides::both;
   const auto mesh = OccluderMesh::make(points, indices, sides);
   if (!done(mesh)) return mesh.error();
+  if (in.byte() % 16 == 0) make_occluder_of(in, points, indices, sides);
   Mat4 transform;
   if (in.byte() & 1) transform.m[in.byte() % 16] = in.number();
   return buffer.draw_mesh(*mesh, transform);

@@ -247,6 +247,20 @@ private:
     const Owned<sightline_occluder_mesh, sightline_occluder_mesh_destroy> mesh(made);
     require(sightline_occluder_mesh_triangles(made) <= indices.size() / 3);
     (void)done(sightline_occlusion_draw_mesh(occlusion_.get(), made, in_.byte() & 1 ? transform : nullptr));
+    if (in_.byte() % 16 == 0) make_occluder(positions, indices, sides);
+  }
+
+  void make_occluder(const std::vector<float>& positions, const std::vector<std::uint32_t>& indices,
+                     const std::vector<std::uint8_t>& sides) {
+    sightline_occluder* made = nullptr;
+    const std::uint32_t most = in_.rarely() ? 5000 : in_.byte() % 32u;
+    (void)done(sightline_occluder_create(positions.data(), count_, indices.data(), indices.size(),
+                                         sides.data(), sides.size(), most, in_.byte() % 4, &made));
+    const Owned<sightline_occluder, sightline_occluder_destroy> occluder(made);
+    sightline_occluder_parts parts = sightline_occluder_parts_default();
+    if (!done(sightline_occluder_contents(made, &parts))) return;
+    require(parts.index_count <= 3 * most && parts.yield <= SIGHTLINE_OCCLUDES_EMPTY);
+    for (std::size_t i = 0; i < parts.index_count; ++i) require(parts.indices[i] < parts.position_count);
   }
 
   void ask() {

@@ -47,7 +47,7 @@ world=world:forest?trees=300\&size=100
 expect 0 "reproduce" "$sightline" --help
 expect 0 "object-frustum" "$sightline" methods --json methods.json
 expect 0 "--path" "$sightline" compare --help
-for command in methods verify reproduce generate info; do expect 0 "Usage" "$sightline" $command --help; done
+for command in methods verify reproduce generate info occluders; do expect 0 "Usage" "$sightline" $command --help; done
 expect 0 "0." "$sightline" --version
 expect 0 " cut out" "$sightline" info world:foliage
 expect 0 "3 alpha images; 0 objects without one" "$sightline" info world:foliage
@@ -59,6 +59,8 @@ expect 0 "objects     300" "$sightline" info "$world"
 expect 0 "300 objects" "$sightline" generate forest?trees=300\&size=100 -o forest.glb
 expect 0 "objects     300" "$sightline" info forest.glb
 expect 0 "holds" "$sightline" verify "$world" --views 20
+expect 0 "0 pixels wrongly" "$sightline" occluders "$world" -o occluders.glb --views 3 --pixels 200
+expect 0 "objects     " "$sightline" info occluders.glb
 expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 2 --size 64x48 --json rows.json --report page
 [ -s page/index.html ] || fail "compare --report wrote no page"
 for field in scene method guarantee view objects tested visible culled draw_calls triangles cull_vertices cull_cpu_ms \
@@ -76,6 +78,10 @@ refused "moon" "$sightline" info world:moon
 refused "'trees'" "$sightline" info world:forest?trees=-1
 refused "no such method" "$sightline" compare "$world" --methods nonesuch
 refused "lacks a level's PVS" "$sightline" verify "$world" --methods level-pvs
+refused "--triangles" "$sightline" occluders "$world" --triangles 5000
+refused "nowhere" "$sightline" occluders "$world" -o nowhere/x.glb
+refused "nothing occludes" "$sightline" occluders 'world:forest?trees=3' --triangles 0 --boxes 0 -o nothing.glb
+[ ! -e nothing.glb ] || fail "occluders left nothing.glb behind"
 refused "no parameter" "$sightline" verify "$world" --methods none?x=1
 refused "--size" "$sightline" compare "$world" --size 0x0
 refused "no share" "$sightline" verify "$world" --device any --moving nan

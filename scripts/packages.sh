@@ -14,7 +14,7 @@ command -v node >/dev/null || test_packages+=" nodejs"
 measure_packages="$run_packages libbenchmark-dev libbullet-dev libopenscenegraph-dev"
 
 # What `test.sh --full` needs besides.
-full_packages="mmdebstrap"
+full_packages="mmdebstrap assimp-utils assimp-testmodels"
 
 # ensure_packages PACKAGE…: installs those that are missing; explains itself where it cannot.
 ensure_packages() {

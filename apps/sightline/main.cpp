@@ -138,6 +138,7 @@ int run(int argc, char** argv) {
   add_reproduce(app, exit);
   add_bake(app, exit);
   add_query(app, exit);
+  add_occluders(app, exit);
   add_generate(app, exit);
   add_info(app, exit);
   try {

@@ -2,12 +2,17 @@
 #include <sightline/occlusion.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <vector>
 
 #include "bindings/c/calls.hpp"
 
 struct sightline_occluder_mesh {
   sightline::OccluderMesh mesh;
+};
+struct sightline_occluder {
+  sightline::Occluder occluder;
 };
 struct sightline_occludees {
   sightline::OccludeeTriangles triangles;
@@ -38,6 +43,22 @@ sightline_status may_see(const sightline_occlusion* occlusion, const Given* volu
   return keep(occlusion->buffer.may_see(view, {visible, capacity}));
 }
 
+// Whether the pointers hold a mesh, and its sides.
+Status take_mesh(const float* positions, size_t position_count, const uint32_t* indices, size_t index_count,
+                 const uint8_t* sides, size_t side_count, std::vector<Sides>& drawn) {
+  if (!can_hold(points_of(positions, position_count).data(), position_count) ||
+      !can_hold(indices, index_count) || !can_hold(sides, side_count))
+    return {StatusCode::bad_argument,
+            "occluder: positions, indices or sides are NULL, or more than memory holds"};
+  drawn.resize(side_count);
+  for (std::size_t i = 0; i < side_count; ++i) {
+    if (sides[i] > SIGHTLINE_FRONT_SIDE)
+      return {StatusCode::bad_argument, "occluder: expected both sides or the front", i};
+    drawn[i] = static_cast<Sides>(sides[i]);
+  }
+  return {};
+}
+
 }  // namespace
 
 extern "C" {
@@ -48,15 +69,10 @@ sightline_status sightline_occluder_mesh_create(const float* positions, size_t p
                                                 sightline_occluder_mesh** mesh) {
   if (!mesh) return refuse("occluder mesh: what to write to is NULL");
   const auto points = points_of(positions, position_count);
-  if (!can_hold(points.data(), position_count) || !can_hold(indices, index_count) ||
-      !can_hold(sides, side_count))
-    return refuse("occluder mesh: positions, indices or sides are NULL, or more than memory holds");
-  std::vector<Sides> drawn(side_count);
-  for (std::size_t i = 0; i < side_count; ++i) {
-    if (sides[i] > SIGHTLINE_FRONT_SIDE)
-      return keep({StatusCode::bad_argument, "occluder mesh: expected both sides or the front", i});
-    drawn[i] = static_cast<Sides>(sides[i]);
-  }
+  std::vector<Sides> drawn;
+  if (const Status ok = take_mesh(positions, position_count, indices, index_count, sides, side_count, drawn);
+      !ok)
+    return keep(ok);
   Result<OccluderMesh> made = OccluderMesh::make(points, {indices, index_count}, drawn);
   if (!made) return keep(made.error());
   *mesh = new sightline_occluder_mesh{*std::move(made)};
@@ -67,6 +83,42 @@ void sightline_occluder_mesh_destroy(sightline_occluder_mesh* mesh) {
 }
 size_t sightline_occluder_mesh_triangles(const sightline_occluder_mesh* mesh) {
   return mesh ? mesh->mesh.triangles() : 0;
+}
+
+sightline_status sightline_occluder_create(const float* positions, size_t position_count,
+                                           const uint32_t* indices, size_t index_count, const uint8_t* sides,
+                                           size_t side_count, uint32_t most_triangles, uint32_t most_boxes,
+                                           sightline_occluder** occluder) {
+  if (!occluder) return refuse("occluder: what to write to is NULL");
+  std::vector<Sides> drawn;
+  if (const Status ok = take_mesh(positions, position_count, indices, index_count, sides, side_count, drawn);
+      !ok)
+    return keep(ok);
+  Result<Occluder> made = make_occluder(points_of(positions, position_count), {indices, index_count}, drawn,
+                                        {most_triangles, most_boxes});
+  if (!made) return keep(made.error());
+  *occluder = new sightline_occluder{*std::move(made)};
+  return SIGHTLINE_OK;
+}
+void sightline_occluder_destroy(sightline_occluder* occluder) {
+  delete occluder;
+}
+sightline_status sightline_occluder_contents(const sightline_occluder* occluder,
+                                             sightline_occluder_parts* parts) {
+  if (!occluder || !parts) return refuse("occluder: it or the parts are NULL");
+  sightline_occluder_parts p = sightline_occluder_parts_default();
+  constexpr std::size_t kFirstSize = SIGHTLINE_FIRST_SIZE(sightline_occluder_parts, box_count);
+  if (!knows<sightline_occluder_parts>(parts->struct_size, kFirstSize))
+    return refuse("occluder: a struct_size is unknown, expected that of sightline_occluder_parts_default");
+  const Occluder& of = occluder->occluder;
+  static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Box) == 6 * sizeof(float) && sizeof(Sides) == 1);
+  p.struct_size = parts->struct_size, p.yield = static_cast<std::uint32_t>(of.yield);
+  p.positions = reinterpret_cast<const float*>(of.positions.data()), p.position_count = of.positions.size();
+  p.indices = of.indices.data(), p.index_count = of.indices.size();
+  p.sides = reinterpret_cast<const std::uint8_t*>(of.sides.data()), p.solid_triangles = of.solid_triangles;
+  p.boxes = reinterpret_cast<const float*>(of.boxes.data()), p.box_count = of.boxes.size();
+  std::memcpy(parts, &p, p.struct_size);
+  return SIGHTLINE_OK;
 }
 
 sightline_occludees* sightline_occludees_create(void) {

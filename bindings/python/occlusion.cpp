@@ -37,6 +37,26 @@ OccluderMesh make_mesh(const py::object& positions, const py::object& indices, c
   }());
 }
 
+Occluder make(const py::object& positions, const py::object& indices, const py::object& sides,
+              std::uint32_t most_triangles, std::uint32_t most_boxes) {
+  const std::vector<Vec3> points = points_of(positions, "positions");
+  const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");
+  const std::vector<Sides> drawn = sides_of(sides);
+  return expect([&] {
+    const Unlocked unlocked;
+    return make_occluder(points, corners, drawn, {most_triangles, most_boxes});
+  }());
+}
+
+// A copy of numbers as an array of that shape.
+template <class T>
+py::array_t<T> copied(const T* first, std::vector<py::ssize_t> shape) {
+  return py::array_t<T>(std::move(shape), first);
+}
+py::ssize_t length(std::size_t count) {
+  return static_cast<py::ssize_t>(count);
+}
+
 void assign(SharedTriangles& triangles, const py::object& corners, const py::object& per_object) {
   const std::vector<Vec3> points = points_of(corners, "corners");
   const std::vector<std::uint32_t> counts = numbers_of(per_object, "triangles_per_object");
@@ -125,6 +145,54 @@ std::uint32_t objects_of(const SharedTriangles& triangles) {
   return looking(triangles, [](const OccludeeTriangles& t) { return t.objects(); });
 }
 
+void add_occluder(py::module_& m) {
+  py::class_<Occluder>(
+      m, "Occluder",
+      "What occludes in a mesh's place, made of any mesh, closed or not: flat pieces merged, and "
+      "of\n"
+      "closed parts what lies inside them. It covers no point that the mesh does not cover as near.")
+      .def(py::init(&make),
+           "The mesh as OccluderMesh takes it; at most 4096 triangles and boxes, 0 for none.",
+           py::arg("positions"), py::arg("indices"), py::arg("sides") = "both",
+           py::arg("most_triangles") = 64, py::arg("most_boxes") = 8)
+      .def(
+          "mesh",
+          [](const Occluder& o) { return expect(OccluderMesh::make(o.positions, o.indices, o.sides)); },
+          "Its triangles, ready to be drawn.")
+      .def_property_readonly(
+          "positions",
+          [](const Occluder& o) {
+            return copied(&o.positions.data()->x, {length(o.positions.size()), 3});
+          },
+          "float32 (n, 3)")
+      .def_property_readonly(
+          "indices",
+          [](const Occluder& o) {
+            return copied(o.indices.data(), {length(o.sides.size()), 3});
+          },
+          "uint32 (m, 3)")
+      .def_property_readonly(
+          "front_only",
+          [](const Occluder& o) {
+            py::array_t<bool> out(length(o.sides.size()));
+            std::ranges::transform(o.sides, out.mutable_data(), [](Sides s) { return s == Sides::front; });
+            return out;
+          },
+          "bool (m,): whether only the triangle's front occludes")
+      .def_readonly(
+          "solid_triangles", &Occluder::solid_triangles,
+          "So many triangles, the first, lie inside the mesh: for eyes and near planes outside of it.")
+      .def_property_readonly(
+          "boxes",
+          [](const Occluder& o) {
+            return copied(&o.boxes.data()->min.x, {length(o.boxes.size()), 2, 3});
+          },
+          "float32 (k, 2, 3): solid boxes inside the mesh, for the same eyes")
+      .def_property_readonly(
+          "yields", [](const Occluder& o) { return to_string(o.yield); },
+          "A sentence: what was found, and why nothing was.");
+}
+
 void add_triangles(py::module_& m) {
   py::class_<OccluderMesh>(m, "OccluderMesh",
                            "Triangles that occlude: what can be looked through must not be among them.")
@@ -138,6 +206,7 @@ void add_triangles(py::module_& m) {
           py::arg("positions"), py::arg("indices"), py::arg("sides") = "both")
       .def_property_readonly("triangles", &OccluderMesh::triangles);
 
+  add_occluder(m);
   py::class_<SharedTriangles>(m, "OccludeeTriangles",
                               "The triangles of many objects, laid out to be asked for frame after frame.")
       .def(py::init<>())

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
@@ -61,5 +62,55 @@ private:
   struct Topology;
   Topology* topology_;
 };
+
+/// How much make_occluder may make of a mesh.
+struct OccluderOptions {
+  std::uint32_t most_triangles = 64;  ///< 4096 at most; 0: boxes alone
+  std::uint32_t most_boxes = 8;       ///< 4096 at most; 0: triangles alone, which is quicker
+};
+
+/// What make_occluder found.
+enum class OccluderYield : std::uint8_t {
+  whole,  ///< all of the mesh, in no more triangles than were allowed
+  parts,  ///< what lies inside it, its largest flat parts, or both
+  thin,   ///< nothing: it is open or thin, and has no large flat part
+  empty,  ///< nothing: it has no triangle
+};
+
+/// The same in a sentence. Errors: none. Cost: constant. Threads: any. Allocates: nothing.
+const char* to_string(OccluderYield yield) noexcept;
+
+/// What occludes in a mesh's place, in the mesh's space: triangles for OccluderMesh::make, and boxes for who
+/// draws those. From wherever one looks, it covers no point that the mesh, drawn from its sides, does not
+/// cover as near or nearer. Boxes and solid triangles lie inside the mesh and hide what is inside, too: like
+/// a solid box they are for eyes and near planes outside of it.
+struct Occluder {
+  std::vector<Vec3> positions;         ///< metres
+  std::vector<std::uint32_t> indices;  ///< three a triangle
+  std::vector<Sides> sides;            ///< one a triangle
+  std::size_t solid_triangles = 0;     ///< so many, the first, lie inside; the others are the mesh's own
+  std::vector<Box> boxes;              ///< inside the mesh too, in other words: the largest first
+  OccluderYield yield = OccluderYield::empty;  ///< what was found, or why nothing was
+};
+
+/// Makes an occluder of any mesh, closed or not: positions, indices and sides as OccluderMesh::make has them.
+/// What can be looked through must not be among the triangles.
+///
+/// Flat pieces are merged where they lie on one plane (within 1e-6 of the largest coordinate). Where all of
+/// that is no more than options.most_triangles, it is the occluder. Otherwise these are shared out among the
+/// parts that hang together, by their size: a closed part gets a convex hull of its own points where that
+/// lies inside, or a simplified surface or boxes inside it (surface nets, Gibson 1998; edge collapses,
+/// Garland & Heckbert 1997), whichever covers most; or its largest flat triangles, where these do. An open
+/// part is closed by a lid for that, and those triangles are taken, one-sided, whose planes have all of its
+/// open edges behind them: of a dome or a hill, seen from above, much; of a valley nothing, unless it comes
+/// with walls and a floor. A part is closed where every edge has as many triangles of either direction, or an
+/// even number of both-sided ones; where some are drawn from their front alone they must look outwards. Every
+/// triangle and box is judged by itself before it is taken: none comes nearer to the surface than 5e-5 of the
+/// part's box. What is thinner than 1/32 of its part is seen as flat or not at all.
+///
+/// Errors: as OccluderMesh::make; bad_argument for options out of range. Cost: n log n; a tenth of a second
+/// to half of one a large part. Threads: any. Allocates: about 400 bytes a triangle, meanwhile.
+Result<Occluder> make_occluder(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
+                               std::span<const Sides> sides = {}, const OccluderOptions& options = {});
 
 }  // namespace sightline

@@ -19,6 +19,36 @@ static sightline_occluder_mesh* wall(void) {
   return mesh;
 }
 
+/* The wall is an occluder of its own; nothing can be made of a mesh of none. */
+static void make_occluders(void) {
+  sightline_occluder* occluder = NULL;
+  sightline_occluder_parts parts = sightline_occluder_parts_default();
+  EXPECT(sightline_occluder_create(kWall[0], 4, kIndices, 6, NULL, 0, 64, 8, &occluder) == SIGHTLINE_OK);
+  EXPECT(sightline_occluder_contents(occluder, &parts) == SIGHTLINE_OK);
+  EXPECT(parts.yield == SIGHTLINE_OCCLUDES_WHOLE && parts.index_count == 6 && parts.position_count == 4);
+  EXPECT(parts.solid_triangles == 0 && parts.box_count == 0 && parts.sides[1] == SIGHTLINE_BOTH_SIDES);
+  EXPECT(parts.positions[3 * parts.indices[0] + 2] == -5);
+  parts.struct_size = 3;
+  EXPECT(sightline_occluder_contents(occluder, &parts) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_occluder_contents(NULL, &parts) == SIGHTLINE_BAD_ARGUMENT);
+  sightline_occluder_destroy(occluder);
+  sightline_occluder_destroy(NULL);
+
+  EXPECT(sightline_occluder_create(NULL, 0, NULL, 0, NULL, 0, 64, 8, &occluder) == SIGHTLINE_OK);
+  parts = sightline_occluder_parts_default();
+  EXPECT(sightline_occluder_contents(occluder, &parts) == SIGHTLINE_OK);
+  EXPECT(parts.yield == SIGHTLINE_OCCLUDES_EMPTY && parts.index_count == 0);
+  sightline_occluder_destroy(occluder);
+
+  EXPECT(sightline_occluder_create(kWall[0], 4, kIndices, 6, NULL, 0, 64, 8, NULL) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_occluder_create(NULL, 4, kIndices, 6, NULL, 0, 64, 8, &occluder) ==
+         SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_occluder_create(kWall[0], 3, kIndices, 6, NULL, 0, 64, 8, &occluder) ==
+         SIGHTLINE_BAD_MESH);
+  EXPECT(sightline_occluder_create(kWall[0], 4, kIndices, 6, NULL, 0, 5000, 8, &occluder) ==
+         SIGHTLINE_BAD_ARGUMENT);
+}
+
 /* Seen from its front the wall hides what is behind it, from behind only where both sides are drawn. */
 static void draw_sides(sightline_occlusion* occlusion, const sightline_view* view) {
   const uint32_t turned[6] = {2, 1, 0, 3, 2, 0};
@@ -268,6 +298,7 @@ void test_occlusion(void) {
   sightline_occlusion* occlusion = sightline_occlusion_create();
   before_begin(&view);
   draw_and_ask(occlusion, &view);
+  make_occluders();
   draw_sides(occlusion, &view);
   ask_for_objects(occlusion, &view);
   read_pixels(occlusion, &view);

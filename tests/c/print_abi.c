@@ -23,6 +23,7 @@ int main(void) {
   STRUCT(sightline_handles, count);
   STRUCT(sightline_jobs, reserved);
   STRUCT(sightline_object_columns, values);
+  STRUCT(sightline_occluder_parts, box_count);
   STRUCT(sightline_pvs_cells, visible_count);
   STRUCT(sightline_ray, max_distance);
   STRUCT(sightline_sphere_view, count);
@@ -44,6 +45,10 @@ int main(void) {
   VALUE(SIGHTLINE_ARRAYS_FLOAT);
   VALUE(SIGHTLINE_BOTH_SIDES);
   VALUE(SIGHTLINE_FRONT_SIDE);
+  VALUE(SIGHTLINE_OCCLUDES_WHOLE);
+  VALUE(SIGHTLINE_OCCLUDES_PARTS);
+  VALUE(SIGHTLINE_OCCLUDES_THIN);
+  VALUE(SIGHTLINE_OCCLUDES_EMPTY);
   VALUE(SIGHTLINE_OUTSIDE);
   VALUE(SIGHTLINE_CROSSING);
   VALUE(SIGHTLINE_INSIDE);

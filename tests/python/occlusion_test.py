@@ -44,6 +44,29 @@ class Draw(Case):
             self.occlusion.draw_mesh(sightline.OccluderMesh(WALL, indices, sides))
             self.assertEqual(self.occlusion.may_see_boxes(BOXES[1:] * (9, 5, 1))[0], seen)
 
+    def test_occluders_are_made_of_meshes(self):
+        steps = np.linspace(-9, 9, 10)
+        wall = np.array([(x, y, -5) for y in steps for x in steps], np.float32)
+        quads = [(10 * y + x, 10 * y + x + 1, 10 * y + x + 11, 10 * y + x + 10) for y in range(9) for x in range(9)]
+        indices = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], np.uint32)
+        made = sightline.Occluder(wall, indices, "front")
+        self.assertEqual((made.positions.shape, made.indices.shape, made.boxes.shape), ((4, 3), (2, 3), (0, 2, 3)))
+        self.assertEqual((made.solid_triangles, list(made.front_only)), (0, [True, True]))
+        self.assertIn("as it is", made.yields)
+        self.occlusion.begin(VIEW)
+        self.occlusion.draw_mesh(made.mesh())
+        self.assertFalse(self.occlusion.may_see_boxes(BOXES[1:])[0])
+        # A cube of one box.
+        cube = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32)
+        sides = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+        made = sightline.Occluder(cube, sides[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3).astype(np.uint32), most_boxes=1)
+        self.assertEqual((len(made.indices), len(made.boxes)), (12, 1))
+        self.assertTrue((made.boxes > 0).all() and (made.boxes < 1).all())
+        self.assertIn("no triangle", sightline.Occluder(cube[:0], indices[:0]).yields)
+        self.refused("bad_mesh", "names no position", sightline.Occluder, cube, indices, index=10)
+        self.bad("at most 4096", sightline.Occluder, wall, indices, most_triangles=5000)
+        self.bad("positions: expected float32", sightline.Occluder, cube.astype(float), indices)
+
     def test_boxes_and_spheres_hide_too(self):
         columns = [np.ascontiguousarray(SPHERES[:, i]) for i in range(4)]
         fields = np.zeros(2, [("radius", "f4"), ("centre", "f4", 3)])

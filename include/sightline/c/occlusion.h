@@ -34,6 +34,61 @@ SIGHTLINE_API void sightline_occluder_mesh_destroy(sightline_occluder_mesh* mesh
 /** How many triangles are left; 0 for NULL. */
 SIGHTLINE_API size_t sightline_occluder_mesh_triangles(const sightline_occluder_mesh* mesh);
 
+/* --- occluders made of meshes --- */
+
+/** How much of a mesh occludes. */
+enum {
+  SIGHTLINE_OCCLUDES_WHOLE = 0, /**< all of it, in no more triangles than were allowed */
+  SIGHTLINE_OCCLUDES_PARTS = 1, /**< what lies inside it, its largest flat parts, or both */
+  SIGHTLINE_OCCLUDES_THIN = 2,  /**< nothing: it is open or thin, and has no large flat part */
+  SIGHTLINE_OCCLUDES_EMPTY = 3  /**< nothing: it has no triangle */
+};
+
+/** What occludes in a mesh's place. Read by many threads at once. */
+typedef struct sightline_occluder sightline_occluder;
+
+/** Made by sightline_occluder_parts_default(). */
+typedef struct sightline_occluder_parts {
+  uint32_t struct_size;    /**< bytes of this struct */
+  uint32_t yield;          /**< SIGHTLINE_OCCLUDES_... */
+  const float* positions;  /**< three floats each, in metres, in the mesh's space */
+  size_t position_count;   /**< points */
+  const uint32_t* indices; /**< three a triangle */
+  size_t index_count;      /**< a multiple of three */
+  const uint8_t* sides;    /**< one a triangle: index_count / 3 */
+  size_t solid_triangles;  /**< so many, the first, lie inside the mesh; the others are its own */
+  const float* boxes;      /**< minimum and maximum, six floats each: inside the mesh */
+  size_t box_count;        /**< boxes */
+} sightline_occluder_parts;
+
+/** Nothing. */
+static inline sightline_occluder_parts sightline_occluder_parts_default(void) {
+  sightline_occluder_parts parts;
+  parts.struct_size = (uint32_t)sizeof parts;
+  parts.yield = SIGHTLINE_OCCLUDES_EMPTY;
+  parts.positions = NULL, parts.position_count = 0;
+  parts.indices = NULL, parts.index_count = 0, parts.sides = NULL, parts.solid_triangles = 0;
+  parts.boxes = NULL, parts.box_count = 0;
+  return parts;
+}
+
+/** Makes an occluder of any mesh, closed or not, given as to sightline_occluder_mesh_create(): flat pieces
+ * merged, and of closed parts what lies inside them. It covers no point that the mesh does not cover as near
+ * or nearer; like a solid box, what lies inside is for eyes and near planes outside of the mesh. At most so
+ * many triangles, 64 are good, and so many boxes, 8; at most 4096 each, 0 for none. Errors: as
+ * sightline_occluder_mesh_create(); BAD_ARGUMENT. Cost: n log n; a tenth of a second to half of one a large
+ * part. Allocates: about 400 bytes a triangle, meanwhile. */
+SIGHTLINE_API sightline_status sightline_occluder_create(const float* positions, size_t position_count,
+                                                         const uint32_t* indices, size_t index_count,
+                                                         const uint8_t* sides, size_t side_count,
+                                                         uint32_t most_triangles, uint32_t most_boxes,
+                                                         sightline_occluder** occluder);
+SIGHTLINE_API void sightline_occluder_destroy(sightline_occluder* occluder);
+/** All of it, as long as `occluder` lives. `parts` was made by sightline_occluder_parts_default().
+ * Errors: BAD_ARGUMENT. */
+SIGHTLINE_API sightline_status sightline_occluder_contents(const sightline_occluder* occluder,
+                                                           sightline_occluder_parts* parts);
+
 /* --- triangles to ask for --- */
 
 /** The triangles of many objects, laid out to be asked for frame after frame. Objects are numbered 0 ...

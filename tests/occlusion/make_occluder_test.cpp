@@ -1,0 +1,171 @@
+// Occluders made of meshes, by the library alone: what is refused, what is said, and a first look at what
+// they cover. tests/measure holds all of them against the oracle.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include <sightline/occlusion.hpp>
+
+#include "support/exact_rays.hpp"
+#include "support/occluder_meshes.hpp"
+
+namespace sightline {
+namespace {
+
+using test::Form;
+using test::NamedMesh;
+
+Occluder make(const scene::Shape& shape, Sides sides = Sides::both, const OccluderOptions& options = {}) {
+  const auto made = make_occluder(shape.positions, shape.indices, {&sides, 1}, options);
+  EXPECT_TRUE(made) << made.error().message();
+  return *made;
+}
+
+TEST(MakeOccluder, RefusesWhatOccluderMeshRefuses) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, NAN}};
+  const std::vector<std::uint32_t> indices{0, 1, 2}, beyond{0, 1, 3}, two{0, 1};
+  EXPECT_EQ(make_occluder(positions, indices).error().code(), StatusCode::bad_mesh);
+  EXPECT_EQ(make_occluder(positions, indices).error().index(), 2u);
+  const std::span sound = std::span(positions).first(2);
+  EXPECT_EQ(make_occluder(sound, indices).error().code(), StatusCode::bad_mesh);
+  EXPECT_EQ(make_occluder(sound, two).error().code(), StatusCode::bad_mesh);
+  const std::vector<std::uint32_t> point{0, 0, 0};
+  EXPECT_EQ(make_occluder(sound, point, {}, {4097, 0}).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(make_occluder(sound, point, {}, {0, 4097}).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(make_occluder(sound, point)->yield, OccluderYield::empty);
+  EXPECT_EQ(make_occluder({}, {})->yield, OccluderYield::empty);
+}
+
+TEST(MakeOccluder, SaysWhereNothingOccludes) {
+  for (const NamedMesh& mesh : test::thin_meshes()) {
+    const Occluder made = make(mesh.shape);
+    EXPECT_EQ(made.yield, OccluderYield::thin) << mesh.name;
+    EXPECT_TRUE(made.indices.empty() && made.boxes.empty()) << mesh.name;
+    EXPECT_STRNE(to_string(made.yield), to_string(OccluderYield::parts));
+  }
+}
+
+TEST(MakeOccluder, MergesWhatIsFlat) {
+  // Walls of many quads come back as two triangles each, a window's frame around it as it is.
+  const auto triangles = [](const scene::Shape& shape) { return make(shape).sides.size(); };
+  EXPECT_EQ(triangles(test::fine_box({{-2, 0, 1}, {5, 3, 3}}, 20)), 12u);
+  for (const NamedMesh& mesh : test::open_meshes()) {
+    if (mesh.name == "card" || mesh.name == "fine wall") EXPECT_EQ(triangles(mesh.shape), 2u);
+    if (mesh.name == "hut without a wall") EXPECT_EQ(triangles(mesh.shape), 10u);
+    if (mesh.name == "window") EXPECT_EQ(triangles(mesh.shape), 8u);
+    if (mesh.name == "window") EXPECT_EQ(make(mesh.shape).yield, OccluderYield::whole);
+  }
+}
+
+TEST(MakeOccluder, KeepsSidesApart) {
+  // Two halves of one wall, of which one is drawn from its front alone, are not merged.
+  const scene::Shape wall = test::surface(8, 8, false, false, [](float u, float v) { return Vec3{u, v, 0}; });
+  std::vector<Sides> sides(wall.indices.size() / 3, Sides::both);
+  std::fill(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2), Sides::front);
+  const auto made = make_occluder(wall.positions, wall.indices, sides);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->sides.size(), 4u);
+  EXPECT_EQ(std::ranges::count(made->sides, Sides::front), 2);
+}
+
+TEST(MakeOccluder, KnowsWhatIsInside) {
+  scene::Shape ball = scene::sphere(3), open = ball;
+  EXPECT_GT(make(ball, Sides::front).solid_triangles, 0u);
+  for (std::size_t i = 0; i < ball.indices.size(); i += 3)
+    std::swap(ball.indices[i + 1], ball.indices[i + 2]);
+  EXPECT_EQ(make(ball, Sides::front).yield, OccluderYield::thin);  // from outside nothing of it is drawn
+  EXPECT_GT(make(ball, Sides::both).solid_triangles, 0u);
+  open.indices.resize(open.indices.size() - 3);
+  // Through a hole one sees what is inside: only what turns its back to that may occlude, and that one-sided.
+  const Occluder holed = make(open);
+  EXPECT_TRUE(holed.boxes.empty());
+  EXPECT_EQ(std::ranges::count(holed.sides, Sides::both), 0);
+  // Every triangle twice, once either way round: there is no inside.
+  scene::Shape both = scene::sphere(3);
+  const std::size_t count = both.indices.size();
+  for (std::size_t i = 0; i < count; i += 3)
+    both.indices.insert(both.indices.end(), {both.indices[i], both.indices[i + 2], both.indices[i + 1]});
+  EXPECT_EQ(make(both).solid_triangles, 0u);
+}
+
+TEST(MakeOccluder, KeepsWithinItsMeans) {
+  for (const std::uint32_t most : {0u, 3u, 20u}) {
+    for (const NamedMesh& mesh : test::closed_concave_meshes()) {
+      if (mesh.name != "bell") continue;
+      const Occluder made = make(mesh.shape, Sides::both, {most, most / 4});
+      EXPECT_LE(made.sides.size(), most) << mesh.name;
+      EXPECT_EQ(made.indices.size(), 3 * made.sides.size());
+      EXPECT_LE(made.boxes.size(), most / 4);
+      EXPECT_EQ(made.sides.empty(), most == 0) << mesh.name << " of " << most;
+    }
+  }
+}
+
+TEST(MakeOccluder, FarFromTheOriginIsStillInside) {
+  // Floats there are 1/16 m apart: the ball of 8 m is made of few places, and what is made stays within them.
+  const auto far = [](const Vec3& p) { return Vec3{1e6f + 8 * p.x, 8 * p.y, 8 * p.z}; };
+  const Occluder made = make(test::moved(scene::sphere(2), far));
+  for (const Vec3& p : made.positions) {
+    const double x = (p.x - 1e6) / 8, y = p.y / 8.0, z = p.z / 8.0;
+    EXPECT_LT(x * x + y * y + z * z, 1.02);
+  }
+  // A thousand times as far its sides are one.
+  const Occluder none = make(test::moved(scene::sphere(3), [](const Vec3& p) {
+    return Vec3{1e9f + p.x, p.y, p.z};
+  }));
+  EXPECT_EQ(none.solid_triangles, 0u);
+}
+
+TEST(MakeOccluder, CoversWhatTheMeshCoversByRaysInDoubles) {
+  scene::Random random(77);
+  for (const Form form : {Form::convex, Form::concave}) {
+    const scene::Shape shape =
+        form == Form::convex ? scene::sphere(2) : test::closed_concave_meshes()[3].shape;
+    const Occluder made = make(shape, Sides::front);
+    const OccluderMesh mesh = *OccluderMesh::make(made.positions, made.indices, made.sides);
+    std::size_t covered = 0, all = 0;
+    for (int round = 0; round < 6; ++round) {
+      const Vec3 way = random.direction();
+      const Camera camera{
+          .eye = test::scaled(way, 6), .forward = test::scaled(way, -1), .vertical_fov = 0.7f};
+      const View view = *make_view(camera, 48, 48);
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}));
+      ASSERT_TRUE(buffer.draw_mesh(mesh));
+      std::vector<float> nearness(std::size_t{48} * 48);
+      ASSERT_TRUE(buffer.read_nearness(nearness));
+      const test::ExactRays rays(view);
+      for (std::size_t pixel = 0; pixel < nearness.size(); ++pixel) {
+        double truth = test::ExactRays::kMiss;
+        for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
+          const auto at = [&](std::size_t k) { return shape.positions[shape.indices[i + k]]; };
+          truth =
+              std::max(truth, rays.hit(pixel % 48 + 0.5, pixel / 48 + 0.5, std::array{at(0), at(1), at(2)}));
+        }
+        ASSERT_LE(nearness[pixel], truth) << "round " << round << " pixel " << pixel;
+        covered += nearness[pixel] > test::ExactRays::kMiss, all += truth > test::ExactRays::kMiss;
+      }
+    }
+    EXPECT_GT(covered, all / 2);
+  }
+}
+
+// The same bits on every machine: nothing of it depends on the processor.
+TEST(MakeOccluder, IsTheSameEverywhere) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](float f) { hash = (hash ^ std::bit_cast<std::uint32_t>(f)) * 0x100000001b3u; };
+  // Coordinates without sines, which every library rounds otherwise.
+  scene::Shape ball = scene::sphere(3);
+  for (Vec3& p : ball.positions) p = {p.x + 0.5f * p.y * p.y, p.y, p.z * (1 - 0.7f * p.x * p.x)};
+  for (const scene::Shape& shape : {scene::sphere(2), ball}) {
+    const Occluder made = make(shape);
+    for (const std::uint32_t i : made.indices)
+      add(made.positions[i].x), add(made.positions[i].y), add(made.positions[i].z);
+    for (const Box& b : made.boxes) add(b.min.x), add(b.min.y), add(b.max.z);
+  }
+  EXPECT_EQ(hash, 8501133365614323899u);
+}
+
+}  // namespace
+}  // namespace sightline
