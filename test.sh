@@ -51,6 +51,9 @@ tests/structure/add_a_method.sh build/release
 stage "surfaces"
 scripts/check-surfaces.sh build/release
 
+stage "occlusion among 120,000 objects"
+scripts/check-occlusion.sh build/release
+
 stage "documents"
 scripts/check-docs.py build/release
 tests/structure/planted_docs.sh build/release

@@ -62,7 +62,7 @@ library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_rea
 library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
 library/geometry/radix_sort.hpp: workbench/submission/draw_list.cpp
 library/pvs/byte_reader.hpp: workbench/io/byte_reader.hpp
-library/rays/bvh.hpp: workbench/methods/ray_pvs/
+library/rays/bvh.hpp: workbench/methods/ray_pvs/ workbench/methods/raster_occlusion/hroc.cpp
 library/rays/ray_grid.hpp: workbench/methods/ray_pvs/
 library/rays/ray_hits.hpp: workbench/methods/ray_pvs/ workbench/partition/triangle_rays
 library/rays/wide_rays.hpp: workbench/methods/ray_pvs/

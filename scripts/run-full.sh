@@ -28,6 +28,7 @@ sanitizers() { cmake --build --preset asan && ctest --preset asan -j"$(nproc)"; 
 line sanitizers sanitizers
 line surfaces scripts/check-surfaces.sh build/release --full
 line occluders scripts/check-occluders.sh build/release
+line occlusion scripts/check-occlusion.sh build/release --full
 line reproductions scripts/check-reproductions.sh build/release
 line ports scripts/check-ports.sh build/release --full
 line bare scripts/check-bare.sh

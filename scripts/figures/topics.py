@@ -98,7 +98,7 @@ def verified(key, scene, views, *arguments):
 
 # Along whole walks, where one object in fifty is visible.
 WALKS = ("czest2ctf", "czest3ctf", "ctf_inyard")
-RASTER = "vfc-vc,roc,hroc,vertex-chunk,resident-chunk,hiz,masked"
+RASTER = "vfc-vc,roc,hroc,hroc?leaf=boxes,ioc,ihzb,vertex-chunk,resident-chunk,hiz,masked"
 
 
 def scenes(quick):
@@ -122,7 +122,7 @@ def scenes(quick):
                        ("forest", "world:forest?trees=3000&size=300")):
         rows += verified(key, scene, views)
     return rows + verified("irregular-drawn", "world:irregular?detail=1", 5 if quick else 40, "--device=any",
-                           "--methods=roc,hroc,vertex-chunk,resident-chunk,hiz", "--moving=0.1")
+                           "--methods=roc,hroc,ioc,ihzb,vertex-chunk,resident-chunk,hiz", "--moving=0.1")
 
 
 def surfaces(quick):

@@ -92,7 +92,7 @@ private:
   std::uint64_t visible_ = 0, kept_ = 0;
 };
 
-inline const std::vector<std::string> kOcclusionMethods{"roc", "hroc", "vertex-chunk", "resident-chunk",
-                                                        "hiz"};
+inline const std::vector<std::string> kOcclusionMethods{"roc",          "hroc",           "ioc", "ihzb",
+                                                        "vertex-chunk", "resident-chunk", "hiz"};
 
 }  // namespace sightline

@@ -14,7 +14,7 @@ namespace {
 // How many times what is visible is kept, measured, and the margin that the bounds below add to it.
 struct Stated {
   const char* world;
-  double raster, hiz, masked;  ///< raster: roc, hroc, vertex-chunk, resident-chunk
+  double raster, hiz, masked;  ///< raster: every method that tests boxes by the pixel
 };
 constexpr double kMargin = 1.1;
 constexpr Stated kScenes[] = {
@@ -30,6 +30,9 @@ TEST_P(KeepsLittle, OfWhatIsNotVisible) {
   const Stated& stated = GetParam();
   const std::map<std::string, double> most{{"roc", stated.raster},
                                            {"hroc", stated.raster},
+                                           {"hroc?leaf=boxes", stated.raster},
+                                           {"ioc", stated.raster},
+                                           {"ihzb", stated.raster},
                                            {"vertex-chunk", stated.raster},
                                            {"resident-chunk", stated.raster},
                                            {"hiz", stated.hiz},

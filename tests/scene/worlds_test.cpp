@@ -43,6 +43,32 @@ TEST(Worlds, HaveThePublishedSizes) {
   EXPECT_EQ(generate_world("regular?detail=2").triangles(0), 320u);
 }
 
+TEST(Worlds, SpheresStandInASquare) {
+  EXPECT_EQ(generate_world("regular?spheres=120000&detail=0").size(), 120000u);
+  EXPECT_EQ(generate_world("irregular?spheres=120000&detail=0").size(), 120000u);
+  const Scene named = generate_world("regular?detail=0"),
+              counted = generate_world("regular?spheres=9024&detail=0");
+  EXPECT_TRUE(same_bytes(named.transform, counted.transform));
+  const Scene prime = generate_world("regular?spheres=10007&detail=0");
+  ASSERT_EQ(prime.size(), 10007u);
+  const Box all = extent(prime);
+  EXPECT_NEAR(all.max.x - all.min.x, all.max.z - all.min.z, 3 * 2.5);
+  EXPECT_EQ(generate_world("regular?spheres=1&detail=0").size(), 1u);
+}
+
+TEST(Worlds, RefuseSpheresThatCannotBe) {
+  for (const char* world : {"regular", "irregular"}) {
+    for (const char* spheres : {"0", "-5", "1.5", "4000001", "many", ""}) {
+      const std::string specification = std::string(world) + "?spheres=" + spheres;
+      EXPECT_THAT(test::refusal([&] { generate_world(specification); }),
+                  testing::HasSubstr("expected a whole number from 1 to 4000000"))
+          << specification;
+    }
+  }
+  EXPECT_THAT(test::refusal([] { generate_world("regular?spheres=400&rows=30"); }),
+              testing::HasSubstr("'spheres' goes without 'columns' and 'rows'"));
+}
+
 TEST(Worlds, AForestStandsOnItsGround) {
   const Scene flat = generate_world("forest?trees=500"), hilly = generate_world("forest?trees=500&ground=64");
   ASSERT_EQ(hilly.size(), flat.size() + 1);

@@ -180,8 +180,8 @@ void Device::make_layout() {
   using Stage = vk::ShaderStageFlagBits;
   const std::array bindings{
       vk::DescriptorSetLayoutBinding{0, vk::DescriptorType::eUniformBuffer, 1, Stage::eAll},
-      vk::DescriptorSetLayoutBinding{1, vk::DescriptorType::eCombinedImageSampler, Stage::eCompute,
-                                     **sampler_}};
+      vk::DescriptorSetLayoutBinding{1, vk::DescriptorType::eCombinedImageSampler,
+                                     Stage::eCompute | Stage::eFragment, **sampler_}};
   set_layout_.emplace(*device_, vk::DescriptorSetLayoutCreateInfo{{}, bindings});
   const vk::PushConstantRange push{vk::ShaderStageFlagBits::eAll, 0, 128};
   layout_.emplace(*device_, vk::PipelineLayoutCreateInfo{{}, **set_layout_, push});

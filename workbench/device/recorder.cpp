@@ -37,9 +37,9 @@ void Recorder::begin_rendering(const Into& into) const {
     colour.clearValue.color = vk::ClearColorValue(into.clear_value);
   }
   depth.imageView = depth_image.view();
-  depth.imageLayout = depth_image.layout();
+  depth.imageLayout = into.read_depth ? kReadLayout : depth_image.layout();
   depth.loadOp = load(into.clear_depth);
-  depth.storeOp = vk::AttachmentStoreOp::eStore;
+  depth.storeOp = into.read_depth ? vk::AttachmentStoreOp::eNone : vk::AttachmentStoreOp::eStore;
   depth.clearValue.depthStencil = vk::ClearDepthStencilValue{reversed() ? 0.0f : 1.0f, 0};
   vk::RenderingInfo info;
   info.renderArea = vk::Rect2D{{0, 0}, {depth_image.width(), depth_image.height()}};

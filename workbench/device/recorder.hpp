@@ -52,6 +52,7 @@ public:
     const Image* colour = nullptr;  ///< none: depth only
     const Image* depth = nullptr;   ///< null: the frame's own
     bool clear_colour = false, clear_depth = false;
+    bool read_depth = false;  ///< between Image::begin_reading() and end_reading(): tested, never written
     std::array<std::uint32_t, 4> clear_value{};  ///< bits of the clear colour
   };
   void begin_rendering(const Into& into) const;

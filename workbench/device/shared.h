@@ -29,6 +29,9 @@ struct ViewData {
   float coordinate_error;
   float near_push;  // metres by which plane 4 lies before the near plane, at least
   uint reversed;    // 1: the near plane lies at depth 1
+  // What is seen at x, y (-1 … 1) is the ray origin + t · direction, each of them [0] + x · [1] + y · [2]. t
+  // grows away from the eye: it is w under perspective, else 0 at the near plane and 1 at the far one.
+  vec3 ray_origin[3], ray_direction[3];
 };
 
 struct ObjectData {
@@ -75,7 +78,7 @@ struct CommandData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewData) == 64 + 96 + 48 + 28);
+static_assert(sizeof(ViewData) == 64 + 96 + 48 + 28 + 72);
 static_assert(sizeof(ObjectData) == 64 && sizeof(BoxData) == 32 && sizeof(MeshData) == 16 &&
               sizeof(CommandData) == 20 && sizeof(CornerData) == 20);
 }  // namespace sightline::device::shared

@@ -38,6 +38,29 @@ Vec4 far_end(const View& view) {
   return endless ? Vec4{0, 0, 0, 1} : Vec4{n.x, n.y, n.z, plane.distance};
 }
 
+// Of the matrix as it was rounded, which is what vertices are placed by. Its inverse maps what is in clip
+// space at x, y, z, 1 to a point under perspective, too, so that all of those are on one ray.
+void set_rays(shared::ViewData& out) {
+  const glm::dmat4 inverse = glm::inverse(geometry::to_double(out.world_to_clip));
+  const glm::dvec4 depth = inverse[2], across[]{inverse[3], inverse[0], inverse[1]};
+  const bool orthographic = out.eye.w > 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    glm::dvec3 origin(0), direction(0);
+    if (orthographic) {
+      const double scale = 1 / inverse[3].w;
+      origin = scale * glm::dvec3(across[i]);
+      if (i == 0 && out.reversed) origin += scale * glm::dvec3(depth);
+      if (i == 0) direction = (out.reversed ? -scale : scale) * glm::dvec3(depth);
+    } else {
+      const glm::dvec3 eye = glm::dvec3(depth) / depth.w;
+      if (i == 0) origin = eye;
+      direction = glm::dvec3(across[i]) - across[i].w * eye;
+    }
+    out.ray_origin[i] = geometry::to_vec3(origin);
+    out.ray_direction[i] = geometry::to_vec3(direction);
+  }
+}
+
 }  // namespace
 
 shared::ViewData view_data(const View& view, const Box& extent) noexcept {
@@ -60,6 +83,7 @@ shared::ViewData view_data(const View& view, const Box& extent) noexcept {
   out.metres_per_w = projector.metres_per_w;
   out.coordinate_error = projector.coordinate_error;
   out.reversed = has_reversed_depth(view);
+  set_rays(out);
   return out;
 }
 

@@ -27,6 +27,7 @@ Json row_json(const Comparison& comparison, const Row& row) {
   out["culled_facing"] = row.stats.culled_facing;
   out["culled_occlusion"] = row.stats.culled_occlusion;
   out["nodes_visited"] = row.stats.nodes_visited;
+  out["rays"] = row.stats.rays;
   out["draw_calls"] = row.stats.draw_calls;
   out["triangles"] = row.stats.triangles;
   out["cull_vertices"] = row.stats.cull_vertices;

@@ -12,6 +12,8 @@
   METHOD(kVfcVc)                          \
   METHOD(kRoc)                            \
   METHOD(kHroc)                           \
+  METHOD(kIoc)                            \
+  METHOD(kIhzb)                           \
   METHOD(kVertexChunk)                    \
   METHOD(kResidentChunk)                  \
   METHOD(kHiz)                            \

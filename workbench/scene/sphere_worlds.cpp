@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include <sightline/workbench/error.hpp>
+
 #include "workbench/scene/random.hpp"
 #include "workbench/scene/shapes.hpp"
 #include "workbench/scene/worlds.hpp"
@@ -17,9 +19,13 @@ constexpr ParameterInfo kDetail{"detail", "subdivisions of each sphere: 20·4^de
                                 true};
 constexpr ParameterInfo kSeed{"seed", "of the random numbers", "1", 0, 4294967295.0, true};
 
+constexpr const char *kColumns = "94", *kRows = "96";
+constexpr const char* kByRows = "columns x rows";
 constexpr std::array kRegularParameters{
-    ParameterInfo{"columns", "spheres along x", "94", 1, 4096, true},
-    ParameterInfo{"rows", "spheres along z", "96", 1, 4096, true},
+    ParameterInfo{"spheres", "how many, in a square whose last row may be short; without columns and rows",
+                  kByRows, 1, 4000000, true},
+    ParameterInfo{"columns", "spheres along x", kColumns, 1, 4096, true},
+    ParameterInfo{"rows", "spheres along z", kRows, 1, 4096, true},
     ParameterInfo{"spacing", "metres between centres; the radius is 1", "2.5", 0.1, 1000},
     kDetail,
 };
@@ -45,8 +51,23 @@ void add_viewpoints(Scene& scene) {
   scene.viewpoints.push_back({"far", {x, 0.75f * width, z + 0.9f * width}, {0, -0.75f, -0.9f}});
 }
 
-Scene make_regular(const Parameters& parameters) {
+struct RegularGrid {
+  std::uint32_t columns, rows, spheres;
+};
+
+RegularGrid regular_grid(const Parameters& parameters) {
   const std::uint32_t columns = parameters.count("columns"), rows = parameters.count("rows");
+  if (parameters.word("spheres") == kByRows) return {columns, rows, columns * rows};
+  if (parameters.word("columns") != kColumns || parameters.word("rows") != kRows) {
+    throw Error("world 'regular': 'spheres' goes without 'columns' and 'rows', expected one or the others");
+  }
+  const std::uint32_t spheres = parameters.count("spheres");
+  const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(spheres)));
+  return {side, (spheres + side - 1) / side, spheres};
+}
+
+Scene make_regular(const Parameters& parameters) {
+  const auto [columns, rows, spheres] = regular_grid(parameters);
   const float spacing = static_cast<float>(parameters.number("spacing"));
   Scene scene;
   const std::uint32_t mesh = add_sphere_mesh(scene, parameters);
@@ -54,7 +75,7 @@ Scene make_regular(const Parameters& parameters) {
     for (std::uint32_t column = 0; column < columns; ++column) {
       const float x = spacing * (static_cast<float>(column) - 0.5f * static_cast<float>(columns - 1));
       const float z = spacing * (static_cast<float>(row) - 0.5f * static_cast<float>(rows - 1));
-      scene.add_object(mesh, place({x, 1, z}, 1));
+      if (scene.size() < spheres) scene.add_object(mesh, place({x, 1, z}, 1));
     }
   }
   add_viewpoints(scene);

@@ -1,150 +1,195 @@
-// Hierarchical raster occlusion culling (Lee & Shin 2023, section 2): the boxes of a tree, level by level;
-// only the children of a visible node go on. Starts from last frame's visible nodes; nothing is read back.
-#include <bit>
+// Hierarchical raster occlusion culling (Lee, Jeong, Seok & Lee 2021): coarse groups of a tree of boxes are
+// rasterised once against the depth of what was visible last frame; inside their bounds a ray a pixel marks
+// every object that it meets before that depth. A constant number of draws and dispatches.
+#include <limits>
 
-#include "workbench/methods/raster_occlusion/box_tree.hpp"
+#include "library/rays/bvh.hpp"
 #include "workbench/methods/raster_occlusion/occlusion.hpp"
 
 namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kFront[] =
-#include "shaders/hroc_front.comp.inc"
+constexpr std::uint32_t kHrocOccluders[] =
+#include "shaders/hroc_occluders.comp.inc"
     ;
-constexpr std::uint32_t kExpand[] =
-#include "shaders/hroc_expand.comp.inc"
+constexpr std::uint32_t kHrocGroups[] =
+#include "shaders/hroc_groups.comp.inc"
     ;
-constexpr std::uint32_t kLift[] =
+constexpr std::uint32_t kHrocLift[] =
 #include "shaders/hroc_lift.comp.inc"
+    ;
+constexpr std::uint32_t kHrocVert[] =
+#include "shaders/hroc_group.vert.inc"
+    ;
+constexpr std::uint32_t kHrocFrag[] =
+#include "shaders/hroc_group.frag.inc"
     ;
 
 struct HrocPush {
-  vk::DeviceAddress nodes, children, parents, marks, seen, list, next_list, test, next_test;
-  std::uint32_t interior, total;
+  vk::DeviceAddress boxes, nodes, parents, leaves, marks, seen, occluders, groups, test;
+  std::uint32_t total, objects, most, everywhere;
+  float least;
 };
+
+/// As in hroc.h.
+struct GroupTest {
+  vk::DrawIndirectCommand draw{0, 1, 0, 0};
+  std::uint32_t rays = 0, nodes = 0;
+};
+
+constexpr std::array kHrocParameters{
+    submission::kContributionParameter,
+    submission::kThresholdParameter,
+    ParameterInfo{"leaf",
+                  "what is rasterised: groups of the tree, or every object's box, wherever it lies, as Lee & "
+                  "Shin count it",
+                  "groups", 0, 0, false, "groups|boxes"},
+    ParameterInfo{"most", "objects in a group", "64", 1, 1000000, true},
+    ParameterInfo{"occluder", "px², the least area of an object that lays down depth", "16", 0, 1e9},
+    ParameterInfo{"count", "rays and the nodes that they look at, which takes time", "off", 0, 0, false,
+                  "off|on"}};
+
+std::vector<std::uint32_t> constants_of(const submission::Contribution& contribution,
+                                        const Parameters& parameters) {
+  const auto [test, threshold] = shader_constants(contribution);
+  return {test, threshold, parameters.word("count") == "on" ? 1u : 0u};
+}
 
 class Hroc final : public MarkAndDraw {
 public:
   Hroc(device::Renderer& renderer, const Parameters& parameters)
       : MarkAndDraw(renderer, parameters),
-        tree_(renderer.scene()),
-        boxes_(make_box_pipeline(renderer.device(), contribution_)),
-        front_(renderer.device(), kFront),
-        expand_(renderer.device(), kExpand),
-        lift_(renderer.device(), kLift) {
+        every_box_(parameters.word("leaf") == "boxes"),
+        most_(every_box_ ? 1 : parameters.count("most")),
+        least_(static_cast<float>(parameters.number("occluder"))),
+        find_occluders_(renderer.device(), kHrocOccluders, shader_constants(contribution_)),
+        find_groups_(renderer.device(), kHrocGroups, shader_constants(contribution_)),
+        lift_(renderer.device(), kHrocLift),
+        cast_(renderer.device(), {.vertex = kHrocVert,
+                                  .fragment = kHrocFrag,
+                                  .constants = constants_of(contribution_, parameters),
+                                  .depth_write = false}),
+        occluder_draws_(renderer.draws().make_buffers(renderer.device())) {
     device::Device& device = renderer.device();
-    std::vector<device::shared::BoxData> boxes;
-    for (std::uint32_t node = 0; node < tree_.total(); ++node) boxes.push_back(box_of(node));
-    node_boxes_ = upload(device, boxes, "the tree's boxes");
-    nodes_ = upload(device, tree_.nodes(), "the tree");
-    children_ = upload(device, tree_.children(), "the tree");
-    parents_ = upload(device, tree_.parents(), "the tree");
-    const auto words = [&](std::uint64_t count) {
-      return device::Buffer(device, count * 4, device::Memory::device, "the tree's marks");
+    tree_.build(renderer.scene().bounds);
+    upload_tree(device);
+    const auto nothing = [&](std::size_t count) {
+      return upload(device, std::vector<std::uint32_t>(count), "the tree's marks");
     };
-    marks_ = words(tree_.total());
-    seen_ = upload(device, std::vector<std::uint32_t>(tree_.interior()), "the tree's marks");
-    for (device::Buffer& list : lists_) list = words(tree_.total());
-    tests_ = words(4 * std::uint64_t{tree_.levels() + 1});
+    marks_ = nothing(renderer.scene().size());
+    occluders_ = nothing(renderer.scene().size());
+    groups_ = nothing(tree_.nodes().size());
+    seen_ = nothing(tree_.nodes().size());
+    test_ = nothing(sizeof(GroupTest) / 4);
   }
 
   void do_update(std::span<const ObjectId> objects) override {
-    tree_.refit(renderer_.scene(), objects, changed_);
-    if (changed_.empty()) return;
-    device::Device& device = renderer_.device();
-    const std::size_t each = sizeof(device::shared::BoxData);
-    if (staging_.size() < changed_.size() * each) {
-      staging_ = device::Buffer(device, changed_.size() * each, device::Memory::upload, "moved boxes");
+    if (objects.empty()) return;
+    tree_.refit(renderer_.scene().bounds);
+    const auto nodes = tree_.nodes();
+    if (staging_.size() < nodes.size_bytes()) {
+      staging_ =
+          device::Buffer(renderer_.device(), nodes.size_bytes(), device::Memory::upload, "moved boxes");
     }
-    regions_.clear();
-    for (std::size_t i = 0; i < changed_.size(); ++i) {
-      staging_.mapped<device::shared::BoxData>()[i] = box_of(changed_[i]);
-      regions_.push_back({i * each, changed_[i] * each, each});
-    }
-    device.run([&](const vk::raii::CommandBuffer& commands) {
-      commands.copyBuffer(staging_.handle(), node_boxes_.handle(), regions_);
+    std::ranges::copy(nodes, staging_.mapped<rays::BvhNode>());
+    renderer_.device().run([&](const vk::raii::CommandBuffer& commands) {
+      commands.copyBuffer(staging_.handle(), nodes_.handle(), vk::BufferCopy{0, 0, nodes.size_bytes()});
       device::full_barrier(commands);
     });
   }
 
 private:
-  [[nodiscard]] device::shared::BoxData box_of(std::uint32_t node) const {
-    return node < tree_.interior() ? device::box_data(tree_.box(node), 0)
-                                   : device::box_data(renderer_.scene(), node - tree_.interior());
+  void upload_tree(device::Device& device) {
+    const auto nodes = tree_.nodes();
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> parents(nodes.size(), kNone), leaves(renderer_.scene().size());
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i].descendants == 0) {
+        leaves[nodes[i].object] = i;
+        continue;
+      }
+      parents[i + 1] = i;
+      parents[i + 2 + nodes[i + 1].descendants] = i;
+    }
+    nodes_ = device::upload_bytes(device, std::as_bytes(nodes), "the tree");
+    parents_ = upload(device, parents, "the tree");
+    leaves_ = upload(device, leaves, "the tree");
   }
 
-  [[nodiscard]] vk::DeviceAddress test_address(std::uint32_t level) const noexcept {
-    return tests_.address() + 16 * level;
+  [[nodiscard]] HrocPush push() const {
+    const device::SceneBuffers& scene = renderer_.buffers();
+    return {scene.box_data.address(),
+            nodes_.address(),
+            parents_.address(),
+            leaves_.address(),
+            marks_.address(),
+            seen_.address(),
+            occluders_.address(),
+            groups_.address(),
+            test_.address(),
+            static_cast<std::uint32_t>(tree_.nodes().size()),
+            scene.objects,
+            2 * (most_ - 1),
+            every_box_ ? 1u : 0u,
+            least_};
+  }
+
+  const device::DrawBuffers& occluders(device::Recorder& frame) override {
+    const auto pass = frame.pass("find occluders", device::PassKind::cull);
+    frame.dispatch(find_occluders_, push(), renderer_.buffers().objects);
+    renderer_.draws().build(frame, occluders_.address(), {}, 0, occluder_draws_);
+    return occluder_draws_;
   }
 
   void test(device::Recorder& frame) override {
-    const auto pass = frame.pass("box tests level by level", device::PassKind::cull);
+    const auto pass = frame.pass("groups and rays", device::PassKind::cull);
     frame.fill(marks_, 0, marks_.size());
-    // Draw commands {0 vertices, 1 instance, 0, 0} a level.
-    first_commands_.assign(4 * std::size_t{tree_.levels() + 1}, 0);
-    for (std::size_t i = 1; i < first_commands_.size(); i += 4) first_commands_[i] = 1;
-    frame.commands.updateBuffer<std::uint32_t>(tests_.handle(), 0, first_commands_);
+    frame.commands.updateBuffer<GroupTest>(test_.handle(), 0, GroupTest{});
     device::full_barrier(frame.commands);
-    HrocPush push{nodes_.address(),    children_.address(),
-                  parents_.address(),  marks_.address(),
-                  seen_.address(),     0,
-                  lists_[0].address(), 0,
-                  test_address(0),     tree_.interior(),
-                  tree_.total()};
-    frame.dispatch(front_, push, tree_.total());
-    for (std::uint32_t level = 0; level < tree_.levels(); ++level) {
-      frame.begin_rendering({});
-      frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias,
-                 vk::CullModeFlagBits::eBack);
-      frame.push(BoxPush{node_boxes_.address(), marks_.address(), lists_[level % 2].address(), 1,
-                         tree_.interior(), 1});
-      frame.commands.drawIndirect(tests_.handle(), 16 * level, 1, 16);
-      frame.end_rendering();
-      device::full_barrier(frame.commands);
-      push.list = lists_[level % 2].address();
-      push.next_list = lists_[(level + 1) % 2].address();
-      push.test = test_address(level);
-      push.next_test = test_address(level + 1);
-      frame.dispatch(expand_, push, 32 * 64, 64);
-    }
+    frame.dispatch(find_groups_, push(), static_cast<std::uint32_t>(tree_.nodes().size()));
+    frame.targets.depth.begin_reading(frame.commands);
+    frame.begin_rendering({.read_depth = true});
+    frame.bind(cast_, device::Recorder::Compare::nearer_or_equal, device::kTestBias,
+               vk::CullModeFlagBits::eBack);
+    frame.push(push());
+    frame.commands.drawIndirect(test_.handle(), 0, 1, sizeof(vk::DrawIndirectCommand));
+    frame.end_rendering();
+    frame.targets.depth.end_reading(frame.commands);
+    device::full_barrier(frame.commands);
     frame.fill(seen_, 0, seen_.size());
-    frame.dispatch(lift_, push, renderer_.buffers().objects);
+    frame.dispatch(lift_, push(), renderer_.buffers().objects);
   }
 
-  [[nodiscard]] vk::DeviceAddress marks() const noexcept override {
-    return marks_.address() + 4 * std::uint64_t{tree_.interior()};
-  }
-
+  [[nodiscard]] vk::DeviceAddress marks() const noexcept override { return marks_.address(); }
   [[nodiscard]] std::vector<std::uint32_t> read_marks() override {
-    std::vector<std::uint32_t> all = read_words(renderer_.device(), marks_, tree_.total());
-    all.erase(all.begin(), all.begin() + tree_.interior());
-    return all;
+    return read_words(renderer_.device(), marks_, renderer_.buffers().objects);
   }
 
   void count(CullStats& stats) override {
-    const std::vector<std::uint32_t> commands =
-        read_words(renderer_.device(), tests_, 4 * std::size_t{tree_.levels()});
-    for (std::size_t i = 0; i < commands.size(); i += 4) stats.cull_vertices += commands[i];
-    stats.nodes_visited = stats.cull_vertices / kBoxVertices;
-    stats.tested = std::min<std::uint64_t>(stats.nodes_visited, stats.objects);
+    const std::vector<std::uint32_t> words = read_words(renderer_.device(), test_, sizeof(GroupTest) / 4);
+    stats.cull_vertices = words[0];
+    stats.tested = words[0] / kBoxVertices;
+    stats.rays = words[4];
+    stats.nodes_visited = words[5];
   }
 
-  BoxTree tree_;
-  device::GraphicsPipeline boxes_;
-  device::ComputePipeline front_, expand_, lift_;
-  device::Buffer node_boxes_, nodes_, children_, parents_, marks_, seen_, tests_, staging_;
-  std::array<device::Buffer, 2> lists_;
-  std::vector<std::uint32_t> changed_, first_commands_;
-  std::vector<vk::BufferCopy> regions_;
+  bool every_box_;
+  std::uint32_t most_;
+  float least_;
+  rays::Bvh tree_;
+  device::ComputePipeline find_occluders_, find_groups_, lift_;
+  device::GraphicsPipeline cast_;
+  device::DrawBuffers occluder_draws_;
+  device::Buffer nodes_, parents_, leaves_, marks_, occluders_, groups_, seen_, test_, staging_;
 };
 
 }  // namespace
 
 extern const MethodInfo kHroc{
     .name = "hroc",
-    .paper = "A: Lee & Shin 2023",
-    .summary = "roc on the boxes of a tree, level by level from last frame's visible nodes",
-    .device = on_device<Hroc>(Guarantee::exact, kOcclusionParameters)};
+    .paper = "Lee, Jeong, Seok & Lee 2021",
+    .summary = "groups of a tree rasterised once against last frame's visible objects, a ray a pixel inside",
+    .device = on_device<Hroc>(Guarantee::exact, kHrocParameters)};
 
 }  // namespace sightline::methods

@@ -66,9 +66,10 @@ MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
 
 void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
+  const device::DrawBuffers& depth = occluders(frame);
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::occluders);
-    renderer_.draw_solid(frame, draws_, Renderer::Style::depth, Renderer::Clear::depth);
+    renderer_.draw_solid(frame, depth, Renderer::Style::depth, Renderer::Clear::depth);
   }
   test(frame);
   {

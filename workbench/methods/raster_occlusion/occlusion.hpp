@@ -35,8 +35,8 @@ void report_visible(const device::Renderer& renderer, std::span<const std::uint3
                     device::VisibleDraws::Condition solid, device::VisibleDraws::Condition rest,
                     Frame& frame);
 
-/// The frame of roc, hroc and vertex-chunk: last frame's visible objects lay down depth for this frame's
-/// camera; boxes are tested against it; what is marked is drawn.
+/// The frame of roc, hroc, ioc, ihzb and vertex-chunk: last frame's visible objects lay down depth for this
+/// frame's camera; boxes are tested against it; what is marked is drawn.
 class MarkAndDraw : public Method {
 public:
   MarkAndDraw(device::Renderer& renderer, const Parameters& parameters);
@@ -46,6 +46,8 @@ public:
   void read_back(Frame& frame) final;
 
 protected:
+  /// Who lays down depth, of last frame's visible objects; finds them in a pass of its own.
+  virtual const device::DrawBuffers& occluders(device::Recorder&) { return draws_; }
   /// Clears marks and tests boxes, each in a pass of its own.
   virtual void test(device::Recorder& frame) = 0;
   /// Where object 0's mark lies.

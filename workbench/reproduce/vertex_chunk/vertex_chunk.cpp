@@ -18,12 +18,14 @@ namespace sightline::reproduce {
 namespace {
 
 // One contribution test for all that have one, as in the paper; then ours.
-constexpr std::array kCulling{"vfc-vc", "roc", "hroc", "vertex-chunk", "resident-chunk", "hiz"};
+constexpr std::array kCulling{"vfc-vc",          "roc", "hroc", "vertex-chunk", "resident-chunk", "hiz",
+                              "hroc?leaf=boxes", "ioc", "ihzb"};
 constexpr std::size_t kChunk = 4;  // after none
 
 std::vector<std::string> methods() {
   std::vector<std::string> all{"none"};
-  for (const char* name : kCulling) all.push_back(std::string(name) + "?contribution=area");
+  for (const std::string name : kCulling)
+    all.push_back(name + (name.find('?') != name.npos ? "&" : "?") + "contribution=area");
   return all;
 }
 
@@ -126,6 +128,16 @@ ChunkCounts count_chunks(const Scene& scene) {
   return counts;
 }
 
+// Counting takes time, so the methods that count are others than those that are timed.
+measure::Comparison count_rays(device::Device& device, Scene& scene, const Camera& near,
+                               measure::MeasureOptions options) {
+  const std::vector<std::string> counting{"hroc?count=on&contribution=area",
+                                          "hroc?leaf=boxes&count=on&contribution=area"};
+  measure::Bench bench(scene, counting, &device);
+  options.warm_up = 2, options.repeats = 1, options.timed_passes = 0;
+  return measure::compare(bench, {"near", {near}}, options);
+}
+
 }  // namespace
 
 Scene vertex_chunk_scene(const std::string& world, bool quick) {
@@ -147,6 +159,7 @@ VertexChunkWorld measure_vertex_chunk(device::Device& device, const std::string&
   const camera::CameraPath near = near_path(scene, views);
   world.near = measure::compare(bench, {"near", {near.cameras.front()}}, measure);
   const View view = or_throw(make_view(near.cameras.front(), measure.width, measure.height));
+  world.counted = count_rays(device, scene, near.cameras.front(), measure);
   world.passes = bench.run(bench.subjects()[kChunk], view, device::Timed::passes).passes;
   // The camera rises from where it is; after a change of view it takes two frames until what was marked in
   // vain is gone.

@@ -21,6 +21,7 @@ struct ChunkCounts {
 struct VertexChunkWorld {
   std::string name;                           ///< "regular" or "irregular"
   measure::Comparison near;                   ///< tables 1 to 4: one view near the ground
+  measure::Comparison counted;                ///< the same view by hroc, its rays counted
   measure::Comparison near_views, far_views;  ///< table 5: by headings, and from several sides
   measure::Comparison rising;                 ///< figure 7: the camera climbs straight up from the near view
   ChunkCounts chunks;

@@ -10,16 +10,13 @@ layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer marks;
   WordBuffer list;
-  uint listed;     // 0: box i is vertex i / 36's; 1: box list[i] is
+  uint listed;      // 0: box i is vertex i / 36's; 1: box list[i] is
   uint first_leaf;  // boxes before it hold others: by area only objects are judged
 };
 
 layout(location = 0) out flat uint id;
 
-// Two triangles a face, three bits a corner.
-const uint kCorners[36] = uint[](0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5, 0, 1, 4, 1, 5,
-                                 4, 2, 6, 3, 3, 6, 7);
-const uint kSquare[6] = uint[](0, 1, 2, 2, 1, 3);
+#include "box_corners.h"
 
 void main() {
   const uint place = gl_VertexIndex / 36, turn = gl_VertexIndex % 36;

@@ -5,10 +5,10 @@
 layout(local_size_x = 256) in;
 #include "workbench/device/shaders/invocation.h"
 
-// A node counts as visible next frame if an object below it is.
+// Every node above a visible object is to be split next frame.
 void main() {
   const uint object = invocation();
-  if (interior + object >= total || marks.at[interior + object] == 0) return;
-  uint node = parents.at[interior + object];
+  if (object >= objects || marks.at[object] == 0) return;
+  uint node = parents.at[leaves.at[object]];
   while (node != kNoParent && atomicExchange(seen.at[node], 1) == 0) node = parents.at[node];
 }

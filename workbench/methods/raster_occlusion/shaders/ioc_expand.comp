@@ -1,7 +1,7 @@
 #version 460
 #include "workbench/device/shared.h"
 
-#include "hroc.h"
+#include "ioc.h"
 layout(local_size_x = 64) in;
 #include "workbench/device/shaders/invocation.h"
 
