@@ -2,6 +2,7 @@
 // boxes and rays, and the paper's own ways. A grid of rays through a view, neighbours together, and rays from
 // anywhere to anywhere. Each checks its hits before it is timed.
 #include <benchmark/benchmark.h>
+#include <hwy/targets.h>
 
 #include <cstdlib>
 #include <map>
@@ -21,12 +22,20 @@
 namespace sightline::benchmarks {
 namespace {
 
+// As on a processor that has no more.
+struct OnlyAvx2 {
+  OnlyAvx2() { hwy::SetSupportedTargetsForTest(HWY_AVX2); }
+  ~OnlyAvx2() { hwy::SetSupportedTargetsForTest(0); }
+  OnlyAvx2(const OnlyAvx2&) = delete;
+  OnlyAvx2& operator=(const OnlyAvx2&) = delete;
+};
+
 struct Setting {
   Boxes boxes;
   rays::Bvh bvh;
   rays::WideBvh wide;
   BoxBvh face;
-  std::unique_ptr<EmbreeBoxes> fast, robust;
+  std::unique_ptr<EmbreeBoxes> fast, robust, avx2;
 };
 
 struct Rays {
@@ -89,6 +98,8 @@ const Setting& setting_of(std::int64_t count) {
   if (!s.face.build(s.boxes.view())) s.boxes = {};
   s.fast = std::make_unique<EmbreeBoxes>(s.boxes, RTC_SCENE_FLAG_NONE);
   s.robust = std::make_unique<EmbreeBoxes>(s.boxes, RTC_SCENE_FLAG_ROBUST);
+  const OnlyAvx2 without_avx512;
+  s.avx2 = std::make_unique<EmbreeBoxes>(s.boxes, RTC_SCENE_FLAG_NONE, "threads=1,isa=avx2");
   return s;
 }
 
@@ -144,6 +155,10 @@ void wide_rays(benchmark::State& state, const Case& on) {
     rays::cast_wide(s.wide, r.grid, stack, hits);
   });
 }
+void wide_rays_avx2(benchmark::State& state, const Case& on) {
+  const OnlyAvx2 without_avx512;
+  wide_rays(state, on);
+}
 void wide_rays_all_cores(benchmark::State& state, const Case& on) {
   const JobSystem jobs = tbb_jobs();
   std::vector<rays::WideStack> stacks(jobs.threads);
@@ -180,19 +195,21 @@ benchmark::internal::Benchmark* add(const std::string& name, const Case& on, Fun
 
 void add_all(const Case& on) {
   add("WideRays", on, wide_rays);
+  add("WideRaysAvx2", on, wide_rays_avx2);
   add("BoxBvh", on, box_bvh);
   for (const EmbreeForm& form : embree_forms()) {
-    for (const bool robust : {false, true}) {
-      const std::string name = form.name;
-      add(robust ? name + "Robust" : name, on, [name, robust](benchmark::State& state, const Case& with) {
-        run(
-            state, with,
-            [&](const Setting& s, const Rays& r, rays::RayHits& hits) {
-              r.embree.at(name)(robust ? *s.robust : *s.fast, hits);
-            },
-            true);
+    const std::string name = form.name;
+    const auto add_scene = [&](const std::string& called, std::unique_ptr<EmbreeBoxes> Setting::*scene) {
+      add(called, on, [name, scene](benchmark::State& state, const Case& with) {
+        const auto cast = [&](const Setting& s, const Rays& r, rays::RayHits& hits) {
+          r.embree.at(name)(*(s.*scene), hits);
+        };
+        run(state, with, cast, true);
       });
-    }
+    };
+    add_scene(name, &Setting::fast);
+    add_scene(name + "Robust", &Setting::robust);
+    add_scene(name + "Avx2", &Setting::avx2);
   }
   if (!on.coherent) return;
   add("WideRaysAllCores", on, wide_rays_all_cores)->UseRealTime();

@@ -58,7 +58,7 @@ HWY_INLINE hn::Mask<D> mask_of(D d, std::uint64_t bits) {
 
 // Writes the values of the mask's lanes one after another and returns how many there are; a whole vector is
 // written. Packed in a register first: the packing store is microcoded on some processors.
-#if HWY_TARGET == HWY_WASM  // by bits_of(), see there
+#if HWY_TARGET == HWY_WASM  // where Highway looks up byte by byte, with a branch each
 struct PackedBytes {
   alignas(16) std::uint8_t from[16][16] = {};
 
@@ -79,10 +79,9 @@ inline constexpr PackedBytes kPackedBytes;
 template <class D>
 HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
   static_assert(hn::MaxLanes(D()) == 4);
-  const hn::Repartition<std::uint8_t, D> bytes;
   const std::uint32_t bits = bits_of(d, keep);
-  const auto from = hn::Load(bytes, kPackedBytes.from[bits]);
-  hn::StoreU(hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, values), from)), d, out);
+  const v128_t from = wasm_v128_load(kPackedBytes.from[bits]);
+  wasm_v128_store(out, wasm_i8x16_swizzle(static_cast<v128_t>(values.raw), from));
   return static_cast<std::size_t>(std::popcount(bits));
 }
 #else

@@ -37,8 +37,10 @@ def frustum(quick):
     """Flat arrays, and the paper on a grid of cells."""
     rows = google_benchmark("frustum_cull", **repeats(quick))
     sizes = [10**n for n in range(4, 8)]
-    compare_with(rows, {f"{mine}/{n}": f"{other}/{n}" for n in sizes
-                        for mine, other in (("FlatSimd", "BareRead"), ("ScalarLoop", "FlatSimd"))})
+    pairs = [("FlatSimd", "BareRead"), ("ScalarLoop", "FlatSimd")]
+    pairs += [(f"PlainLoop{form}", "FlatSimd") for form in ("", "Out1", "Out2", "Out4")]
+    compare_with(rows, {f"{mine}{ids}/{n}": f"{other}{ids}/{n}" for n in sizes for ids in ("", "Coherent")
+                        for mine, other in pairs})
     paper = []
     for row in compare("world:forest", "grid-cell,object-frustum", "forest", frames=3 if quick else 10):
         method, what = row.case.split("/")
@@ -62,7 +64,8 @@ def occlusion(quick):
 def rays(quick):
     """Rays at boxes beside Embree, the paper's five ways, and rays at triangles."""
     rows = google_benchmark("ray_cast", **repeats(quick))
-    compare_with(rows, lambda name: name.replace(name.split("/")[0], "WideRays"))
+    # Beside our own with the same rays and the same vectors.
+    compare_with(rows, lambda name: re.sub("^.*?(Avx2)?(Random)?/", r"WideRays\1\2/", name))
     if quick:
         return rows
     said = reproduced("ray-pvs", "--quick")
