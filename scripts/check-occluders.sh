@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check-occluders.sh BUILD: occluders of the meshes that the tests generate, of files that the readers are tested on, and of
 # twenty models out of Debian's assimp-testmodels cover no pixel that their meshes do not cover: 300 views each, at four
-# times the resolution of an occlusion buffer of 160 x 160. Takes a quarter of an hour.
+# times the resolution of an occlusion buffer of 160 x 160. Takes half an hour.
 set -euo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/.."
