@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check-occluders.sh BUILD: occluders of the meshes that the tests generate, of files that the readers are tested on, and of
 # twenty models out of Debian's assimp-testmodels cover no pixel that their meshes do not cover: 300 views each, at four
-# times the resolution of an occlusion buffer of 160 x 160. Takes a quarter of an hour.
+# times the resolution of an occlusion buffer of 160 x 160. Takes half an hour.
 set -euo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/.."
@@ -23,11 +23,11 @@ examine() {
 }
 
 count=0
-for model in 3DS/fels.3ds 3DS/test1.3ds AC/Wuson.ac AC/SphereWithLight.ac B3D/WusonBlitz.b3d Collada/duck.dae \
-    Collada/teapots.DAE Collada/Cinema4D.dae Collada/sphere.dae Collada/earthCylindrical.DAE OBJ/WusonOBJ.obj OBJ/spider.obj \
-    OFF/Wuson.off PLY/Wuson.ply PLY/pond.0.ply STL/Wuson.stl STL/sphereWithHole.stl STL/Spider_ascii.stl X/Testwuson.X \
-    X/anim_test.x LWO/LWO2/hierarchy_smoothed.lwo LWO/LWO2/concave_self_intersecting.lwo LWO/LWO2/sphere_with_gradient.lwo \
-    LWO/LWOB/ConcavePolygon.lwo glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb OBJ/concave_polygon.obj; do
+for model in 3DS/fels.3ds 3DS/test1.3ds AC/Wuson.ac AC/SphereWithLight.ac Collada/COLLADA.dae Collada/Cinema4D.dae \
+    Collada/duck.dae Collada/sphere.dae LWO/LWO2/UglyVertexColors.lwo LWO/LWO2/Subdivision.lwo LWO/LWO2/hierarchy_smoothed.lwo \
+    LWO/LWO2/concave_polygon.lwo LWO/LWO2/sphere_with_gradient.lwo MD5/SimpleCube.md5mesh OBJ/spider.obj \
+    STL/Spider_ascii.stl STL/sphereWithHole.stl X/BCN_Epileptic.X glTF/CesiumMilkTruck/CesiumMilkTruck.gltf \
+    glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb glTF2/ClearCoat-glTF/ClearCoatTest.gltf OBJ/concave_polygon.obj; do
   [ -e "$models/$model" ] && [ $count -lt 20 ] || continue
   file=$folder/$(basename "$model" | tr . -).glb
   # What Assimp cannot write, or our reader refuses, is no evidence of anything.

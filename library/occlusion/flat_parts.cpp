@@ -59,7 +59,7 @@ FlatParts::FlatParts(const MeshParts& mesh)
 void FlatParts::add(const std::array<std::uint32_t, 3>& corners, bool one_sided, std::uint32_t part) {
   Candidate c;
   for (std::size_t k = 0; k < 3; ++k) c.corners[k] = mesh_.positions[corners[k]];
-  c.sides = one_sided ? Sides::front : Sides::both, c.part = part, c.area = area_of(c.corners);
+  c.sides = one_sided ? Sides::front : Sides::both, c.part = part, c.area = triangle_area(c.corners);
   if (c.area > 0) out_.push_back(c);
 }
 
@@ -126,7 +126,7 @@ bool FlatParts::find_outline(const glm::dvec3& up, Outline2& outline) const {
 
 }  // namespace
 
-double area_of(const std::array<Vec3, 3>& t) {
+double triangle_area(const std::array<Vec3, 3>& t) {
   const glm::dvec3 p = to_double(t[0]);
   return 0.5 * glm::length(glm::cross(to_double(t[1]) - p, to_double(t[2]) - p));
 }

@@ -16,7 +16,7 @@ struct Candidate {
   std::uint32_t part = 0;  ///< of MeshParts::parts
 };
 
-double area_of(const std::array<Vec3, 3>& corners);
+double triangle_area(const std::array<Vec3, 3>& corners);
 
 /// All triangles of the mesh with an area; those that lie on one plane and hang together are merged, where
 /// that makes fewer of them.

@@ -47,7 +47,7 @@ std::vector<Candidate> sound_triangles(const Solid& solid, const Shell& shell, s
       c.corners[k] = to_vec3(solid.to_mesh(rounded[k]));
       rounded[k] = solid.to_solid(to_double(c.corners[k]));
     }
-    c.area = area_of(c.corners);
+    c.area = triangle_area(c.corners);
     if (c.area > 0 && solid.holds(rounded)) out.push_back(c);
   }
   // All of a closed shell is seen from its front; of one with holes the far side shows through them.

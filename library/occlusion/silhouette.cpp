@@ -32,7 +32,7 @@ void draw(std::array<glm::dvec2, 3> t, Sides sides, Image& image) {
     for (int x = x0; x < x1; ++x) {
       const glm::dvec2 p(x + 0.5, y + 0.5);
       if (!beyond(t[0], t[1], p) && !beyond(t[1], t[2], p) && !beyond(t[2], t[0], p))
-        image.set(static_cast<std::size_t>(y * kSide + x));
+        image.set(static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x));
     }
   }
 }

@@ -131,10 +131,12 @@ SolidGrid::SolidGrid(const Solid& solid) : depth(std::size_t{kNodes} * kNodes * 
       if (!solid.crossings(place(0, y, z), 0, met)) met.clear();
       std::size_t passed = 0;
       int turns = 0;
+      double near = 2 * kStep;  // how far off the surface is at most: a step farther than before
       for (int x = 0; x < kNodes; ++x) {
         const glm::dvec3 at = place(x, y, z);
         for (; passed < met.size() && met[passed].at < at.x; ++passed) turns -= met[passed].turn;
-        const double away = solid.distance(at, 2 * kStep);
+        const double away = solid.distance(at, near);
+        near = std::min(2 * kStep, away + 1.001 * kStep);
         depth[index(x, y, z)] = static_cast<float>(solid.inside_by(turns, passed) ? away : -away);
       }
     }
