@@ -29,6 +29,7 @@ line sanitizers sanitizers
 line surfaces scripts/check-surfaces.sh build/release --full
 line reproductions scripts/check-reproductions.sh build/release
 line ports scripts/check-ports.sh build/release --full
+line web scripts/check-web.sh build/release --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh
 
