@@ -31,6 +31,7 @@ line occluders scripts/check-occluders.sh build/release
 line occlusion scripts/check-occlusion.sh build/release --full
 line reproductions scripts/check-reproductions.sh build/release
 line ports scripts/check-ports.sh build/release --full
+line web scripts/check-web.sh build/release --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh
 

@@ -1,4 +1,6 @@
 // What a strict TypeScript project sees.
+import { Scene } from 'three';
+import { SightlineCuller, type SightlineStats } from 'sightline-culling/three';
 import { BoxBvh, Culler, integers, OcclusionBuffer, ready, SightlineError, World, type CullView } from 'sightline-culling';
 import { initialise } from 'sightline-culling/wasm';
 import { World as CoreWorld } from 'sightline-culling/core';
@@ -21,3 +23,4 @@ export async function draw(view: CullView): Promise<Uint32Array> {
 export const later: (bytes: ArrayBuffer) => Promise<void> = initialise;
 export const threads: Promise<WorkerWorld> = WorkerWorld.start();
 export const tree: BoxBvh = new BoxBvh();
+export const stats: SightlineStats = new SightlineCuller(new Scene(), { occlusion: true }).stats;

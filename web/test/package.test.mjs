@@ -23,7 +23,7 @@ before(() => {
   writeFileSync(join(project, 'package.json'), '{ "name": "scratch", "type": "module", "private": true }');
   run(project, 'npm', 'install', '--offline', '--no-audit', '--no-fund', tarball);
   // What else the examples import is there already.
-  for (const name of ['three', '@types', 'typescript']) symlinkSync(join(tools, name), join(project, 'node_modules', name));
+  for (const name of ['three', '@types', '@webgpu', 'typescript']) symlinkSync(join(tools, name), join(project, 'node_modules', name));
   cpSync(join(web, 'examples'), project, { recursive: true });
 });
 after(() => rmSync(project, { recursive: true, force: true }));
@@ -55,7 +55,7 @@ test('Vite bundles it, and the bundle runs', () => {
 
 test('types check strictly', () => {
   writeFileSync(join(project, 'tsconfig.json'), JSON.stringify({
-    compilerOptions: { strict: true, module: 'NodeNext', target: 'ES2022', lib: ['ES2022', 'DOM'], types: [], noEmit: true },
+    compilerOptions: { strict: true, module: 'NodeNext', target: 'ES2022', lib: ['ES2022', 'DOM'], types: ['@webgpu/types'], noEmit: true },
     files: ['types.ts'] }));
   tool(project, 'typescript/bin/tsc', '-p', '.');
   writeFileSync(join(project, 'types.ts'), "import { World } from 'sightline-culling';\nnew World().insert('boxes');\n");

@@ -1,0 +1,35 @@
+// World-space boxes of what matrices move, in double precision, a little larger than they are.
+import type { Box3 } from 'three';
+
+/** Writes the box of `local` moved by `m` and then by `n`, if any, at 6 · slot; returns whether it is another than before. */
+export function writeBox(out: Float64Array, slot: number, local: Box3, m: ArrayLike<number>, at: number,
+  n?: ArrayLike<number>): boolean {
+  const { min, max } = local;
+  let changed = false, sound = min.x <= max.x;
+  for (let row = 0; row < 3; ++row) {
+    let a = m[at + row]!, b = m[at + 4 + row]!, c = m[at + 8 + row]!, d = m[at + 12 + row]!;
+    if (n) {
+      const [x, y, z] = [n[row]!, n[4 + row]!, n[8 + row]!];
+      a = x * m[at]! + y * m[at + 1]! + z * m[at + 2]!;
+      b = x * m[at + 4]! + y * m[at + 5]! + z * m[at + 6]!;
+      c = x * m[at + 8]! + y * m[at + 9]! + z * m[at + 10]!;
+      d = x * m[at + 12]! + y * m[at + 13]! + z * m[at + 14]! + n[12 + row]!;
+    }
+    let low = d, high = d;
+    if (a < 0) (low += a * max.x), (high += a * min.x);
+    else (low += a * min.x), (high += a * max.x);
+    if (b < 0) (low += b * max.y), (high += b * min.y);
+    else (low += b * min.y), (high += b * max.y);
+    if (c < 0) (low += c * max.z), (high += c * min.z);
+    else (low += c * min.z), (high += c * max.z);
+    // What single precision on the GPU can move a corner by.
+    const size = Math.max(Math.abs(low), Math.abs(high), Math.abs(d));
+    low -= 2e-6 * size, high += 2e-6 * size;
+    if (!(low >= -1e10 && high <= 1e10)) sound = false;
+    const first = 6 * slot + row;
+    if (out[first] !== low || out[first + 3] !== high) (changed = true), (out[first] = low), (out[first + 3] = high);
+  }
+  // Nothing is known of it: it is everywhere.
+  if (!sound) out.fill(-1e10, 6 * slot, 6 * slot + 3).fill(1e10, 6 * slot + 3, 6 * slot + 6);
+  return changed;
+}

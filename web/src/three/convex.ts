@@ -1,0 +1,84 @@
+// Occluders out of meshes: closed convex ones, which can be drawn a pixel smaller than they are, so that what they hide is
+// hidden at every sample of a pixel and at any resolution.
+import type { BufferGeometry } from 'three';
+import type { Batch } from './things.js';
+import { OccluderMesh } from '../occlusion.js';
+
+export interface Convex {
+  mesh: OccluderMesh;
+  /** A point inside, and how far the nearest face is from it. */
+  centre: [number, number, number];
+  radius: number;
+}
+
+const mostTriangles = 200;
+const known = new WeakMap<BufferGeometry, Map<number, Convex | null>>();
+
+// Of a geometry's vertices or indices from `start` on, made once.
+function part(geometry: BufferGeometry, start: number, corners: number): Convex | null {
+  let parts = known.get(geometry);
+  if (!parts) known.set(geometry, (parts = new Map()));
+  let made = parts.get(start);
+  if (made === undefined) parts.set(start, (made = make(geometry, start, corners)));
+  return made;
+}
+
+/** The geometry as an occluder; null where it is not closed and convex, or has more than 200 triangles. */
+export function convexOf(geometry: BufferGeometry): Convex | null {
+  const corners = geometry.index?.count ?? geometry.attributes.position!.count;
+  const { start, count } = geometry.drawRange;
+  return start === 0 && count >= corners ? part(geometry, 0, corners) : null;
+}
+
+/** The same of an instance of a batch. */
+export function convexOfInstance(mesh: Batch, instance: number): Convex | null {
+  const info = mesh._instanceInfo[instance];
+  const range = info?.active && info.visible ? mesh._geometryInfo[info.geometryIndex] : undefined;
+  return range ? part(mesh.geometry, range.start, range.count) : null;
+}
+
+function make(geometry: BufferGeometry, start: number, corners: number): Convex | null {
+  const position = geometry.attributes.position!;
+  if (corners % 3 !== 0 || corners > 3 * mostTriangles || corners < 12) return null;
+  const points: number[] = [], indices = new Uint32Array(corners), names = new Map<string, number>();
+  for (let i = 0; i < corners; ++i) {
+    const v = geometry.index ? geometry.index.getX(start + i) : start + i;
+    const at = [position.getX(v), position.getY(v), position.getZ(v)];
+    const name = at.map((x) => x + 0).join();
+    let index = names.get(name);
+    if (index === undefined) names.set(name, (index = names.size)), points.push(...at);
+    indices[i] = index;
+  }
+  const inside = measure(points, indices);
+  if (!inside) return null;
+  return { mesh: new OccluderMesh(Float32Array.from(points), indices, 'front'), ...inside };
+}
+
+type Inside = Pick<Convex, 'centre' | 'radius'>;
+
+// Null unless every edge has one triangle on each side, and every point lies behind every face.
+function measure(points: number[], indices: Uint32Array): Inside | null {
+  const edges = new Set<string>();
+  for (let i = 0; i < indices.length; ++i) {
+    const edge = `${indices[i]},${indices[i % 3 === 2 ? i - 2 : i + 1]}`;
+    if (edges.has(edge)) return null;
+    edges.add(edge);
+  }
+  for (const edge of edges) if (!edges.has(edge.split(',').reverse().join())) return null;
+
+  const centre: [number, number, number] = [0, 0, 0];
+  for (let i = 0; i < points.length; ++i) centre[i % 3]! += (points[i]! * 3) / points.length;
+  const size = Math.max(...points.map((x, i) => Math.abs(x - centre[i % 3]!)));
+  let radius = Infinity;
+  for (let t = 0; t < indices.length; t += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => points.slice(3 * indices[t + k]!, 3 * indices[t + k]! + 3)) as number[][];
+    const u = [0, 1, 2].map((k) => b![k]! - a![k]!), v = [0, 1, 2].map((k) => c![k]! - a![k]!);
+    const normal = [u[1]! * v[2]! - u[2]! * v[1]!, u[2]! * v[0]! - u[0]! * v[2]!, u[0]! * v[1]! - u[1]! * v[0]!];
+    const length = Math.hypot(...normal);
+    if (!(length > 1e-12 * size * size)) return null;
+    const above = (p: number[]) => normal.reduce((sum, n, k) => sum + n * (p[k]! - a![k]!), 0) / length;
+    for (let p = 0; p < points.length; p += 3) if (above(points.slice(p, p + 3)) > 1e-6 * size) return null;
+    radius = Math.min(radius, -above(centre));
+  }
+  return radius > 1e-3 * size ? { centre, radius } : null;
+}

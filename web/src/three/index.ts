@@ -1,0 +1,315 @@
+// `sightline-culling/three`: one line that makes three.js draw only what can be seen, and one that takes it away again.
+//
+//   const culler = new SightlineCuller(scene, { occlusion: true });
+//
+// While a scene is rendered its `children` are a shorter list, of what the camera may see; before and after they are what
+// they were. What the culler does not know (sprites, lines, skinned meshes, LODs, meshes with children, frustumCulled =
+// false) stands in the list as before.
+import type { ArrayCamera, BatchedMesh, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
+import { refuse } from '../errors.js';
+import '../index.js';
+import { OcclusionBuffer } from '../occlusion.js';
+import { buffer as memory, ready, supported, wasm } from '../runtime.js';
+import { clipZeroToOne } from '../views.js';
+import { Culler, type CullView } from '../world.js';
+import { Inventory } from './inventory.js';
+import { fill, narrow, restore, type Range } from './instances.js';
+import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
+import type { Thing } from './things.js';
+
+export { ready, supported };
+
+export interface SightlineOptions {
+  /** Drops what is hidden behind others, too; true. */
+  occlusion?: boolean;
+  /** Pixels of the occlusion buffer's width; 512. It need not be the canvas's. */
+  bufferWidth?: number;
+}
+
+/** What the last render() did. */
+export interface SightlineStats {
+  /** Meshes and instances that can be culled, and of those what the camera may see. */
+  objects: number;
+  drawn: number;
+  /** Objects in view that occlusion dropped, and occluders drawn for it. */
+  hidden: number;
+  occluders: number;
+}
+
+interface Renderer {
+  isWebGLRenderer?: boolean;
+  sortObjects: boolean;
+  clippingPlanes?: readonly unknown[];
+  shadowMap?: { enabled: boolean; autoUpdate: boolean; needsUpdate: boolean };
+}
+type BeforeRender = (renderer: Renderer, scene: Scene, camera: Camera, target: unknown) => void;
+type AfterRender = (renderer: Renderer, scene: Scene, camera: Camera, target?: unknown) => void;
+
+interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
+interface Shadow { light: Light & { shadow: LightShadow }; viewport: number; pass: Pass }
+interface Frame { children: Object3D[]; restore: (() => void)[]; list: Object3D[]; count: number }
+
+const mostViews = 8;
+const restFrames = 16;
+
+export class SightlineCuller {
+  /** Whether it culls; the scene is drawn as three draws it while it does not. */
+  enabled = true;
+  readonly stats: SightlineStats = { objects: 0, drawn: 0, hidden: 0, occluders: 0 };
+
+  readonly #scene: Scene;
+  readonly #options: Required<SightlineOptions>;
+  readonly #frames: Frame[] = [];
+  readonly #own: [PropertyDescriptor | undefined, PropertyDescriptor | undefined];
+  readonly #before: BeforeRender;
+  readonly #after: AfterRender;
+  #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
+  #rest = 0;
+  #told = false;
+
+  constructor(scene: Scene, options: SightlineOptions = {}) {
+    if (!scene?.isScene) refuse('SightlineCuller: expected a Scene');
+    const { occlusion = true, bufferWidth = 512 } = options;
+    if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
+      refuse(`SightlineCuller: a bufferWidth of ${bufferWidth}, expected an integer from 16 to 4096`);
+    this.#scene = scene;
+    this.#options = { occlusion, bufferWidth };
+    this.#own = [Object.getOwnPropertyDescriptor(scene, 'onBeforeRender'),
+      Object.getOwnPropertyDescriptor(scene, 'onAfterRender')];
+    this.#before = scene.onBeforeRender as never;
+    this.#after = scene.onAfterRender as never;
+    scene.onBeforeRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
+      this.#before.call(scene, renderer, given, camera, target);
+      this.#begin(renderer, camera);
+    }) as never;
+    scene.onAfterRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
+      this.#end();
+      this.#after.call(scene, renderer, given, camera, target);
+    }) as never;
+    ready.then(() => (this.#inside ??= this.#make()), (error: Error) => this.#tell(error));
+  }
+
+  /** Takes the culler out of the scene, which is drawn as before. */
+  dispose(): void {
+    while (this.#frames.length > 0) this.#end();
+    restore(this.#scene, 'onBeforeRender', this.#own[0]);
+    restore(this.#scene, 'onAfterRender', this.#own[1]);
+    this.enabled = false;
+    for (const thing of Object.values(this.#inside ?? {})) thing.dispose();
+    this.#inside = undefined;
+  }
+
+  #make() {
+    if (!this.enabled && this.#scene.onBeforeRender === this.#before as never) return undefined; // disposed of meanwhile
+    return { inventory: new Inventory(this.#scene), culler: new Culler(), buffer: new OcclusionBuffer() };
+  }
+
+  // What cannot be culled is drawn whole, and said once.
+  #tell(error: Error): void {
+    if (!this.#told) console.warn(`Sightline draws without culling: ${error.message}`);
+    this.#told = true;
+  }
+
+  #begin(renderer: Renderer, camera: Camera): void {
+    const outer = this.#frames.at(-1);
+    if (outer) this.#scene.children = outer.children; // of a render within a render
+    const frame: Frame = { children: this.#scene.children, restore: [], list: this.#scene.children, count: 0 };
+    this.#frames.push(frame);
+    // compileAsync() begins and never ends.
+    if (!outer) queueMicrotask(() => this.#frames.includes(frame) && this.#end());
+    if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
+    try {
+      this.#cull(renderer, camera, frame, outer !== undefined);
+    } catch (error) {
+      this.#tell(error as Error);
+    }
+    this.#scene.children = frame.list;
+    frame.count = frame.list.length;
+  }
+
+  #end(): void {
+    const frame = this.#frames.pop();
+    if (!frame) return;
+    for (const undo of frame.restore) undo();
+    const { children } = this.#scene;
+    this.#scene.children = frame.children;
+    // What was added or removed while drawing went to the list that stood in.
+    if (children !== frame.list || children === frame.children || children.length === frame.count) return this.#outer();
+    for (const object of children.slice(frame.count)) frame.children.push(object);
+    frame.children.splice(0, Infinity, ...frame.children.filter(({ parent }) => parent === this.#scene));
+    this.#outer();
+  }
+  #outer(): void {
+    const outer = this.#frames.at(-1);
+    if (outer) this.#scene.children = outer.list;
+  }
+  #cull(renderer: Renderer, camera: Camera, frame: Frame, nested: boolean): void {
+    const { inventory } = this.#inside!;
+    inventory.update();
+    if (inventory.slots === 0) return;
+    const cameras = (camera as ArrayCamera).isArrayCamera ? (camera as ArrayCamera).cameras : [camera];
+    if (cameras.length === 0 || cameras.length > mostViews) return;
+    const lights = renderer.isWebGLRenderer ? this.#shadowViews(renderer) : [];
+    const seen = this.#seen(cameras, camera, !renderer.clippingPlanes?.length);
+    const main = this.#pass(seen);
+    const shadows = lights.map(({ light, viewport, view }): Shadow => ({ light, viewport, pass: this.#pass(this.#inView(view)) }));
+    frame.list = main.list;
+    this.#swapForShadows(shadows, frame);
+    for (const thing of new Set([main, ...shadows.map(({ pass }) => pass)].flatMap(({ ranges }) => [...ranges.keys()])))
+      this.#narrow(thing, main, shadows, renderer, frame, nested);
+    Object.assign(this.stats, { objects: inventory.slots, drawn: seen.length });
+  }
+
+  // Slots that some of the cameras may see, ascending.
+  #seen(cameras: readonly Camera[], camera: Camera, whole: boolean): Uint32Array {
+    const { inventory, culler, buffer } = this.#inside!;
+    const eyes = cameras.map((each) => eyeOf(each, this.#options.bufferWidth));
+    const { count, ids, masks } = culler.cullSorted(inventory.world, eyes, inventory.slots);
+    const slots = new Uint32Array(memory(), ids, count);
+    Object.assign(this.stats, { hidden: 0, occluders: 0 });
+    if (!this.#options.occlusion || !whole || eyes.length > 1 || count < 64 || !isRigid(eyes[0]!)) return slots.slice();
+    if (this.#rest > 0) return --this.#rest, slots.slice();
+    const inView = slots.slice(), override = this.#scene.overrideMaterial as Material | null;
+    buffer.begin(eyes[0]!);
+    this.stats.occluders = drawOccluders(buffer, inventory, eyes[0]!, camera, override, inView,
+      (thing, instance) => this.#isDrawn(thing, instance));
+    if (this.stats.occluders === 0) return inView;
+    if (!this.#exempt(inView, new Uint8Array(memory(), masks, count), override)) return inView;
+    this.stats.hidden = wasm().occlusion_hide!(buffer.pointer, inventory.boxes.pointer, ids, masks, count, 1);
+    // Where next to nothing is hidden, it is not worth asking every frame.
+    if (this.stats.hidden < count / 32) this.#rest = restFrames;
+    const left = new Uint8Array(memory(), masks, count);
+    return inView.filter((_, i) => left[i] !== 0);
+  }
+
+  // Sets a bit that occlusion leaves for what shows through others; false where all may show through.
+  #exempt(slots: Uint32Array, masks: Uint8Array, override: Material | null): boolean {
+    const { inventory } = this.#inside!;
+    if (inventory.left.some(({ object }) => breaksDepth(object, override))) return false;
+    let last: Thing | undefined, exempt = false;
+    for (let i = 0; i < slots.length; ++i) {
+      const thing = inventory.thingOf[slots[i]!]!;
+      if (thing !== last) {
+        last = thing, (exempt = !canBeHidden(thing.mesh, override));
+        if (exempt && breaksDepth(thing.mesh, override)) return false;
+      }
+      if (exempt) masks[i]! |= 128;
+    }
+    return true;
+  }
+
+  #inView(view: CullView): Uint32Array {
+    const { inventory, culler } = this.#inside!;
+    const { count, ids } = culler.cullSorted(inventory.world, [view], inventory.slots);
+    return new Uint32Array(memory(), ids, count).slice();
+  }
+
+  #isDrawn(thing: Thing, instance: number): boolean {
+    return this.#inside!.inventory.nodes[thing.parent]!.shown &&
+      (thing.kind !== 'instanced' || instance < (thing.mesh as InstancedMesh).count);
+  }
+
+  // What three is to walk for a view.
+  #pass(slots: Uint32Array): Pass {
+    const { inventory } = this.#inside!;
+    const ranges = new Map<Thing, Range>(), list: Object3D[] = [];
+    for (const { object, parent } of inventory.left) if (inventory.nodes[parent]!.shown) list.push(object);
+    for (let from = 0, to; from < slots.length; from = to) {
+      const thing = inventory.thingOf[slots[from]!]!, end = thing.first + thing.count;
+      for (to = from + 1; to < slots.length && slots[to]! < end; ) ++to;
+      if (!inventory.nodes[thing.parent]!.shown) continue;
+      let last = to;
+      const limit = thing.kind === 'instanced' ? thing.first + (thing.mesh as InstancedMesh).count : end;
+      while (last > from && slots[last - 1]! >= limit) --last;
+      if (last === from) continue;
+      ranges.set(thing, { slots, from, to: last });
+      list.push(thing.mesh);
+    }
+    return { ranges, list };
+  }
+
+  // Every light's views of this frame.
+  #shadowViews(renderer: Renderer): { light: Shadow['light']; viewport: number; view: CullView }[] {
+    if (!shadowsOf(renderer)) return [];
+    const views: { light: Shadow['light']; viewport: number; view: CullView }[] = [];
+    for (const { object } of this.#inside!.inventory.left) {
+      object.traverseVisible((each) => {
+        const light = each as Shadow['light'];
+        const { shadow } = light;
+        if (!light.isLight || !light.castShadow || !shadow || !(shadow.autoUpdate || shadow.needsUpdate)) return;
+        for (let viewport = 0; viewport < shadow.getViewportCount(); ++viewport) {
+          (shadow.updateMatrices as (light: Light, viewport: number) => void)(light, viewport);
+          views.push({ light, viewport, view: eyeOf(shadow.camera, shadow.mapSize.x) });
+        }
+      });
+    }
+    return views;
+  }
+
+  // three asks a light for its matrices just before it walks the scene for it.
+  #swapForShadows(shadows: Shadow[], frame: Frame): void {
+    for (const { shadow } of new Set(shadows.map(({ light }) => light))) {
+      const own = Object.getOwnPropertyDescriptor(shadow, 'updateMatrices');
+      const { updateMatrices } = shadow;
+      shadow.updateMatrices = ((light: Light, viewport = 0) => {
+        (updateMatrices as (light: Light, viewport: number) => void).call(shadow, light, viewport);
+        const now = shadows.find((each) => each.light.shadow === shadow && each.viewport === viewport);
+        if (now) (this.#scene.children = now.pass.list), (this.#shadow = now.pass);
+      }) as never;
+      frame.restore.push(() => restore(shadow, 'updateMatrices', own));
+    }
+  }
+  #shadow: Pass | undefined;
+
+  #narrow(thing: Thing, main: Pass, shadows: Shadow[], renderer: Renderer, frame: Frame, nested: boolean): void {
+    const { mesh, kind } = thing;
+    if (kind === 'batched' && !Object.hasOwn(mesh, 'onBeforeRender')) {
+      mesh.onBeforeRender = (_renderer, scene, camera, geometry, material) => {
+        const pass = scene === null ? this.#shadow : main;
+        fill(thing, pass?.ranges.get(thing), camera, geometry, material);
+      };
+      frame.restore.push(() => restore(mesh as BatchedMesh, 'onBeforeRender', undefined));
+    }
+    if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
+    const instanced = mesh as InstancedMesh;
+    if (instanced.boundingSphere === null) instanced.computeBoundingSphere();
+    const list = instancesOf(thing, main, shadows);
+    // Half of them copied would cost more than the other half drawn.
+    if (list.length === 0 || 2 * list.length > instanced.count) return;
+    const range = main.ranges.get(thing);
+    frame.restore.push(narrow(instanced, list, range ? range.to - range.from : 0));
+  }
+}
+
+// Those that the camera sees, then those that only lights see.
+function instancesOf(thing: Thing, main: Pass, shadows: Shadow[]): Uint32Array {
+  const seen = new Set<number>();
+  for (const { ranges } of [main, ...shadows.map(({ pass }) => pass)]) {
+    const range = ranges.get(thing);
+    for (let k = range?.from ?? 0; k < (range?.to ?? 0); ++k) seen.add(range!.slots[k]! - thing.first);
+  }
+  return Uint32Array.from(seen);
+}
+
+const shadowsOf = ({ shadowMap }: Renderer): boolean =>
+  shadowMap !== undefined && shadowMap.enabled && (shadowMap.autoUpdate || shadowMap.needsUpdate);
+
+/** A camera as the library sees it, about its own place. */
+function eyeOf(camera: Camera, width: number): Eye {
+  const m = camera.matrixWorldInverse.elements, world = camera.matrixWorld.elements;
+  const origin = [world[12]!, world[13]!, world[14]!];
+  const worldToEye = Array.from(m);
+  for (let row = 0; row < 3; ++row)
+    worldToEye[12 + row] = m[row]! * origin[0]! + m[4 + row]! * origin[1]! + m[8 + row]! * origin[2]! + m[12 + row]!;
+  const { coordinateSystem, projectionMatrix, reversedDepth } = camera as Camera & { reversedDepth?: boolean };
+  const p = projectionMatrix.elements;
+  const eyeToClip = coordinateSystem === 2001 || reversedDepth ? Array.from(p) : clipZeroToOne(p);
+  const aspect = Math.abs(p[5]! / p[0]!);
+  const height = Math.min(Math.max(Math.round(width / aspect), 1), 4096);
+  return { worldToEye, eyeToClip, origin, width, height, near: (camera as { near?: number }).near ?? 0 };
+}
+
+// Whether a metre in the world is one for the eye, as occlusion takes it to be.
+function isRigid({ worldToEye: m }: Eye): boolean {
+  return [0, 1, 2].every((row) => Math.abs(Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!) - 1) < 1e-5);
+}

@@ -1,0 +1,168 @@
+// What stands in a scene, kept up to date: things with boxes in a World, and what three draws by itself.
+import type { Mesh, Object3D, Scene } from 'three';
+import { doubles, type Block } from '../memory.js';
+import { World } from '../world.js';
+import { classify, isOther, update, type Thing } from './things.js';
+
+interface Node { object: Object3D; parent: number; shown: boolean }
+/** Something that is left to three, with all below it. */
+export interface Left { object: Object3D; parent: number }
+
+/** Nodes that only hold others. */
+const isThrough = (object: Object3D): boolean =>
+  (object.type === 'Object3D' || object.type === 'Group') && object.renderOrder === 0;
+
+export class Inventory {
+  world = new World();
+  /** Minimum and maximum, by slot. */
+  boxes: Block<Float64Array> = doubles(6);
+  slots = 0;
+  /** Whose slot it is. */
+  readonly thingOf: (Thing | undefined)[] = [];
+  readonly things = new Set<Thing>();
+  readonly left: Left[] = [];
+  readonly nodes: Node[] = [];
+
+  readonly #scene: Scene;
+  readonly #thingOfMesh = new Map<Object3D, Thing>();
+  readonly #free = new Map<number, number[]>();
+  #handles = new Float64Array(0);
+  #changed = true;
+  #moved: number[] = [];
+  readonly #added = (event: { child: Object3D; target: Object3D }) => this.#add(event.child, event.target);
+  readonly #removed = (event: { child: Object3D }) => this.#remove(event.child);
+
+  constructor(scene: Scene) {
+    this.#scene = scene;
+  }
+
+  /** Takes over what has moved, come or gone since the last call. */
+  update(): void {
+    if (!this.#changed) this.#scan();
+    if (this.#changed) this.#rebuild();
+    for (const [i, node] of this.nodes.entries()) {
+      node.shown = node.object.visible && (i === 0 || this.nodes[node.parent]!.shown);
+      if (i > 0 && node.object.renderOrder !== 0) this.#changed = true;
+    }
+    if (this.#changed) this.update();
+  }
+
+  dispose(): void {
+    for (const { object } of this.nodes) this.#listen(object, false);
+    this.world.dispose();
+    this.boxes.dispose();
+  }
+
+  #scan(): void {
+    const boxes = this.boxes.array;
+    for (const thing of this.things) {
+      if (isOther(thing)) this.#changed = true;
+      else update(thing, boxes, (slot) => this.#moved.push(slot));
+    }
+    if (!this.#changed) this.#move();
+    this.#moved.length = 0;
+  }
+
+  // Gives the world what #moved names.
+  #move(): void {
+    const count = this.#moved.length;
+    if (count === 0) return;
+    const boxes = this.boxes.array, to = new Float64Array(6 * count), handles = new Float64Array(count);
+    for (let i = 0; i < count; ++i) {
+      const slot = this.#moved[i]!;
+      handles[i] = this.#handles[slot]!;
+      for (let k = 0; k < 6; ++k) to[6 * i + k] = boxes[6 * slot + k]!;
+    }
+    this.world.move(handles, to);
+  }
+
+  #rebuild(): void {
+    for (const { object } of this.nodes) this.#listen(object, false);
+    for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
+    this.things.clear(), this.#thingOfMesh.clear(), this.#free.clear();
+    this.slots = 0;
+    this.world.dispose(), (this.world = new World());
+    this.nodes.push({ object: this.#scene, parent: -1, shown: true });
+    this.#listen(this.#scene, true);
+    const found: Thing[] = [];
+    for (const child of this.#scene.children) this.#walk(child, 0, found);
+    this.#enter(found);
+    this.#changed = false;
+  }
+
+  #walk(object: Object3D, parent: number, found: Thing[]): void {
+    const taken = classify(object);
+    if (taken) return void found.push(this.#thing(object as Mesh, parent, taken.kind, taken.count));
+    if (!isThrough(object)) return void this.left.push({ object, parent });
+    const index = this.nodes.push({ object, parent, shown: true }) - 1;
+    this.#listen(object, true);
+    for (const child of object.children) this.#walk(child, index, found);
+  }
+
+  #thing(mesh: Mesh, parent: number, kind: Thing['kind'], count: number): Thing {
+    const first = this.#free.get(count)?.pop() ?? this.slots;
+    if (first === this.slots) this.slots += count;
+    const thing: Thing = {
+      mesh, kind, count, first, parent, geometry: mesh.geometry, matrix: new Float64Array(16), version: -1 };
+    this.things.add(thing);
+    this.#thingOfMesh.set(mesh, thing);
+    for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
+    return thing;
+  }
+
+  // Puts things into the world.
+  #enter(found: Thing[]): void {
+    this.#reserve();
+    const boxes = this.boxes.array;
+    const slots: number[] = [];
+    for (const thing of found) {
+      boxes.fill(0, 6 * thing.first, 6 * (thing.first + thing.count));
+      update(thing, boxes, () => {}, true);
+      for (let i = 0; i < thing.count; ++i) slots.push(thing.first + i);
+    }
+    if (slots.length === 0) return;
+    const entered = new Float64Array(6 * slots.length), values = Uint32Array.from(slots);
+    slots.forEach((slot, i) => entered.set(boxes.subarray(6 * slot, 6 * slot + 6), 6 * i));
+    this.world.insert(entered, { values }).forEach((handle, i) => (this.#handles[slots[i]!] = handle));
+  }
+
+  #reserve(): void {
+    if (6 * this.slots > this.boxes.length) {
+      const larger = doubles(12 * this.slots);
+      larger.array.set(this.boxes.array);
+      this.boxes.dispose();
+      this.boxes = larger;
+    }
+    if (this.slots > this.#handles.length) {
+      const larger = new Float64Array(2 * this.slots);
+      larger.set(this.#handles);
+      this.#handles = larger;
+    }
+  }
+
+  // Meshes come and go one by one; for all else the scene is walked anew.
+  #add(child: Object3D, parent: Object3D): void {
+    const taken = classify(child);
+    const index = taken ? this.nodes.findIndex((node) => node.object === parent) : -1;
+    if (this.#changed || index < 0 || !taken) return void (this.#changed = true);
+    child.updateWorldMatrix(true, false);
+    this.#enter([this.#thing(child as Mesh, index, taken.kind, taken.count)]);
+  }
+  #remove(child: Object3D): void {
+    const thing = this.#thingOfMesh.get(child);
+    if (this.#changed || !thing) return void (this.#changed = true);
+    this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
+    this.things.delete(thing), this.#thingOfMesh.delete(child);
+    for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
+    const free = this.#free.get(thing.count);
+    if (free) free.push(thing.first);
+    else this.#free.set(thing.count, [thing.first]);
+  }
+
+  #listen(object: Object3D, on: boolean): void {
+    const change = on ? 'addEventListener' : 'removeEventListener';
+    object[change]('childadded', this.#added as never);
+    object[change]('childremoved', this.#removed as never);
+  }
+}
+

@@ -1,0 +1,161 @@
+// Which things occlude, frame by frame: those that look largest. Whatever picks better takes this file's place.
+import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh, Object3D } from 'three';
+import type { OcclusionBuffer } from '../occlusion.js';
+import { convexOf, convexOfInstance, type Convex } from './convex.js';
+import type { Inventory } from './inventory.js';
+import type { Batch, Thing } from './things.js';
+
+/** Occluders a frame. */
+const most = 96;
+/** Of the image's height: what covers less does not occlude. */
+const least = 0.03;
+
+// Surely draws every pixel that its triangles cover, with their depth. What a shader of one's own does is not known; a
+// mark says it: userData.occluder = true, or another geometry that lies inside.
+function isSolid(material: Material): boolean {
+  const m = material as Material & { wireframe?: boolean; alphaMap?: unknown; displacementMap?: unknown; transmission?: number;
+    isShaderMaterial?: boolean; isNodeMaterial?: boolean };
+  return m.visible && !m.transparent && m.alphaTest === 0 && !m.alphaHash && m.depthWrite && m.depthTest && m.colorWrite &&
+    m.depthFunc === 3 && m.side !== 1 && !m.wireframe && !m.alphaMap && !m.displacementMap && !m.transmission &&
+    !m.polygonOffset && !m.alphaToCoverage && m.blending <= 1 && !m.clippingPlanes?.length && !m.stencilWrite && !m.isShaderMaterial && !m.isNodeMaterial &&
+    !Object.hasOwn(m, 'onBeforeCompile');
+}
+
+const materialsOf = (object: Object3D, override: Material | null): Material[] => {
+  const { material } = object as Mesh;
+  return override ? [override] : Array.isArray(material) ? material : material ? [material] : [];
+};
+
+/** Whether an object, or one below it, writes depth behind what is there, so that others may show through occluders. */
+export function breaksDepth(object: Object3D, override: Material | null): boolean {
+  return object.visible && (object.children.some((child) => breaksDepth(child, override)) ||
+    materialsOf(object, override).some((m) => m.depthWrite && (!m.depthTest || m.depthFunc === 1 || m.depthFunc > 4)));
+}
+
+/** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not. */
+export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
+  return materialsOf(mesh, override).every((m) => m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
+    !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap);
+}
+
+/** The shape that a thing occludes with; null where it does not. */
+function shapeOf(thing: Thing, instance: number, override: Material | null, camera: Camera): Convex | null {
+  const { mesh, kind } = thing;
+  const mark = mesh.userData.occluder as boolean | BufferGeometry | undefined;
+  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers)) return null;
+  const material = override ?? mesh.material;
+  if (!mark && (Array.isArray(material) || !isSolid(material))) return null;
+  if (typeof mark === 'object') return convexOf(mark);
+  if (kind !== 'batched') return convexOf(mesh.geometry);
+  return convexOfInstance(mesh as unknown as Batch, instance);
+}
+
+const scratch = new Float64Array(16);
+
+// The matrix of a slot, in the world.
+function matrixOf(thing: Thing, instance: number): ArrayLike<number> {
+  const world = thing.mesh.matrixWorld.elements;
+  if (thing.kind === 'mesh') return world;
+  const own = thing.kind === 'instanced'
+    ? (thing.mesh as InstancedMesh).instanceMatrix.array
+    : (thing.mesh as unknown as Batch)._matricesTexture.image.data;
+  for (let column = 0; column < 4; ++column) {
+    for (let row = 0; row < 4; ++row) {
+      let sum = 0;
+      for (let k = 0; k < 4; ++k) sum += world[4 * k + row]! * own[16 * instance + 4 * column + k]!;
+      scratch[4 * column + row] = sum;
+    }
+  }
+  return scratch;
+}
+
+/** A view as its occluders see it. */
+export interface Eye {
+  /** Rigid, about `origin`. */
+  worldToEye: ArrayLike<number>;
+  eyeToClip: ArrayLike<number>;
+  origin: ArrayLike<number>;
+  width: number;
+  height: number;
+  near: number;
+}
+
+/** Draws this frame's occluders among the slots in view; returns how many. */
+export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, camera: Camera,
+  override: Material | null, slots: Uint32Array, isDrawn: (thing: Thing, instance: number) => boolean): number {
+  const found: { slot: number; size: number }[] = [];
+  const boxes = inventory.boxes.array, m = eye.worldToEye, flat = eye.eyeToClip[15] === 1;
+  const scale = Math.abs(eye.eyeToClip[5]!);
+  let last: Thing | undefined, lastShape: Convex | null = null;
+  for (const slot of slots) {
+    const thing = inventory.thingOf[slot]!;
+    if (thing !== last || thing.kind === 'batched')
+      lastShape = shapeOf((last = thing), slot - thing.first, override, camera);
+    if (!lastShape || !isDrawn(thing, slot - thing.first)) continue;
+    let nearest = -m[14]!, extent = 0;
+    for (let axis = 0; axis < 3; ++axis) {
+      const low = boxes[6 * slot + axis]! - eye.origin[axis]!, high = boxes[6 * slot + 3 + axis]! - eye.origin[axis]!;
+      const row = -m[4 * axis + 2]!;
+      nearest += row * (row > 0 ? low : high);
+      extent += (high - low) ** 2;
+    }
+    // One that is cut by the near plane is open to the eye.
+    if (!(nearest > 1.001 * eye.near)) continue;
+    const size = (Math.sqrt(extent) * scale) / (flat ? 1 : nearest) / 2;
+    if (size > least) found.push({ slot, size });
+  }
+  found.sort((a, b) => b.size - a.size || a.slot - b.slot);
+  let drawn = 0;
+  for (const { slot } of found.slice(0, most)) drawn += draw(buffer, inventory, eye, slot, flat, override, camera) ? 1 : 0;
+  return drawn;
+}
+
+function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: number, flat: boolean, override: Material | null,
+  camera: Camera): boolean {
+  const thing = inventory.thingOf[slot]!;
+  const shape = shapeOf(thing, slot - thing.first, override, camera)!;
+  const matrix = matrixOf(thing, slot - thing.first);
+  // three turns a mirrored object's faces round, but not a mirrored instance's.
+  if (thing.kind !== 'mesh' && determinantOf(matrix) * determinantOf(thing.mesh.matrixWorld.elements) <= 0) return false;
+  const m = eye.worldToEye, boxes = inventory.boxes.array;
+  let farthest = -m[14]!;
+  for (let axis = 0; axis < 3; ++axis) {
+    const row = -m[4 * axis + 2]!;
+    farthest += row * (boxes[6 * slot + axis + (row > 0 ? 3 : 0)]! - eye.origin[axis]!);
+  }
+  // A sample lies at most half a pixel's diagonal from its centre, which is so far at the farthest depth.
+  const reach = 1.001 * Math.hypot(1 / (eye.width * eye.eyeToClip[0]!), 1 / (eye.height * eye.eyeToClip[5]!)) *
+    (flat ? 1 : farthest);
+  // How far the nearest face is from the centre in the world: no less than by the matrix's smallest stretch.
+  const stretch = smallestStretch(matrix);
+  const keep = 1 - (1.01 * reach) / (shape.radius * stretch);
+  if (!(keep > 0)) return false;
+  const transform = new Float64Array(16);
+  transform[15] = 1;
+  for (let row = 0; row < 3; ++row) {
+    let centre = 0;
+    for (let column = 0; column < 3; ++column) {
+      transform[4 * column + row] = keep * matrix[4 * column + row]!;
+      centre += matrix[4 * column + row]! * shape.centre[column]!;
+    }
+    transform[12 + row] = matrix[12 + row]! + (1 - keep) * centre - eye.origin[row]!;
+  }
+  buffer.drawMesh(shape.mesh, transform);
+  return true;
+}
+
+
+function determinantOf(m: ArrayLike<number>): number {
+  return m[0]! * (m[5]! * m[10]! - m[9]! * m[6]!) - m[4]! * (m[1]! * m[10]! - m[9]! * m[2]!) +
+    m[8]! * (m[1]! * m[6]! - m[5]! * m[2]!);
+}
+
+// A lower bound of what the matrix makes of a unit vector.
+function smallestStretch(m: ArrayLike<number>): number {
+  const determinant = Math.abs(determinantOf(m));
+  const lengths = [0, 4, 8].map((at) => Math.hypot(m[at]!, m[at + 1]!, m[at + 2]!));
+  const orthogonal = Math.abs(determinant - lengths[0]! * lengths[1]! * lengths[2]!) <= 1e-6 * determinant;
+  if (orthogonal) return 0.999 * Math.min(...lengths);
+  const norm = Math.hypot(...lengths);
+  return norm > 0 ? determinant / (norm * norm) : 0;
+}

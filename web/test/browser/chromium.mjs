@@ -1,0 +1,46 @@
+// A page in Debian's Chromium, without a window, drawing on SwiftShader.
+import { build } from 'esbuild';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const flags = ['--headless=new', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader',
+  '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader'];
+// Chromium's own words, whole.
+const allowed = [
+  /^\[.*\]Automatic fallback to software WebGL has been deprecated\. Please use the --enable-unsafe-swiftshader flag to opt in to lower security guarantees for trusted content\.$/,
+  /^\[\.WebGL-0x[0-9a-f]+\]GL Driver Message \(OpenGL, Performance, GL_CLOSE_PATH_NV, High\): GPU stall due to ReadPixels/];
+
+/** Bundles a script, opens it, and hands the page to `use`; fails on any message that the console shows. */
+export async function withPage(script, use) {
+  const bundle = await build({ entryPoints: [script], bundle: true, format: 'esm', target: 'esnext', write: false });
+  const server = createServer((request, response) => {
+    const isScript = request.url === '/page.js';
+    response.setHeader('Content-Type', isScript ? 'text/javascript' : 'text/html');
+    response.end(isScript ? bundle.outputFiles[0].text
+      : '<!doctype html><link rel="icon" href="data:,"><body><script type="module" src="/page.js"></script>');
+  });
+  await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
+  const folder = mkdtempSync(join(tmpdir(), 'sightline-chromium-'));
+  const browser = await chromium.launchPersistentContext(folder, {
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: flags, headless: true,
+    ignoreDefaultArgs: ['--enable-unsafe-swiftshader'], timeout: 120_000 });
+  const said = [];
+  try {
+    const page = await browser.newPage();
+    page.setDefaultTimeout(300_000);
+    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+    page.on('pageerror', (error) => said.push(`error: ${error.stack}`));
+    await page.goto(`http://127.0.0.1:${server.address().port}/`);
+    await use(page);
+  } finally {
+    await browser.close();
+    server.close();
+    rmSync(folder, { recursive: true, force: true });
+  }
+  const unexpected = said.filter((line) => !allowed.some((words) => words.test(line.replace(/^\w+: /, ''))));
+  if (unexpected.length > 0) throw new Error(`the console says:\n${unexpected.join('\n')}`);
+}

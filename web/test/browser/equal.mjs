@@ -1,0 +1,182 @@
+// In the page: views with and without the culler, compared to the bit.
+import * as THREE from 'three';
+import { ready, SightlineCuller } from 'sightline-culling/three';
+import { add, look, places, random } from './city.mjs';
+
+THREE.ColorManagement.enabled = false;
+const width = 256, height = 144;
+
+function pixels(renderer, scene, camera) {
+  renderer.render(scene, camera);
+  const gl = renderer.getContext(), out = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, out);
+  return out;
+}
+const differing = (a, b) => {
+  let count = 0;
+  for (let i = 0; i < a.length; i += 4) if (a[i] !== b[i] || a[i + 1] !== b[i + 1] || a[i + 2] !== b[i + 2]) ++count;
+  return count;
+};
+
+const colour = new THREE.Color();
+function colourOf({ object, instanceId, batchId }) {
+  if (instanceId !== undefined) object.getColorAt(instanceId, colour);
+  else if (batchId !== undefined) object.getColorAt(batchId, colour);
+  else colour.copy(object.material.color);
+  return colour.toArray().map((x) => Math.round(255 * x));
+}
+
+// Rasterisers that clip triangles one by one leave a gap of a sample between two of one face now and then, through which
+// three shows what a wall hides. Such a pixel is no loss: by exact rays one thing fills all of it, and the culler drew that.
+function isGap(scene, camera, pixel, drawn) {
+  const x = pixel % width, y = Math.floor(pixel / width), ray = new THREE.Raycaster(), first = new Set();
+  ray.layers.enableAll();
+  const isShown = (object) => !object || (object.visible && isShown(object.parent));
+  for (let k = 0; k < 16; ++k) {
+    const at = [x + ((k % 4) + 0.5) / 4, y + (Math.floor(k / 4) + 0.5) / 4];
+    ray.setFromCamera(new THREE.Vector2((at[0] / width) * 2 - 1, (at[1] / height) * 2 - 1), camera);
+    const hit = ray.intersectObjects(scene.children).find(({ object }) => isShown(object) && object.layers.test(camera.layers));
+    first.add(colourOf(hit ?? { object: { material: { color: [0, 0, 0] } } }).join()); // nothing is black
+  }
+  return first.size === 1 && first.has([...drawn.slice(4 * pixel, 4 * pixel + 3)].join());
+}
+
+/** Pixels that the culler lost, and gaps, of a view that differs. */
+function judge(renderer, scene, camera, culler) {
+  const seeThrough = ['glass', 'marker'].map((name) => scene.getObjectByName(name)).filter((object) => object);
+  const shown = seeThrough.map((object) => object.visible);
+  seeThrough.forEach((object) => (object.visible = false));
+  culler.enabled = false;
+  const before = pixels(renderer, scene, camera);
+  culler.enabled = true;
+  const after = pixels(renderer, scene, camera);
+  let lost = 0, gaps = 0;
+  for (let p = 0; p < width * height; ++p) {
+    if (![0, 1, 2].some((c) => before[4 * p + c] !== after[4 * p + c])) continue;
+    if (isGap(scene, camera, p, after)) ++gaps;
+    else ++lost;
+  }
+  seeThrough.forEach((object, i) => (object.visible = shown[i]));
+  return { lost: lost + (gaps === 0 && lost === 0 ? 1 : 0), gaps }; // a difference that went with the glass is a loss
+}
+
+function makeScene(lit) {
+  const scene = new THREE.Scene();
+  const { all, side } = places(1500);
+  const material = lit ? new THREE.MeshLambertMaterial() : new THREE.MeshBasicMaterial();
+  const kinds = ['instanced', 'batched', 'meshes'];
+  const movers = kinds.map((kind, k) => add(scene, kind, all.filter((_, i) => i % 3 === k), material, 5000 * k));
+  for (const child of scene.children) child.castShadow = child.receiveShadow = true;
+  const glass = new THREE.Mesh(new THREE.BoxGeometry(6, 9, 6), new THREE.MeshBasicMaterial({
+    color: 0x3050ff, transparent: true, opacity: 0.5, side: THREE.DoubleSide }));
+  glass.position.set(12, 4, 12);
+  const marker = new THREE.Mesh(new THREE.ConeGeometry(1, 2), new THREE.MeshBasicMaterial({ color: 0xff00ff, depthTest: false, depthWrite: false }));
+  glass.name = 'glass', (marker.name = 'marker');
+  marker.position.set(60, 3, 60);
+  scene.add(glass, marker, new THREE.AmbientLight(0xffffff, 0.5));
+  if (lit) {
+    const sun = new THREE.DirectionalLight(0xffffff, 1);
+    sun.position.set(30, 60, 20), (sun.castShadow = true);
+    Object.assign(sun.shadow.camera, { left: -80, right: 80, top: 80, bottom: -80, far: 200 });
+    const lamp = new THREE.PointLight(0xffeecc, 300);
+    lamp.position.set(36, 6, 36), (lamp.castShadow = true);
+    scene.add(sun, lamp);
+  }
+  return { scene, side, movers, all };
+}
+
+/** Draws `count` views of a scene in which things move, both ways; says what was lost and what was culled. */
+window.compare = async (count, { lit, antialias, reach = 0.1, aerial = 4 }) => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height), (renderer.shadowMap.enabled = lit);
+  const { scene, side, movers, all } = makeScene(lit);
+  const camera = new THREE.PerspectiveCamera(70, width / height, reach, 500);
+  const culler = new SightlineCuller(scene);
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  const next = random(7);
+  const result = { lost: 0, gaps: 0, objects: 0, drawn: 0, hidden: 0, frames: 0, callsOff: 0, callsOn: 0, shown: 0 };
+  for (let v = 0; v < count; ++v) {
+    look(camera, next, side, v % aerial === 0 ? 60 : 1.6);
+    movers.forEach((move, k) => {
+      const i = Math.floor(next() * (all.length / 3)), place = all[3 * i + k];
+      if (place.turn !== 0) move(i, { ...place, at: [next() * side, place.size[1] / 2, next() * side] });
+    });
+    culler.enabled = false;
+    const before = pixels(renderer, scene, camera);
+    result.callsOff += renderer.info.render.triangles;
+    culler.enabled = true;
+    const after = pixels(renderer, scene, camera);
+    result.callsOn += renderer.info.render.triangles;
+    if (differing(before, after) > 0) {
+      const { lost, gaps } = lit ? { lost: 1, gaps: 0 } : judge(renderer, scene, camera, culler);
+      result.lost += lost, (result.gaps += gaps);
+    }
+    result.shown += before.some((x, i) => i % 4 < 3 && x > 0) ? 1 : 0;
+    for (const key of ['objects', 'drawn', 'hidden']) result[key] += culler.stats[key];
+    ++result.frames;
+  }
+  result.children = scene.children.length;
+  culler.dispose();
+  result.disposed = differing(pixels(renderer, scene, camera), (renderer.render(scene, camera), pixels(renderer, scene, camera)));
+  renderer.dispose(), renderer.forceContextLoss();
+  return result;
+};
+
+/** Things that come, go, hide and change, one step after another; the names of the steps whose pictures differ. */
+window.changes = async () => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height);
+  const { scene, side } = makeScene(false);
+  const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 500);
+  const culler = new SightlineCuller(scene);
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  const group = scene.children[2], instanced = scene.children[0], batch = scene.children[1];
+  const extra = new THREE.Mesh(new THREE.SphereGeometry(2), new THREE.MeshBasicMaterial({ color: 0xffff00 }));
+  const child = new THREE.Mesh(new THREE.SphereGeometry(1), new THREE.MeshBasicMaterial({ color: 0x00ffff }));
+  child.position.y = 4;
+  const steps = {
+    nothing() {},
+    added() { group.add(extra), extra.position.set(12, 2, 30); },
+    'moved by its group'() { group.position.x = 1.5; },
+    'a child of a mesh'() { extra.add(child); },
+    'on another layer'() { extra.layers.set(3); },
+    'seen by that layer'() { camera.layers.enable(3); },
+    'a hidden group'() { group.visible = false; },
+    'shown again'() { group.visible = true; },
+    removed() { group.remove(extra); },
+    'fewer instances'() { instanced.count = 300; },
+    'a hidden instance'() { batch.setVisibleAt(3, false); },
+    'a deleted instance'() { batch.deleteInstance(5); },
+    'another geometry'() { batch.setGeometryIdAt(7, 1); },
+    'never culled'() { group.children[5].frustumCulled = false; },
+    'a see-through house'() { group.children[0].material.transparent = true, (group.children[0].material.opacity = 0.3); },
+    'depth written through walls'() { scene.getObjectByName('marker').material.depthWrite = true; },
+    'a group with an order'() { group.renderOrder = 2; },
+    'seen from the side'() { camera.projectionMatrix.elements[8] = 0.3; },
+    'matrix that is not finite'() { group.renderOrder = 0, (group.children[9].scale.x = NaN); },
+  };
+  const next = random(11), bad = [];
+  for (const [name, step] of Object.entries(steps)) {
+    step();
+    for (let v = 0; v < 4; ++v) {
+      look(camera, next, side);
+      if (v === 0) camera.position.set(12, 2, 45), camera.rotation.set(0, 0, 0);
+      culler.enabled = false;
+      const before = pixels(renderer, scene, camera);
+      culler.enabled = true;
+      if (differing(before, pixels(renderer, scene, camera)) > 0 && judge(renderer, scene, camera, culler).lost > 0)
+        bad.push(name);
+    }
+    const ray = new THREE.Raycaster(new THREE.Vector3(12, 2, 45), new THREE.Vector3(0, 0, -1));
+    if (ray.intersectObjects(scene.children).length === 0) bad.push(`${name}: no ray meets anything`);
+  }
+  const own = ['onBeforeRender', 'onAfterRender'].filter((key) => Object.hasOwn(scene, key)).length;
+  culler.dispose();
+  const left = ['onBeforeRender', 'onAfterRender'].filter((key) => Object.hasOwn(scene, key)).length;
+  renderer.dispose(), renderer.forceContextLoss();
+  return { bad, own, left };
+};
