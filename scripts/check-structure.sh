@@ -56,6 +56,8 @@ workbench/methods: workbench/method.hpp
 # Structures of the library's own that papers share with it, and who may include them; all else of the library the
 # workbench takes through the public headers. What nobody needs any more must go from here.
 shared="
+library/geometry/elementary.hpp: workbench/scene/ workbench/camera/ workbench/io/quake3_entities
+library/geometry/elementary.hpp: workbench/methods/draw_calls/adaptive_choice
 library/geometry/linear.hpp: workbench/scene/scene.cpp workbench/methods/draw_calls/facing.cpp
 library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_reader.cpp workbench/device/view_data.cpp
 library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
