@@ -27,8 +27,9 @@ line() {
 sanitizers() { cmake --build --preset asan && ctest --preset asan -j"$(nproc)"; }
 line sanitizers sanitizers
 line surfaces scripts/check-surfaces.sh build/release --full
+line answers scripts/check-answers.sh build/asan
 line reproductions scripts/check-reproductions.sh build/release
-line ports scripts/check-ports.sh build/release --full
+line ports scripts/check-ports.sh --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh
 

@@ -7,6 +7,8 @@
 #include <new>
 #include <utility>
 
+#include "library/geometry/mutant.h"
+
 #ifndef SIGHTLINE_RAYS_WIDE_TURNS
 #define SIGHTLINE_RAYS_WIDE_TURNS
 namespace sightline::rays {
@@ -32,7 +34,9 @@ struct WideResult {
   ObjectId object;
 
   void offer(float t, ObjectId id) {
-    if (t < distance || (t == distance && id < object)) distance = t, object = id;
+    if (t < distance ||
+        (t == distance && (SIGHTLINE_MUTANT(ray_ties_to_the_higher) ? id > object : id < object)))
+      distance = t, object = id;
   }
 };
 

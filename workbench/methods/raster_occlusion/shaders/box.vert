@@ -36,5 +36,7 @@ void main() {
     gl_Position = drawn ? certain_mark(kSquare[turn % 6]) : kNowhere;
     return;
   }
-  gl_Position = clip_position(corner(centre, half_extent, kCorners[turn]), depth_slack(centre, half_extent));
+  const vec4 at = clip_position(corner(centre, half_extent, kCorners[turn]), depth_slack(centre, half_extent));
+  gl_Position = SIGHTLINE_MUTANT(roc_by_frustum) && listed == 0 ? before_all(at)
+                : SIGHTLINE_MUTANT(hroc_by_frustum) && listed != 0 ? before_all(at) : at;
 }

@@ -28,7 +28,7 @@ bool shows(vec3 centre, vec3 half_extent) {
   const uvec2 first = uvec2(clamp(floor(print.low), vec2(0), vec2(image - 1)));
   const uvec2 last = uvec2(clamp(floor(print.high), vec2(0), vec2(image - 1)));
   const uint span = max(last.x - first.x, last.y - first.y);
-  const uint level = span < 2 ? 0 : findMSB(span);
+  const uint level = SIGHTLINE_MUTANT(hiz_mip_too_coarse) ? findMSB(2 * span + 1) : span < 2 ? 0 : findMSB(span);
   uint offset = 0;
   uvec2 size = image;
   for (uint i = 0; i < level; ++i) {
@@ -53,6 +53,6 @@ void main() {
   if (outside(centre, half_extent) || !contributes(box.centre_radius, half_extent)) return;
   uint bits = kInView;
   if ((state_bits(frame - 1, state.at[object]) & kSeen) != 0) bits |= kDrawnEarly;
-  if (shows(centre, half_extent)) bits |= kSeen;
+  if (SIGHTLINE_MUTANT(hiz_by_frustum) ? true : shows(centre, half_extent)) bits |= kSeen;
   state.at[object] = state_word(frame, bits);
 }
