@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
 # test: the suite in a release build (g++), what others feed under AddressSanitizer and UndefinedBehaviorSanitizer (clang),
-# what uses threads under ThreadSanitizer, a short run of each fuzz target, the structure, layout, clones (jscpd) and
-# clang-tidy's findings, what the documents show, the installed packages as their users see them, what the library
-# answers on ARM and WebAssembly, and the npm package. --full adds what takes longer: every test under the sanitizers, a
-# thousand views of more scenes, the library's tests on the ports, and its build on a bare Debian; and writes
-# build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
+# faults planted there that some test must find, what uses threads under ThreadSanitizer, a short run of each fuzz target,
+# the structure, layout, clones (jscpd) and clang-tidy's findings, what the documents show, the installed packages as their
+# users see them, the npm package, and what the library answers on ARM and WebAssembly. --full adds what takes longer:
+# every test under the sanitizers, a thousand views of more scenes, the library's tests on the ports, and its build on a
+# bare Debian; and writes build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -70,6 +70,10 @@ checked='^(geometry|frustum|rays|occlusion|world|c|pvs|scene|submission|partitio
 large='AMillionObjects|Conformance.*(forest|irregular|regular)|FiveModels'
 ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
 
+stage "mutants"
+scripts/check-mutants.sh build/release build/asan
+ctest --preset asan -j"$(nproc)" -L mutants-in-gate
+
 stage "threads"
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target world_tests
@@ -83,7 +87,7 @@ scripts/check-web.sh build/release
 
 stage "ports"
 if [ -z "$full" ]; then
-  scripts/check-ports.sh build/release
+  scripts/check-ports.sh
 else
   scripts/run-full.sh "$start"
 fi

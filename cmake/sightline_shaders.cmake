@@ -8,13 +8,16 @@ function(sightline_shaders target)
   endif()
   set(out ${CMAKE_CURRENT_BINARY_DIR}/embedded/shaders)
   file(MAKE_DIRECTORY ${out})
+  if(SIGHTLINE_MUTANTS)
+    set(mutants -DSIGHTLINE_MUTANTS -I ${PROJECT_BINARY_DIR}/mutants)
+  endif()
   foreach(file IN LISTS ARGN)
     get_filename_component(name ${file} NAME)
     # -w: glslang 12 warns of `invariant` without naming a fault.
     add_custom_command(
       OUTPUT ${out}/${name}.inc
       COMMAND ${SIGHTLINE_GLSLC} -O -w --target-env=vulkan1.3 -mfmt=c -MD -MF ${out}/${name}.d
-              -I ${PROJECT_SOURCE_DIR} -o ${out}/${name}.inc ${CMAKE_CURRENT_SOURCE_DIR}/${file}
+              -I ${PROJECT_SOURCE_DIR} ${mutants} -o ${out}/${name}.inc ${CMAKE_CURRENT_SOURCE_DIR}/${file}
       DEPENDS ${file}
       DEPFILE ${out}/${name}.d
       VERBATIM)

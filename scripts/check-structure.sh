@@ -57,6 +57,9 @@ workbench/methods: workbench/method.hpp
 # Structures of the library's own that papers share with it, and who may include them; all else of the library the
 # workbench takes through the public headers. What nobody needs any more must go from here.
 shared="
+library/geometry/elementary.hpp: workbench/scene/ workbench/camera/ workbench/io/quake3_entities
+library/geometry/elementary.hpp: workbench/methods/draw_calls/adaptive_choice
+library/geometry/mutant.h: workbench/submission/ workbench/device/ workbench/methods/
 library/geometry/linear.hpp: workbench/scene/scene.cpp workbench/methods/draw_calls/facing.cpp
 library/geometry/linear.hpp: workbench/partition/triangle_ workbench/io/gltf_reader.cpp workbench/device/view_data.cpp
 library/geometry/view_depth.hpp: workbench/submission/draw_list.cpp workbench/methods/draw_calls/blend_order.cpp
@@ -72,7 +75,7 @@ library/world/chunk_map.hpp: workbench/methods/raster_occlusion/ground_chunks wo
 "
 
 # What the library may include beside itself and the standard library: no GPU, no window, no format of a file's.
-packages="glm/ hwy/ roaring/ zstd.h sys/mman.h"
+packages="glm/ hwy/ roaring/ zstd.h sys/mman.h sightline_mutants.h"
 
 {
   printf '[%s]\n%s\n' arrows "$arrows" owners "$owners" shared "$shared" packages "$packages"

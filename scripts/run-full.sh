@@ -29,8 +29,9 @@ line sanitizers sanitizers
 line surfaces scripts/check-surfaces.sh build/release --full
 line occluders scripts/check-occluders.sh build/release
 line occlusion scripts/check-occlusion.sh build/release --full
+line answers scripts/check-answers.sh build/asan
 line reproductions scripts/check-reproductions.sh build/release
-line ports scripts/check-ports.sh build/release --full
+line ports scripts/check-ports.sh --full
 line web scripts/check-web.sh build/release --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh

@@ -66,11 +66,17 @@ int run_bake(const BakeOptions& options) {
   // Ranks share the machine out: a thread each, unless told otherwise.
   const int threads = options.threads > 0 || !ranks.joined() ? options.threads : 1;
   const auto shown = ranks.rank() == 0 ? progress("bake") : std::function<void(std::size_t, std::size_t)>();
+  const auto tell = [&](std::size_t done, std::size_t all) {
+    if (shown) shown(done, all);
+    return true;
+  };
+  const auto estimated = [&](const bake::BakeEstimate& before) {
+    if (!shown || before.cells == 0) return;
+    fmt::print(stderr, "bake: {} cells, some {:.0f} of them open: at least {}\n", before.cells, before.open,
+               in_words(before.seconds));
+  };
   const bake::BakeResult result =
-      bake::bake(scene, options.bake, options.file, ranks, threads, [&](std::size_t done, std::size_t all) {
-        if (shown) shown(done, all);
-        return true;
-      });
+      bake::bake(scene, options.bake, options.file, ranks, threads, tell, estimated);
   if (ranks.rank() != 0) return Exit::done;
   const CellPvs& cells = result.cells;
   const auto open = static_cast<std::uint64_t>(std::count(cells.open.begin(), cells.open.end(), 1));

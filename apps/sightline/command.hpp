@@ -61,5 +61,7 @@ std::vector<std::string> split(const std::string& option, const std::string& lis
 
 /// Told how much is done; draws one line on stderr when it is a terminal.
 std::function<void(std::size_t done, std::size_t all)> progress(std::string what);
+/// "40 s", "3 min 5 s", "2 h 10 min".
+std::string in_words(double seconds);
 
 }  // namespace sightline::app

@@ -8,16 +8,12 @@
 
 namespace sightline::app {
 
-namespace {
-
 std::string in_words(double seconds) {
   const auto whole = static_cast<long long>(seconds + 0.5);
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
   return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
-
-}  // namespace
 
 std::function<void(std::size_t, std::size_t)> progress(std::string what) {
   using Clock = std::chrono::steady_clock;

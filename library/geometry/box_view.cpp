@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "library/geometry/box_reader.hpp"
+#include "library/geometry/mutant.h"
 #include "library/geometry/rounding.hpp"
 
 namespace sightline {
@@ -73,6 +74,11 @@ void read_boxes(const Source& from, bool outwards, WorldBox* out) {
 }  // namespace
 
 Box geometry::relative_box(const WorldBox& b, const WorldPoint& o) noexcept {
+  if (SIGHTLINE_MUTANT(boxes_rounded_to_nearest)) {
+    const auto near = [](double x, double from) { return static_cast<float>(x - from); };
+    return {{near(b.min.x, o.x), near(b.min.y, o.y), near(b.min.z, o.z)},
+            {near(b.max.x, o.x), near(b.max.y, o.y), near(b.max.z, o.z)}};
+  }
   return {
       {float_down(sum_down(b.min.x, -o.x)), float_down(sum_down(b.min.y, -o.y)),
        float_down(sum_down(b.min.z, -o.z))},

@@ -4,6 +4,7 @@
 
 #include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
+#include "library/geometry/mutant.h"
 
 namespace sightline {
 
@@ -38,6 +39,8 @@ Plane round_outwards(const glm::dvec4& plane, const Reach& reach, double roundin
   const glm::dvec4 unit = plane / length;
   const glm::dvec3 size = glm::abs(glm::dvec3(unit));
   const double least = glm::dot(size, reach.at_eye) + std::fabs(unit.w);
+  if (SIGHTLINE_MUTANT(planes_not_moved_outwards))
+    return {to_vec3(glm::dvec3(unit)), static_cast<float>(unit.w)};
   glm::dvec4 moved = unit + rounding * (glm::dot(size, reach.per_w) * reach.w + glm::dvec4(0, 0, 0, least));
   moved /= glm::length(glm::dvec3(moved));  // spheres compare it with their radius
   if (!std::isfinite(moved.x + moved.y + moved.z + moved.w)) return at_infinity;
@@ -63,7 +66,9 @@ Frustum frustum_within(const glm::dmat4& rows, const Vec3& forward, const Reach&
 }
 
 glm::dmat4 clip_rows(const View& view) {
-  return glm::transpose(to_double(view.eye_to_clip) * to_double(view.world_to_eye));
+  glm::dmat4 rows = glm::transpose(to_double(view.eye_to_clip) * to_double(view.world_to_eye));
+  if (SIGHTLINE_MUTANT(planes_half_a_pixel_in)) rows[0] *= 1 + 1.0 / view.width;
+  return rows;
 }
 
 }  // namespace

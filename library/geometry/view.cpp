@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "library/geometry/elementary.hpp"
 #include "library/geometry/linear.hpp"
 
 namespace sightline {
@@ -82,7 +83,7 @@ glm::dmat4 projection(const Camera& c, double aspect) {
     const DepthTerms z = orthographic_depth(c.near_plane, c.far_plane, c.depth);
     return {{y / aspect, 0, 0, 0}, {0, y, 0, 0}, {0, 0, z.a, 0}, {c.shift_x, c.shift_y, z.b, 1}};
   }
-  const double y = 1 / std::tan(0.5 * static_cast<double>(c.vertical_fov));
+  const double y = 1 / portable::tan(0.5 * static_cast<double>(c.vertical_fov));
   const DepthTerms z = perspective_depth(c.near_plane, c.far_plane, c.depth);
   return {{y / aspect, 0, 0, 0}, {0, y, 0, 0}, {-c.shift_x, -c.shift_y, z.a, -1}, {0, 0, z.b, 0}};
 }

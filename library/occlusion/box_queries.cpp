@@ -83,7 +83,7 @@ HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box) {
     nearest = hn::Add(hn::Add(hn::Max(tn.x[0], tn.x[1]), hn::Max(tn.y[0], tn.y[1])),
                       hn::Add(hn::Max(tn.z[0], tn.z[1]), tn.error));
   }
-  return {grown(on_image, slack), nearest, before};
+  return {SIGHTLINE_MUTANT(asked_boxes_not_grown) ? on_image : grown(on_image, slack), nearest, before};
 }
 
 void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxSpan& boxes,

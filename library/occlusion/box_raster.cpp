@@ -68,6 +68,7 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
     hn::Store(hn::IfThenElseZero(sure, along), f, out.down[a].data());
     hn::Store(hn::IfThenElse(sure, moved, hn::Set(f, kInfinity)), f, out.at[a].data());
   }
+  if (SIGHTLINE_MUTANT(occluders_without_a_face)) facing.high[1] = hn::Lt(zero, zero);
   return facing;
 }
 

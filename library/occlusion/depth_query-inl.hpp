@@ -9,6 +9,7 @@
 
 #include <bit>
 
+#include "library/geometry/mutant.h"
 #include "library/occlusion/image-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,7 +28,8 @@ HWY_INLINE VF least_in_tile(const DepthTiles& tiles, const PixelRange& range, st
                       right = std::min(range.x1, tx * kTile + 7) - tx * kTile;
   const std::uint32_t low = std::max(range.y0, ty * kTile) - ty * kTile,
                       high = std::min(range.y1, ty * kTile + 7) - ty * kTile;
-  const std::uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left);
+  std::uint64_t columns = (0xffu >> (7 - right)) & (0xffu << left);
+  if (SIGHTLINE_MUTANT(last_column_not_asked) && right > left) columns &= 0xffu >> (8 - right);
   const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (7 - high))) & (~std::uint64_t{0} << (8 * low));
   const std::uint64_t wanted = columns * 0x0101010101010101u & rows;
   const float* depth = &tiles.nearness[(std::size_t{ty} * tiles.stride + tx) * 64];
@@ -131,6 +133,7 @@ HWY_INLINE void answer(const DepthTiles& tiles, const Question& q, std::size_t c
   const auto before_some = hn::Gt(q.nearest, least_at_corners(tiles, tiles.nearest, ranges));
   const auto open = hn::AndNot(hn::Or(behind_all, before_some), asked);
   std::uint32_t seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
+  if (SIGHTLINE_MUTANT(unsure_questions_hidden)) seen = bits_of(f, hn::And(asked, before_some));
   const std::uint32_t rest = bits_of(f, open) & ((1u << count) - 1);
   if (rest != 0) seen |= look_closer(tiles, ranges, q.nearest, rest);
   for (std::size_t i = 0; i < count; ++i) visible[i] = seen >> i & 1;

@@ -7,6 +7,7 @@
 #define SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
 #endif
 
+#include "library/geometry/mutant.h"
 #include "library/occlusion/spans-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -126,12 +127,15 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, fl
 HWY_INLINE VF moved_back(VF at, VF across, VF down, VF nearest) {
   const F f;
   const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay));
+  if (SIGHTLINE_MUTANT(occluders_a_step_too_near))
+    return hn::Add(at, hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)));
   return hn::Sub(at, hn::Add(hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)), slant));
 }
 
 // How far inside its outline an occluder must hold a pixel centre whose outline reaches `widest` pixels far.
 HWY_INLINE VF inset_of(VF widest) {
   const F f;
+  if (SIGHTLINE_MUTANT(outlines_not_inset)) return hn::Zero(f);
   return hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), widest));
 }
 

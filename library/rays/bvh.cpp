@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "library/geometry/box_math.hpp"
+#include "library/geometry/mutant.h"
 
 namespace sightline::rays {
 
@@ -68,6 +69,7 @@ void Bvh::refit(const Boxes& boxes) noexcept {
       node.min = box.min, node.max = box.max;
       continue;
     }
+    if (SIGHTLINE_MUTANT(stale_tree_bounds)) continue;
     const BvhNode& first = nodes_[i + 1];
     const BvhNode& second = nodes_[i + 2 + first.descendants];
     const Box both = united({first.min, first.max}, {second.min, second.max});

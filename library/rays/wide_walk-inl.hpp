@@ -13,6 +13,7 @@
 
 #include <sightline/rays.hpp>
 
+#include "library/geometry/mutant.h"
 #include "library/geometry/simd-inl.hpp"
 #include "library/rays/wide_bvh.hpp"
 
@@ -78,7 +79,9 @@ struct WideResult {
   ObjectId object;
 
   void offer(float t, ObjectId id) {
-    if (t < distance || (t == distance && id < object)) distance = t, object = id;
+    if (t < distance ||
+        (t == distance && (SIGHTLINE_MUTANT(ray_ties_to_the_higher) ? id > object : id < object)))
+      distance = t, object = id;
   }
 };
 
@@ -136,7 +139,8 @@ HWY_INLINE bool step(const WideNode* nodes, const WideSlabs& slabs, Way& way, Fo
     const std::uint64_t next = stack[--way.waits];
     distance = std::bit_cast<float>(static_cast<std::uint32_t>(next >> 32));
     way.current = static_cast<std::uint32_t>(next);
-  } while (distance > found.distance);
+  } while (SIGHTLINE_MUTANT(ray_ties_not_looked_for) ? distance >= found.distance
+                                                     : distance > found.distance);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "library/geometry/box_math.hpp"
+#include "library/geometry/mutant.h"
 #include "library/world/chunk_map.hpp"
 #include "library/world/free_list.hpp"
 
@@ -77,7 +78,7 @@ void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
 
 void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
   const Box bounds = chunk_bounds(chunk);
-  if (holds(bounds, box)) return;
+  if (holds(bounds, box) || SIGHTLINE_MUTANT(stale_chunk_bounds)) return;
   set_bounds(chunk, united(bounds, box));
   extend_group(chunks_[chunk].group, box);
 }
@@ -108,7 +109,7 @@ void ChunkMap::set_box(std::uint32_t group, const Box& box) noexcept {
 
 void ChunkMap::extend_group(std::uint32_t group, const Box& box) noexcept {
   Group& b = groups_[group];
-  if (holds(b.box, box)) return;
+  if (holds(b.box, box) || SIGHTLINE_MUTANT(stale_group_bounds)) return;
   set_box(group, united(b.box, box));
   for (std::uint32_t n = b.node; n != kNone && !holds(nodes_[n].bounds, box); n = nodes_[n].parent) {
     nodes_[n].bounds = united(nodes_[n].bounds, box);

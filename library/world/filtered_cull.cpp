@@ -1,4 +1,5 @@
 // Culling by frustum, contribution and occlusion, for any views.
+#include "library/geometry/mutant.h"
 #include "library/world/world_cull.hpp"
 
 #include <bit>
@@ -68,6 +69,7 @@ std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& gro
 std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view,
                                   ObjectBits& seen) {
   std::uint64_t dropped = 0;
+  if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
   occlusion::query_boxes(
       *view.occluders, view.projection,
@@ -86,7 +88,8 @@ HWY_INLINE ChunkBits filter_chunks(const EntryGroup& at, const SectorView& view,
                                    std::uint64_t& dropped) {
   if (planes == kOutside) return {};
   ChunkBits bits = classify_chunks(at.group, view, planes);
-  if (view.occluders && bits.kept != 0) dropped += drop_hidden_chunks(at.map, at.group, view, bits);
+  if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum))
+    dropped += drop_hidden_chunks(at.map, at.group, view, bits);
   return bits;
 }
 

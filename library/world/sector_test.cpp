@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "library/geometry/linear.hpp"
+#include "library/geometry/mutant.h"
 
 namespace sightline::world {
 
@@ -50,6 +51,7 @@ bool SectorTest::outside(const WidePlane& plane, const WorldPoint& at, const Box
   const double nearest = best(n[0], bounds.min.x, bounds.max.x) + best(n[1], bounds.min.y, bounds.max.y) +
                          best(n[2], bounds.min.z, bounds.max.z) + distance;
   if (nearest >= 0) return false;
+  if (SIGHTLINE_MUTANT(sectors_tested_by_centre)) return distance < 0;
   // The sector's planes are moved outwards by 4 epsilons of this, and lose at most 4 more in single
   // precision.
   const double magnitude = std::fabs(n[0]) * static_cast<double>(reach.x) +

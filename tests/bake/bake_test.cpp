@@ -64,6 +64,28 @@ TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
   EXPECT_EQ(io::read_file(again), io::read_file(once));
 }
 
+TEST(Bake, EstimatesBeforeItStartsWhatItThenDoesAtLeast) {
+  const Scene scene = forest();
+  const test::TemporaryFolder folder;
+  std::size_t calls = 0, done = 0;
+  const auto progress = [&](std::size_t cells, std::size_t) {
+    done = cells;
+    return true;
+  };
+  const auto estimated = [&](const BakeEstimate& before) {
+    ++calls;
+    EXPECT_EQ(done, 0u);
+    EXPECT_GT(before.cells, 10u);
+    EXPECT_EQ(before.open,
+              static_cast<double>(before.cells));  // there is no level whose walls would close one
+    EXPECT_GT(before.seconds, 0);
+  };
+  const BakeResult result = bake(scene, kCoarse, folder / "a.pvs", {}, 2, progress, estimated);
+  EXPECT_EQ(calls, 1u);
+  EXPECT_GT(static_cast<double>(result.rays),
+            static_cast<double>(done) * 3 / kCoarse.target * kCoarse.rays);  // the rays it reckons with
+}
+
 TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
   const Scene scene = forest();
   const test::TemporaryFolder folder;

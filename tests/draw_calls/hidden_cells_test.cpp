@@ -78,6 +78,25 @@ TEST(HiddenCells, WhatMovesHidesNothingWhereItWas) {
   EXPECT_GT(frame.visible.size(), scene.size() - 10);  // but for a few behind the square in front
 }
 
+// Where a scene occludes as one, its occluder is made anew once something of it moves.
+TEST(HiddenCells, AMovedWallOfAWholeSceneHidesNothingWhereItWas) {
+  Scene scene;
+  const std::uint32_t wall = add_square(scene, 40), small = add_square(scene, 1);
+  scene.add_object(wall, at(0, 0, -10));
+  scene.add_object(small, at(0, 0, -30));
+  scene.add_object(small, at(1, 1, -8));
+  const auto masked = create_method("masked", scene);
+  Frame frame;
+  cull(*masked, kOntoTheWall, frame);
+  EXPECT_EQ(frame.visible.size(), 2u);
+  scene.move_object(0, at(500, 0, -10));
+  const ObjectId moved[]{0};
+  masked->update(moved);
+  cull(*masked, kOntoTheWall, frame);
+  std::ranges::sort(frame.visible);
+  EXPECT_EQ(frame.visible, (std::vector<ObjectId>{1, 2}));
+}
+
 // A cut-out may be looked through.
 TEST(HiddenCells, OnlyOpaqueSurfacesHide) {
   Scene scene = behind_a_wall();

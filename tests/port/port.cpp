@@ -1,6 +1,6 @@
-// Prints what the library answers as lines of "name hash", for one platform to be held against another:
-// visible sets, what rays meet, and depth images. Worlds and views are made by additions, multiplications and
-// square roots alone, which round alike everywhere; sine and tangent do not.
+// Prints what the library answers: visible sets, what rays meet, and depth images. scripts/check-answers.sh
+// holds every build and processor against tests/port/library.txt. Worlds and views are made by what rounds
+// alike everywhere.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -12,38 +12,24 @@
 
 #include <sightline/sightline.hpp>
 
+#include "library/geometry/elementary.hpp"
 #include "library/rays/wide_rays.hpp"
+#include "port/answers.hpp"
+#include "support/run_threads.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace {
 
 using namespace sightline;
 
-class Hash {
-public:
-  template <class T>
-  void add(const T& value) {
-    static_assert(std::is_arithmetic_v<T>);
-    unsigned char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001b3u;
-  }
-  void add_vec(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
-  void add_plane(const Plane& p) { add_vec(p.normal), add(p.distance); }
+using test::Answers;
+using test::Hash;
 
-  void print(const std::string& name) const {
-    std::printf("%s %016llx\n", name.c_str(), static_cast<unsigned long long>(state_));
-  }
-
-private:
-  std::uint64_t state_ = 0xcbf29ce484222325u;
-};
-
-template <class Range>
-void print(const std::string& name, const Range& values) {
-  Hash hash;
-  for (const auto& value : values) hash.add(value);
-  hash.print(name);
+void add_vec(Hash& hash, const Vec3& v) {
+  hash.add(v.x), hash.add(v.y), hash.add(v.z);
+}
+void add_plane(Hash& hash, const Plane& p) {
+  add_vec(hash, p.normal), hash.add(p.distance);
 }
 
 Vec3 cross(const Vec3& a, const Vec3& b) {
@@ -116,13 +102,25 @@ std::vector<NamedView> views() {
   return all;
 }
 
-void print_geometry(const std::vector<NamedView>& views) {
+void answer_elementary(Answers& out) {
+  scene::Random random(8);
+  Hash angles, numbers;
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = random.between(-1, 1) * (i % 2 == 0 ? 7.0 : 1e6);
+    angles.add(portable::sin(angle)), angles.add(portable::cos(angle)), angles.add(portable::tan(angle));
+    const double number = portable::exp(static_cast<double>(random.between(-700, 700)));
+    numbers.add(number), numbers.add(portable::log(number));
+  }
+  out.add("elementary.angles", angles), out.add("elementary.numbers", numbers);
+}
+
+void answer_geometry(const std::vector<NamedView>& views, Answers& out) {
   Hash planes, points, areas, rects;
   scene::Random random(2);
   for (const NamedView& named : views) {
     const Frustum frustum = make_frustum(named.view);
-    for (const Plane& plane : frustum.planes) planes.add_plane(plane);
-    points.add_vec(eye_position(named.view)), points.add_vec(view_direction(named.view));
+    for (const Plane& plane : frustum.planes) add_plane(planes, plane);
+    add_vec(points, eye_position(named.view)), add_vec(points, view_direction(named.view));
     const Mat4 to_clip = world_to_clip(named.view);
     for (const float x : to_clip.m) points.add(x);
     const Projector projector = make_projector(named.view, kReach);
@@ -133,16 +131,15 @@ void print_geometry(const std::vector<NamedView>& views) {
       rects.add(rect.min_x), rects.add(rect.min_y), rects.add(rect.max_x), rects.add(rect.max_y);
     }
   }
-  planes.print("geometry.planes"), points.print("geometry.points");
-  areas.print("geometry.areas"), rects.print("geometry.rectangles");
-  // Its tangent is the C library's.
+  out.add("geometry.planes", planes), out.add("geometry.points", points);
+  out.add("geometry.areas", areas), out.add("geometry.rectangles", rects);
   Hash made;
   const Result<View> view = make_view({.eye = {1, 2, 3}, .forward = {1, 0.2f, 3}}, 1280, 720);
   for (const float x : view->eye_to_clip.m) made.add(x);
-  made.print("geometry.make_view");
+  out.add("geometry.make_view", made);
 }
 
-void print_frustum(const std::vector<NamedView>& views) {
+void answer_frustum(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(3);
   Boxes boxes;
   std::vector<float> x, y, z, radius;
@@ -155,10 +152,10 @@ void print_frustum(const std::vector<NamedView>& views) {
   for (const NamedView& named : views) {
     const Frustum planes = make_frustum(named.view);
     const std::size_t seen = *cull_boxes(planes, boxes.view(), visible);
-    print("frustum.boxes." + named.name, std::span(visible).first(seen));
+    out.add_all("frustum.boxes." + named.name, std::span(visible).first(seen));
     const std::size_t round = *cull_spheres(
         planes, SphereView::arrays(x.data(), y.data(), z.data(), radius.data(), x.size()), visible);
-    print("frustum.spheres." + named.name, std::span(visible).first(round));
+    out.add_all("frustum.spheres." + named.name, std::span(visible).first(round));
   }
 }
 
@@ -188,7 +185,7 @@ void draw_occluders(OcclusionBuffer& buffer) {
   }
 }
 
-void print_occlusion(const std::vector<NamedView>& views) {
+void answer_occlusion(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(5);
   Boxes boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(box_of(random, 2));
@@ -200,16 +197,16 @@ void print_occlusion(const std::vector<NamedView>& views) {
     draw_occluders(buffer);
     depth.assign(std::size_t{named.view.width} * named.view.height, 0);
     expect(buffer.read_nearness(depth));
-    print("occlusion.depth." + named.name, depth);
+    out.add_all("occlusion.depth." + named.name, depth);
     Hash covered;
     for (const float nearness : depth) covered.add(static_cast<std::uint8_t>(nearness > 0));
-    covered.print("occlusion.coverage." + named.name);
+    out.add("occlusion.coverage." + named.name, covered);
     expect(buffer.may_see(boxes.view(), seen));
-    print("occlusion.boxes." + named.name, seen);
+    out.add_all("occlusion.boxes." + named.name, seen);
   }
 }
 
-void print_world(const std::vector<NamedView>& views) {
+void answer_world(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(6);
   std::vector<WorldBox> boxes;
   for (int i = 0; i < 30000; ++i) boxes.push_back(world_box(box_of(random, 3)));
@@ -218,7 +215,8 @@ void print_world(const std::vector<NamedView>& views) {
   expect(world.insert(boxes, handles));
   Culler culler;
   OcclusionBuffer buffer;
-  std::vector<ObjectId> visible(cull_capacity(world));
+  const CullOptions options{.jobs = {test::run_threads, nullptr, out.threads}};
+  std::vector<ObjectId> visible(cull_capacity(world, options));
   for (const NamedView& named : views) {
     for (std::size_t i = 0; i < boxes.size(); i += 7) {
       const double step = random.between(-2, 2);
@@ -227,10 +225,10 @@ void print_world(const std::vector<NamedView>& views) {
     }
     CullView view{.view = {named.view, {}}};
     const auto cull = [&](const char* with) {
-      const auto culled = culler.cull(world, view, visible);
+      const auto culled = culler.cull(world, {&view, 1}, options, {visible});
       expect(culled.error());
-      print("world." + std::string(with) + "." + named.name,
-            std::span(visible).first(culled ? culled->count : 0));
+      out.add_all("world." + std::string(with) + "." + named.name,
+                  std::span(visible).first(culled ? culled->count : 0));
     };
     cull("frustum");
     expect(buffer.begin(view.view));
@@ -242,7 +240,7 @@ void print_world(const std::vector<NamedView>& views) {
   }
 }
 
-void print_rays(const std::vector<NamedView>& views) {
+void answer_rays(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(7);
   Boxes boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(box_of(random, 4));
@@ -254,8 +252,8 @@ void print_rays(const std::vector<NamedView>& views) {
   for (const NamedView& named : views) {
     grid.make(named.view, 80, 50);
     rays::cast_wide(tree, grid, stack, hits);
-    print("rays.objects." + named.name, hits.object);
-    print("rays.distances." + named.name, hits.distance);
+    out.add_all("rays.objects." + named.name, hits.object);
+    out.add_all("rays.distances." + named.name, hits.distance);
   }
   // From anywhere, any way: few go along with their neighbours.
   grid.prepared.clear(), grid.order.clear();
@@ -274,9 +272,13 @@ void print_rays(const std::vector<NamedView>& views) {
 
 int main() {
   const std::vector<NamedView> all = views();
-  print_geometry(all);
-  print_frustum(all);
-  print_occlusion(all);
-  print_world(all);
-  print_rays(all);
+  const int others = test::print_answers([&](Answers& out) {
+    answer_elementary(out);
+    answer_geometry(all, out);
+    answer_frustum(all, out);
+    answer_occlusion(all, out);
+    answer_world(all, out);
+    answer_rays(all, out);
+  });
+  return others == 0 ? 0 : 1;
 }

@@ -127,6 +127,18 @@ TEST_F(EdgeCases, EqualDepthsHaveOneWinnerWhateverIsDrawnFirst) {
   }
 }
 
+TEST_F(EdgeCases, EqualDepthsHaveOneWinnerThoughOneComesLate) {
+  // The first cube comes from behind the eye to where the second stands: drawn late, and yet before it.
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  scene.add_object(cube, at(0, 0, 9));
+  scene.add_object(cube, at(0, 0, -8));
+  Examination examination(device(), scene, kOcclusionMethods);
+  for (int frame = 0; frame < 3; ++frame) examination.look(view_of({}), "before it comes");
+  examination.move_to(0, at(0, 0, -8));
+  for (int frame = 0; frame < 3; ++frame) examination.look(view_of({}), "since it has come");
+}
+
 TEST_F(EdgeCases, AWideBoxThatComesOutFromBehindAWall) {
   // What shows first is a strip at one end of the box, in other tiles of depth than the rest of it.
   for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {

@@ -33,9 +33,12 @@ public:
       scene_.move_object(object, transform);
       moved_.push_back(object);
     }
-    renderer_.update(moved_);
-    reference_->update(moved_);
-    for (auto& [name, method] : methods_) method->update(moved_);
+    follow();
+  }
+  void move_to(ObjectId object, const Affine& transform) {
+    scene_.move_object(object, transform);
+    moved_ = {object};
+    follow();
   }
 
   /// Every method's frame from the view: nothing lost, the same picture to the bit.
@@ -66,6 +69,12 @@ public:
   [[nodiscard]] const Frame& last_frame() const { return frame_; }
 
 private:
+  void follow() {
+    renderer_.update(moved_);
+    reference_->update(moved_);
+    for (auto& [name, method] : methods_) method->update(moved_);
+  }
+
   void draw(Method& method, const View& view) {
     renderer_.frame(view, [&](device::Recorder& recorder) {
       FrameContext context{view, frame_, &recorder};

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <optional>
@@ -72,11 +73,29 @@ void take_in(const std::vector<std::byte>& bytes, PackedCells& done) {
   }
 }
 
+BakeEstimate estimate(CellBaker baker, const CellPvs& cells, std::span<const std::uint32_t> waiting,
+                      int threads) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::size_t kTried = 64;
+  const auto start = Clock::now();
+  const std::size_t tried = std::min(kTried, waiting.size());
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < tried; ++i) open += baker.try_out(cells, waiting[i * waiting.size() / tried]);
+  BakeEstimate out{waiting.size()};
+  if (open == 0) return out;
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  out.open = static_cast<double>(waiting.size() * open) / static_cast<double>(tried);
+  out.seconds = out.open * baker.least_rays() * seconds / static_cast<double>(baker.rays_cast()) /
+                (threads > 0 ? threads : tbb::this_task_arena::max_concurrency());
+  return out;
+}
+
 }  // namespace
 
 BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
                 const Ranks& ranks, int threads,
-                const std::function<bool(std::size_t done, std::size_t all)>& progress) {
+                const std::function<bool(std::size_t done, std::size_t all)>& progress,
+                const std::function<void(const BakeEstimate&)>& estimated) {
   BakeResult result;
   CellPvs cells = make_cells(scene, options);
   const std::uint64_t key = key_of(cells, options);
@@ -102,6 +121,7 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   }
   result.resumed = static_cast<std::uint32_t>(share.size() - waiting.size());
   const partition::TriangleRays rays(scene);
+  if (estimated) estimated(estimate(CellBaker(scene, rays, options), cells, waiting, threads));
   tbb::enumerable_thread_specific<CellBaker> bakers([&] { return CellBaker(scene, rays, options); });
   tbb::enumerable_thread_specific<std::vector<ObjectId>> sets;
   std::mutex one_at_a_time;

@@ -38,12 +38,20 @@ struct BakeResult {
   CellPvs cells;              ///< on rank 0 of a finished bake
 };
 
+/// What this rank has before it, as a few cells that were tried out tell.
+struct BakeEstimate {
+  std::size_t cells = 0;  ///< that wait
+  double open = 0;        ///< of them, about
+  double seconds = 0;     ///< at least: what finds something new is followed by more rays
+};
+
 /// Bakes and writes `file`, the same bytes however often it was killed, over however many ranks and threads
 /// (`threads` of this rank; 0: as many as the process has cores). Beside it lie journals, `file`.part.RANK,
 /// until it is finished. `progress` is told how many of this rank's cells are done, one call at a time, and
-/// may return false to begin no more. Throws Error.
+/// may return false to begin no more. `estimated` is told once, before the first cell. Throws Error.
 BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
                 const Ranks& ranks, int threads = 0,
-                const std::function<bool(std::size_t done, std::size_t all)>& progress = {});
+                const std::function<bool(std::size_t done, std::size_t all)>& progress = {},
+                const std::function<void(const BakeEstimate&)>& estimated = {});
 
 }  // namespace sightline::bake

@@ -7,6 +7,8 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/elementary.hpp"
+
 namespace sightline::bake {
 
 CellPvs make_cells(const Scene& scene, const CellOptions& options) {
@@ -39,8 +41,8 @@ std::vector<Vec3> lattice(std::uint32_t count) {
   std::vector<Vec3> directions;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double y = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - y * y), a = golden * i;
-    directions.push_back(
-        {static_cast<float>(r * std::cos(a)), static_cast<float>(y), static_cast<float>(r * std::sin(a))});
+    directions.push_back({static_cast<float>(r * portable::cos(a)), static_cast<float>(y),
+                          static_cast<float>(r * portable::sin(a))});
   }
   return directions;
 }
@@ -104,7 +106,8 @@ void CellBaker::look(const Vec3& eye, std::span<const Vec3> directions, scene::R
   constexpr float kTurn = 2 * std::numbers::pi_v<float>;
   const float u = random.unit(), a = kTurn * random.unit(), b = kTurn * random.unit();
   const float s = std::sqrt(1 - u), t = std::sqrt(u);
-  const float x = s * std::sin(a), y = s * std::cos(a), z = t * std::sin(b), w = t * std::cos(b);
+  const float x = s * portable::sin(a), y = s * portable::cos(a), z = t * portable::sin(b),
+              w = t * portable::cos(b);
   for (const Vec3& d : directions) {
     batch_.push_back(
         {eye,
@@ -152,11 +155,30 @@ void CellBaker::follow(const Box& cell, scene::Random& random) {
   }
 }
 
-bool CellBaker::bake(const CellPvs& cells, std::uint32_t cell, std::vector<ObjectId>& visible) {
-  visible.clear();
+void CellBaker::begin() {
   leads_.clear();
   std::fill(seen_.begin(), seen_.end(), std::uint8_t{0});
   std::fill(known_.begin(), known_.end(), std::uint8_t{0});
+}
+
+bool CellBaker::try_out(const CellPvs& cells, std::uint32_t cell) {
+  begin();
+  scene::Random random(cell);
+  OpenPoints points(scene_, cells.cell_bounds(cell), random);
+  Vec3 eye;
+  if (!points.next(kTries, eye)) return false;
+  while (batch_.size() < kBatch) look(eye, few_, random);
+  cast();
+  return true;
+}
+
+double CellBaker::least_rays() const noexcept {
+  return std::min(3 / options_.target, static_cast<double>(options_.most_viewpoints)) * options_.rays;
+}
+
+bool CellBaker::bake(const CellPvs& cells, std::uint32_t cell, std::vector<ObjectId>& visible) {
+  visible.clear();
+  begin();
   const Box box = cells.cell_bounds(cell);
   scene::Random random(options_.seed * 0x9e3779b97f4a7c15u + cell);
   OpenPoints points(scene_, box, random);

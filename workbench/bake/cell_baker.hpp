@@ -40,9 +40,14 @@ public:
   /// 3 / target viewpoints at most target / 2 met something new: by then, what a nook of more than the target
   /// share of the cell shows is missed once in e^3 = 20 times, were the viewpoints random.
   bool bake(const CellPvs& cells, std::uint32_t cell, std::vector<ObjectId>& visible);
+  /// Casts a batch of rays as bake() does first, and says whether the cell is open; for an estimate.
+  bool try_out(const CellPvs& cells, std::uint32_t cell);
+  /// The rays that bake() casts into an open cell at least, before it follows what they find.
+  [[nodiscard]] double least_rays() const noexcept;
   [[nodiscard]] std::uint64_t rays_cast() const noexcept { return stats_.rays; }
 
 private:
+  void begin();
   void look(const Vec3& eye, std::span<const Vec3> directions, scene::Random& random);
   std::uint64_t cast();
   void follow(const Box& cell, scene::Random& random);

@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/camera/navigation_graph.hpp"
 #include "workbench/camera/path_file.hpp"
 
@@ -66,7 +67,8 @@ Viewpoint far_viewpoint(const Scene& scene) {
 }
 
 Vec3 turned(const Vec3& v, float yaw) {
-  return {v.x * std::cos(yaw) - v.z * std::sin(yaw), v.y, v.x * std::sin(yaw) + v.z * std::cos(yaw)};
+  return {v.x * portable::cos(yaw) - v.z * portable::sin(yaw), v.y,
+          v.x * portable::sin(yaw) + v.z * portable::cos(yaw)};
 }
 
 /// 0 at the first frame, 1 at the last.
@@ -79,7 +81,7 @@ std::vector<Camera> standing(const Scene& scene, const Viewpoint& viewpoint, std
   for (std::size_t f = 0; f < frames; ++f) {
     cameras[f].eye = viewpoint.eye;
     cameras[f].forward =
-        turned(viewpoint.forward, kSway * std::sin(2 * std::numbers::pi_v<float> * progress(f, frames)));
+        turned(viewpoint.forward, kSway * portable::sin(2 * std::numbers::pi_v<float> * progress(f, frames)));
   }
   return cameras;
 }
@@ -108,8 +110,8 @@ std::vector<Camera> circle(const Scene& scene, std::size_t frames) {
   std::vector<Camera> cameras(frames, camera_for(all));
   for (std::size_t f = 0; f < frames; ++f) {
     const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(f) / static_cast<float>(frames);
-    cameras[f].eye = {x + rx * std::cos(angle), y, z + rz * std::sin(angle)};
-    cameras[f].forward = {-std::sin(angle), 0, std::cos(angle)};
+    cameras[f].eye = {x + rx * portable::cos(angle), y, z + rz * portable::sin(angle)};
+    cameras[f].forward = {-portable::sin(angle), 0, portable::cos(angle)};
   }
   return cameras;
 }

@@ -9,6 +9,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/scene/level_space.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -77,16 +78,18 @@ void set_random_direction(Camera& camera, Random& random) {
   float yaw = random.between(0, 360) * kRadians, pitch = random.between(-30, 30) * kRadians;
   if (kind < 0.3f) yaw = static_cast<float>(random.below(4)) * 90 * kRadians, pitch = 0;
   if (kind > 0.9f) pitch = random.between(-89, 89) * kRadians;
-  camera.forward = {std::cos(pitch) * std::sin(yaw), std::sin(pitch), -std::cos(pitch) * std::cos(yaw)};
+  camera.forward = {portable::cos(pitch) * portable::sin(yaw), portable::sin(pitch),
+                    -portable::cos(pitch) * portable::cos(yaw)};
   if (random.unit() < 0.3f) {
     const float roll = random.between(-180, 180) * kRadians;
-    camera.up = {std::sin(roll) * std::cos(yaw), std::cos(roll), std::sin(roll) * std::sin(yaw)};
+    camera.up = {portable::sin(roll) * portable::cos(yaw), portable::cos(roll),
+                 portable::sin(roll) * portable::sin(yaw)};
   }
 }
 
 void set_random_projection(Camera& camera, const Ground& ground, Random& random) {
   const auto spread = [&](float low, float high) {
-    return std::exp(random.between(std::log(low), std::log(high)));
+    return portable::exp(random.between(portable::log(low), portable::log(high)));
   };
   camera.vertical_fov = random.between(15, 125) * kRadians;
   camera.near_plane = std::min(spread(0.01f, 2), 0.1f * ground.diagonal);

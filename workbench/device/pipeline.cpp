@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "library/geometry/mutant.h"
 #include "workbench/device/image.hpp"
 #include "workbench/device/shared.h"
 
@@ -51,20 +52,36 @@ vk::raii::ShaderModule module(const Device& device, Spirv code) {
   return {device.handle(), vk::ShaderModuleCreateInfo{{}, code.size_bytes(), code.data()}};
 }
 
-std::vector<vk::SpecializationMapEntry> entries(Words constants) {
-  std::vector<vk::SpecializationMapEntry> out;
-  for (std::uint32_t i = 0; i < constants.size(); ++i) out.push_back({i, 4 * i, 4});
-  return out;
-}
+/// The specialisation constants 0, 1, … of a pipeline; where there are mutants, also which of them is
+/// planted.
+class Constants {
+public:
+  explicit Constants(Words values) : values_(values.begin(), values.end()) {
+    for (std::uint32_t i = 0; i < values.size(); ++i) entries_.push_back({i, 4 * i, 4});
+#ifdef SIGHTLINE_MUTANTS
+    entries_.push_back({100, static_cast<std::uint32_t>(4 * values.size()), 4});
+    values_.push_back(mutants::kPlanted);
+#endif
+  }
+  /// Points into this.
+  [[nodiscard]] vk::SpecializationInfo info() const {
+    vk::SpecializationInfo info;
+    info.setMapEntries(entries_);
+    info.setData<std::uint32_t>(values_);
+    return info;
+  }
+
+private:
+  std::vector<std::uint32_t> values_;
+  std::vector<vk::SpecializationMapEntry> entries_;
+};
 
 }  // namespace
 
 ComputePipeline::ComputePipeline(const Device& device, Spirv shader, Words constants) {
   const vk::raii::ShaderModule code = module(device, shader);
-  const auto map = entries(constants);
-  const vk::SpecializationInfo specialisation(
-      map, vk::ArrayProxyNoTemporaries<const std::uint32_t>(static_cast<std::uint32_t>(constants.size()),
-                                                            constants.data()));
+  const Constants held(constants);
+  const vk::SpecializationInfo specialisation = held.info();
   const vk::PipelineShaderStageCreateInfo stage{
       {}, vk::ShaderStageFlagBits::eCompute, *code, "main", &specialisation};
   pipeline_.emplace(device.handle(), nullptr, vk::ComputePipelineCreateInfo{{}, stage, *device.layout()});
@@ -74,10 +91,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
   using Stage = vk::ShaderStageFlagBits;
   std::vector<vk::raii::ShaderModule> modules;
   std::vector<vk::PipelineShaderStageCreateInfo> stages;
-  const auto map = entries(state.constants);
-  const vk::SpecializationInfo specialisation(
-      map, vk::ArrayProxyNoTemporaries<const std::uint32_t>(
-               static_cast<std::uint32_t>(state.constants.size()), state.constants.data()));
+  const Constants constants(state.constants);
+  const vk::SpecializationInfo specialisation = constants.info();
   for (const auto& [code, stage] :
        {std::pair{state.vertex, Stage::eVertex}, std::pair{state.geometry, Stage::eGeometry},
         std::pair{state.fragment, Stage::eFragment}}) {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "library/geometry/elementary.hpp"
+
 namespace sightline::io::quake3 {
 
 namespace {
@@ -74,7 +76,8 @@ Vec3 forward(const Entity& entity) {
   // Straight up or down has no heading; a camera needs one.
   pitch = std::clamp(std::remainder(pitch, 360.0f), -80.0f, 80.0f) * kRadians;
   yaw = std::remainder(yaw, 360.0f) * kRadians;
-  return to_axes({std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), -std::sin(pitch)});
+  return to_axes({portable::cos(pitch) * portable::cos(yaw), portable::cos(pitch) * portable::sin(yaw),
+                  -portable::sin(pitch)});
 }
 
 bool starts_with_any(std::string_view name, std::initializer_list<std::string_view> prefixes) {

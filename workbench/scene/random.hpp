@@ -7,6 +7,8 @@
 
 #include <sightline/types.hpp>
 
+#include "library/geometry/elementary.hpp"
+
 namespace sightline::scene {
 
 class Random {
@@ -37,7 +39,7 @@ public:
   Vec3 direction() noexcept {
     const float y = between(-1, 1), angle = between(0, 2 * std::numbers::pi_v<float>);
     const float r = std::sqrt(std::fmax(0.0f, 1 - y * y));
-    return {r * std::cos(angle), y, r * std::sin(angle)};
+    return {r * portable::cos(angle), y, r * portable::sin(angle)};
   }
 
 private:

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "library/geometry/elementary.hpp"
+
 namespace sightline::scene {
 
 namespace {
@@ -80,7 +82,7 @@ Shape cone(float base_radius, float top_radius, float base_y, float top_y, std::
   for (std::uint32_t i = 0; i <= sides; ++i) {
     const float angle =
         2 * std::numbers::pi_v<float> * static_cast<float>(i % sides) / static_cast<float>(sides);
-    const float c = std::cos(angle), s = std::sin(angle);
+    const float c = portable::cos(angle), s = portable::sin(angle);
     shape.positions.push_back({base_radius * c, base_y, base_radius * s});
     shape.positions.push_back({top_radius * c, top_y, top_radius * s});
     for (int twice = 0; twice < 2; ++twice) shape.normals.push_back(normalised({rise * c, slope, rise * s}));
@@ -100,7 +102,7 @@ Shape disc(float radius, float y, std::uint32_t sides, bool faces_up) {
   shape.positions.push_back({0, y, 0});
   for (std::uint32_t i = 0; i < sides; ++i) {
     const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
-    shape.positions.push_back({radius * std::cos(angle), y, radius * std::sin(angle)});
+    shape.positions.push_back({radius * portable::cos(angle), y, radius * portable::sin(angle)});
     const std::uint32_t here = 1 + i, next = 1 + (i + 1) % sides;
     for (std::uint32_t v : {0u, faces_up ? next : here, faces_up ? here : next}) shape.indices.push_back(v);
   }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/scene/random.hpp"
 #include "workbench/scene/worlds.hpp"
 
@@ -34,7 +35,7 @@ Scene make_soup(const Parameters& parameters) {
   const float edge = static_cast<float>(parameters.number("edge"));
   // Objects as large as their share of the cube, so that together they fill it evenly.
   const float reach =
-      half * std::cbrt(std::fmin(1.0f, static_cast<float>(per_object) / static_cast<float>(triangles)));
+      half * portable::cbrt(std::fmin(1.0f, static_cast<float>(per_object) / static_cast<float>(triangles)));
   Random random(parameters.count("seed"));
   Scene scene;
   std::vector<Vec3> positions, normals;

@@ -5,6 +5,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/scene/random.hpp"
 #include "workbench/scene/shapes.hpp"
 #include "workbench/scene/worlds.hpp"
@@ -95,7 +96,7 @@ Scene make_irregular(const Parameters& parameters) {
     const std::uint32_t kind = random.below(4);
     const Vec3 start = random.inside(ground);
     if (kind == 0) {
-      const float radius = std::exp(random.between(std::log(0.15f), std::log(2.5f)));
+      const float radius = portable::exp(random.between(portable::log(0.15f), portable::log(2.5f)));
       scene.add_object(mesh, place({start.x, radius, start.z}, radius));
       continue;
     }
@@ -108,8 +109,9 @@ Scene make_irregular(const Parameters& parameters) {
       const float across = kind == 1 ? random.between(-0.5f, 0.5f)                // a wall
                                      : random.between(-reach, reach) * (1 - up);  // a mound
       const float narrowed = kind == 1 ? along : along * (1 - up);
-      const Vec3 at{start.x + narrowed * std::cos(heading) - across * std::sin(heading), radius + up * height,
-                    start.z + narrowed * std::sin(heading) + across * std::cos(heading)};
+      const Vec3 at{start.x + narrowed * portable::cos(heading) - across * portable::sin(heading),
+                    radius + up * height,
+                    start.z + narrowed * portable::sin(heading) + across * portable::cos(heading)};
       scene.add_object(mesh, place(at, radius));
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/scene/random.hpp"
 #include "workbench/scene/strata.hpp"
 #include "workbench/scene/worlds.hpp"
@@ -52,8 +53,8 @@ public:
   Ground(Random& random, std::uint32_t layers) {
     for (Fold& fold : folds_) {
       const float wave = random.between(2, 7) / kSide, heading = random.between(-0.6f, 0.6f);
-      fold = {2 * std::numbers::pi_v<float> * wave * std::cos(heading),
-              2 * std::numbers::pi_v<float> * wave * std::sin(heading),
+      fold = {2 * std::numbers::pi_v<float> * wave * portable::cos(heading),
+              2 * std::numbers::pi_v<float> * wave * portable::sin(heading),
               random.between(0, 2 * std::numbers::pi_v<float>), random.between(15, 60)};
     }
     float y = -0.5f * kHeight;
@@ -69,12 +70,12 @@ public:
     float y = borders_[border] + thrown;
     const float damped = 1 - 0.3f * static_cast<float>(border) / static_cast<float>(borders_.size());
     for (const Fold& fold : folds_) {
-      y += damped * fold.height * std::sin(fold.along_u * u + fold.along_v * v + fold.phase);
+      y += damped * fold.height * portable::sin(fold.along_u * u + fold.along_v * v + fold.phase);
     }
     // Thickness swells and thins from place to place, never to nothing.
-    y += 3 * std::sin(0.004f * u + static_cast<float>(border)) * std::cos(0.005f * v);
+    y += 3 * portable::sin(0.004f * u + static_cast<float>(border)) * portable::cos(0.005f * v);
     const float slanted = u + kDip * y;
-    const float c = std::cos(kHeading), s = std::sin(kHeading);
+    const float c = portable::cos(kHeading), s = portable::sin(kHeading);
     return {c * slanted - s * v, y, s * slanted + c * v};
   }
 

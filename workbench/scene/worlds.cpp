@@ -6,6 +6,8 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/elementary.hpp"
+
 namespace sightline {
 
 namespace {
@@ -60,7 +62,7 @@ Scene generate_world(std::string_view specification) {
 namespace scene {
 
 Affine place(const Vec3& p, float scale, float heading) noexcept {
-  const float c = scale * std::cos(heading), s = scale * std::sin(heading);
+  const float c = scale * portable::cos(heading), s = scale * portable::sin(heading);
   return {{Vec4{c, 0, s, p.x}, Vec4{0, scale, 0, p.y}, Vec4{-s, 0, c, p.z}}};
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "library/geometry/mutant.h"
 #include "library/geometry/radix_sort.hpp"
 #include "library/geometry/view_depth.hpp"
 
@@ -44,7 +45,10 @@ void DrawList::build(const Scene& scene, const View& view, Frame& frame) noexcep
     const std::uint32_t near_first = geometry::sortable(geometry::view_depth(scene.bounds[id], eye, forward));
     const DrawState state = states_[id];
     keys_[static_cast<std::size_t>(state)].push_back(
-        std::uint64_t{state == DrawState::blended ? ~near_first : near_first} << 32 | id);
+        std::uint64_t{state == DrawState::blended && !SIGHTLINE_MUTANT(transparent_near_to_far) ? ~near_first
+                                                                                                : near_first}
+            << 32 |
+        id);
   }
   frame.draws.clear();
   frame.one_by_one = call_ == CallOf::object;

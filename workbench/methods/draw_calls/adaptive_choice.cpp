@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "library/geometry/elementary.hpp"
 #include "workbench/methods/draw_calls/adaptive.hpp"
 #include "workbench/methods/draw_calls/draw_calls.hpp"
 
@@ -86,7 +87,7 @@ std::vector<View> sample_views(const Scene& scene) {
     camera.far_plane = std::max(2 * reach, 1.0f);
     for (int quarter = 0; quarter < 4; ++quarter) {
       const float turn = 0.5f * std::numbers::pi_v<float> * static_cast<float>(quarter) + 0.3f;
-      camera.forward = {std::sin(turn), 0, -std::cos(turn)};
+      camera.forward = {portable::sin(turn), 0, -portable::cos(turn)};
       if (const Result<View> view = make_view(camera, 640, 360)) views.push_back(*view);
     }
   }

@@ -8,6 +8,7 @@
 
 #include <sightline/world.hpp>
 
+#include "library/geometry/mutant.h"
 #include "workbench/methods/methods.hpp"
 #include "workbench/methods/raster_occlusion/scene_occluders.hpp"
 #include "workbench/submission/draw_list.hpp"
@@ -70,7 +71,8 @@ public:
     bool culled = !as_one && cull_world({.view = at}, frame, result);
     const bool worth_it = as_one || (culled && result.count > 1);
     // A world or view beyond what the tiles hold is culled by frustum alone, or not at all.
-    if (usable && worth_it && occluders_.draw(at, std::span(frame.visible).first(result.count))) {
+    if (usable && worth_it && !SIGHTLINE_MUTANT(masked_by_frustum) &&
+        occluders_.draw(at, std::span(frame.visible).first(result.count))) {
       culled = cull_world({.view = at, .occlusion = &occluders_.buffer()}, frame, result);
       const auto left = std::span(frame.visible).first(result.count);
       const std::size_t kept = occluders_.keep_seen(left);

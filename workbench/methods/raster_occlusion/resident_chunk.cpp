@@ -3,6 +3,7 @@
 // that were visible last frame are drawn once, before the test.
 #include <cstring>
 
+#include "library/geometry/mutant.h"
 #include "workbench/methods/raster_occlusion/ground_chunks.hpp"
 #include "workbench/methods/raster_occlusion/two_phase.hpp"
 
@@ -78,6 +79,7 @@ public:
 
   void do_update(std::span<const ObjectId> objects) override {
     chunks_.update(renderer_.scene(), objects);
+    if (SIGHTLINE_MUTANT(stale_resident_chunks)) return;
     send_changes();
   }
 

@@ -11,6 +11,7 @@
 #include <sightline/frustum.hpp>
 #include <sightline/workbench/error.hpp>
 
+#include "library/geometry/mutant.h"
 #include "workbench/methods/raster_occlusion/occluder_proxy.hpp"
 
 namespace sightline::methods {
@@ -43,7 +44,7 @@ void SceneOccluders::update(std::span<const ObjectId> objects) {
     append_corners(o);
     usable_ = occludees_.set(o, corners_) && usable_;
   }
-  if (first_time) build_whole();
+  if (first_time && !SIGHTLINE_MUTANT(stale_occluders)) build_whole();
 }
 
 bool SceneOccluders::draw(const WorldView& at, std::span<const ObjectId> candidates) {

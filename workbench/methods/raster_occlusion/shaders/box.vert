@@ -33,5 +33,8 @@ void main() {
     gl_Position = drawn ? certain_mark(kSquare[turn % 6]) : kNowhere;
     return;
   }
-  gl_Position = clip_position(corner(centre, half_extent, kCorners[turn]), depth_slack(centre, half_extent));
+  const vec4 at = clip_position(corner(centre, half_extent, kCorners[turn]), depth_slack(centre, half_extent));
+  const bool by_frustum = listed == 0 ? SIGHTLINE_MUTANT(roc_by_frustum)
+                                      : SIGHTLINE_MUTANT(ioc_by_frustum) || SIGHTLINE_MUTANT(ihzb_by_frustum);
+  gl_Position = by_frustum ? before_all(at) : at;
 }

@@ -1,4 +1,5 @@
 // What culling shaders ask of a bounding box. Boxes are {centre, half extent}.
+#include "library/geometry/mutant.h"
 
 // The contribution test: 0 none, 1 exact, 2 by area. A constant of the pipeline, since llvmpipe computes both
 // sides of every branch that is left.
@@ -40,7 +41,9 @@ bool outside(vec4 sphere) {
 bool reaches_near_plane(vec3 centre, vec3 half_extent) {
   const vec4 plane = view.planes[4];
   const float nearest = dot(plane.xyz, centre) + plane.w - dot(abs(plane.xyz), half_extent);
-  return nearest <= view.near_push + 4 * plane_slack(plane, centre, half_extent);
+  return SIGHTLINE_MUTANT(boxes_at_the_eye_tested)
+             ? false
+             : nearest <= view.near_push + 4 * plane_slack(plane, centre, half_extent);
 }
 
 // The box grown by 1/32 pixel: more than the 1/256 pixel to which the rasteriser snaps vertices, of box and
@@ -52,7 +55,8 @@ vec3 widened(vec3 centre, vec3 half_extent) {
   const float farthest =
       dot(view.forward.xyz, centre - view.eye.xyz) + dot(abs(view.forward.xyz), half_extent);
   const float ahead = max(0, farthest), depth = view.eye.w == 0 ? ahead : 1;
-  return half_extent + depth / (32 * view.pixels_per_metre) + 1e-6 * (abs(centre) + half_extent);
+  const float pixels = SIGHTLINE_MUTANT(boxes_half_a_pixel_too_small) ? -0.5 : 1.0 / 32;
+  return half_extent + pixels * depth / view.pixels_per_metre + 1e-6 * (abs(centre) + half_extent);
 }
 
 // Rounding that z and w in clip space may carry, of the box and of what lies in it together. Depth is their
@@ -61,7 +65,7 @@ float depth_slack(vec3 centre, vec3 half_extent) {
   const mat4 m = view.world_to_clip;
   const vec4 reach = vec4(abs(centre) + half_extent, 1);
   const vec4 z = vec4(m[0].z, m[1].z, m[2].z, m[3].z), w = vec4(m[0].w, m[1].w, m[2].w, m[3].w);
-  return 1e-6 * (dot(abs(z), reach) + dot(abs(w), reach));
+  return SIGHTLINE_MUTANT(boxes_without_depth_bias) ? 0 : 1e-6 * (dot(abs(z), reach) + dot(abs(w), reach));
 }
 
 // A point in clip space moved towards the eye by a depth slack, but not across the near plane.
@@ -109,7 +113,7 @@ Footprint footprint(vec3 centre, vec3 half_extent) {
     widest = max(widest, 2 * view.coordinate_error / clip.w * (1 + max(abs(at.x), abs(at.y))));
   }
   const vec2 half_size = 0.5 * vec2(view.width, view.height);
-  const vec2 rim = widest * half_size + 1.0 / 64;
+  const vec2 rim = SIGHTLINE_MUTANT(rectangles_without_rim) ? vec2(-0.5) : widest * half_size + 1.0 / 64;
   const vec2 a = (vec2(low.x, -high.y) + 1) * half_size - rim,
              b = (vec2(high.x, -low.y) + 1) * half_size + rim;
   const float away = 16.0 / 16777216;
@@ -140,6 +144,11 @@ bool contributes(vec4 sphere, vec3 half_extent) {
   if (kContribution == 1) return covers_sample(footprint(sphere.xyz, half_extent));
   if (kContribution == 2) return projected_area(sphere) >= kThreshold;
   return true;
+}
+
+// The nearest there is, where a fault has nothing hide a box.
+vec4 before_all(vec4 clip) {
+  return vec4(clip.xy, view.reversed != 0 ? clip.w : 0, clip.w);
 }
 
 // A corner of a square about the image's middle at the near plane, for boxes that must be marked without a

@@ -3,6 +3,7 @@
 
 #include "workbench/device/shaders/view.h"
 
+#include "library/geometry/mutant.h"
 #include "resident.h"
 #include "workbench/device/shaders/frame_depth.h"
 layout(local_size_x = kBlock * kBlock) in;
@@ -26,5 +27,5 @@ void main() {
   const vec4 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
   const float lowest = min(min(low.x, low.y), min(low.z, low.w));
   const float highest = max(max(high.x, high.y), max(high.z, high.w));
-  tiles.at[tile.y * size.x + tile.x] = view.reversed != 0 ? lowest : highest;
+  tiles.at[tile.y * size.x + tile.x] = (SIGHTLINE_MUTANT(tiles_of_the_nearest) ? view.reversed == 0 : view.reversed != 0) ? lowest : highest;
 }

@@ -35,5 +35,6 @@ void main() {
   // llvmpipe runs a few lanes more than there are vertices, on whatever was there before, and clips a whole batch
   // once one of them is out of view.
   const bool stray = across_edge == 0 && any(greaterThan(abs(at.xy), vec2(at.w)));
-  gl_Position = towards == 0 || stray ? kNowhere : at;
+  const bool left_out = SIGHTLINE_MUTANT(resident_chunk_without_a_face) ? axis == 1 : towards == 0;
+  gl_Position = left_out || stray ? kNowhere : at;
 }

@@ -46,7 +46,7 @@ bool enters(PixelRay ray, NodeData node) {
              b = (node.high + margin - ray.origin) * ray.inverse;
   const vec3 low = min(a, b), high = max(a, b);
   const float from = max(max(low.x, low.y), low.z), to = min(min(high.x, high.y), high.z);
-  return from <= to && lies_before(ray, from);
+  return from <= to && (SIGHTLINE_MUTANT(hroc_by_frustum) ? true : lies_before(ray, from));
 }
 
 void main() {

@@ -21,7 +21,8 @@ void main() {
   const vec3 wide = widened(centre, half_extent);
   margin = wide - half_extent;
   slack = depth_slack(centre, wide);
-  gl_Position = clip_position(corner(centre, wide, kCorners[turn]), slack);
+  const vec4 at = clip_position(corner(centre, wide, kCorners[turn]), slack);
+  gl_Position = SIGHTLINE_MUTANT(hroc_by_frustum) ? before_all(at) : at;
   if (node.descendants > 0) return;
   if (!contributes(boxes.at[node.object].centre_radius, wide)) {
     gl_Position = kNowhere;

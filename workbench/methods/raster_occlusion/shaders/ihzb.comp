@@ -47,7 +47,8 @@ void main() {
   const BoxData box = boxes.at[node];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
-  if (outside(centre, half_extent) || !leaves_open(pyramid, centre, half_extent)) return;
+  if (outside(centre, half_extent)) return;
+  if (SIGHTLINE_MUTANT(ihzb_by_frustum) ? false : !leaves_open(pyramid, centre, half_extent)) return;
   if (node >= interior) {
     fine.at[atomicAdd(test.vertex_count, kBoxVertices) / kBoxVertices] = node - interior;
     return;

@@ -35,6 +35,7 @@ void main() {
   tile_range(footprint(box.centre_radius.xyz, box.half_extent.xyz), first, last);
   const uint columns = tile_count().x;
   for (uint y = first.y; y <= last.y; ++y) {
-    for (uint x = first.x; x <= last.x; ++x) tiles.at[1 + y * columns + x] = frame;
+    for (uint x = first.x; x <= last.x; ++x)
+      tiles.at[1 + y * columns + x] = SIGHTLINE_MUTANT(ties_not_drawn_again) ? 0 : frame;
   }
 }

@@ -1,5 +1,6 @@
 #version 460
 #include "workbench/device/shared.h"
+#include "library/geometry/mutant.h"
 layout(local_size_x = 256) in;
 #include "workbench/device/shaders/invocation.h"
 
@@ -19,5 +20,5 @@ void main() {
   const uvec2 low = 2 * at, high = min(low + 1, from_size - 1);
   const float a = from.at[low.y * from_size.x + low.x], b = from.at[low.y * from_size.x + high.x];
   const float c = from.at[high.y * from_size.x + low.x], d = from.at[high.y * from_size.x + high.x];
-  to.at[i] = reversed != 0 ? min(min(a, b), min(c, d)) : max(max(a, b), max(c, d));
+  to.at[i] = (SIGHTLINE_MUTANT(hiz_of_the_nearest) ? reversed == 0 : reversed != 0) ? min(min(a, b), min(c, d)) : max(max(a, b), max(c, d));
 }

@@ -18,7 +18,7 @@ layout(location = 0) out flat uint id;
 
 void emit(vec4 position) {
   id = box_object[0];
-  gl_Position = position;
+  gl_Position = SIGHTLINE_MUTANT(vertex_chunk_by_frustum) ? before_all(position) : position;
   EmitVertex();
 }
 
@@ -46,5 +46,5 @@ void main() {
                           facing(2, centre, half_extent));
   if (sides.x != 0) emit_face(middle + sides.x * x, y, z, slack);
   if (sides.y != 0) emit_face(middle + sides.y * y, z, x, slack);
-  if (sides.z != 0) emit_face(middle + sides.z * z, x, y, slack);
+  if (SIGHTLINE_MUTANT(vertex_chunk_without_a_face) ? false : sides.z != 0) emit_face(middle + sides.z * z, x, y, slack);
 }

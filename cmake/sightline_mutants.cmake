@@ -1,0 +1,25 @@
+# SIGHTLINE_MUTANTS: the one test build whose code and shaders bear the mutants of tests/mutants/table.txt, by number.
+# Sets `mutants` to its lines, "name tests filter".
+function(sightline_mutants mutants)
+  set(table ${PROJECT_SOURCE_DIR}/tests/mutants/table.txt)
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${table})
+  file(STRINGS ${table} lines REGEX "^[a-z]")
+  set(number 0)
+  set(numbers "")
+  set(names "")
+  foreach(line IN LISTS lines)
+    math(EXPR number "${number} + 1")
+    string(REGEX MATCH "^[a-z_]+" name "${line}")
+    string(APPEND numbers "const uint ${name} = ${number};\n")
+    string(APPEND names "\"${name}\", ")
+  endforeach()
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/mutants/sightline_mutants.h CONTENT
+       "${numbers}#ifdef __cplusplus\ninline constexpr const char* kNames[] = {${names}};\n#endif\n" @ONLY)
+  set(${mutants} ${lines} PARENT_SCOPE)
+endfunction()
+
+if(SIGHTLINE_MUTANTS)
+  sightline_mutants(SIGHTLINE_MUTANT_LINES)
+  add_compile_definitions(SIGHTLINE_MUTANTS)
+  include_directories(${PROJECT_BINARY_DIR}/mutants)
+endif()
