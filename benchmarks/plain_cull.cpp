@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 #endif
 
 namespace sightline::benchmarks {
@@ -38,11 +39,13 @@ std::size_t cull_plainly(const Frustum& frustum, const Boxes& boxes, std::span<O
   const __m512i steps = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
   const std::size_t count = boxes.size();
   std::size_t kept = 0;
-  const auto step = [&](std::size_t i, __mmask16 left) {
+  const auto step = [&](std::size_t i, auto whole, __mmask16 left) {
     const auto test = [&](std::size_t p) {
       const Wide& w = planes[p];
-      const __m512 x = _mm512_maskz_loadu_ps(left, w.at_x + i), y = _mm512_maskz_loadu_ps(left, w.at_y + i),
-                   z = _mm512_maskz_loadu_ps(left, w.at_z + i);
+      const auto load = [&](const float* from) {
+        return whole ? _mm512_loadu_ps(from + i) : _mm512_maskz_loadu_ps(left, from + i);
+      };
+      const __m512 x = load(w.at_x), y = load(w.at_y), z = load(w.at_z);
       const __m512 d = _mm512_fmadd_ps(w.x, x, _mm512_fmadd_ps(w.y, y, _mm512_fmadd_ps(w.z, z, w.distance)));
       return _mm512_cmp_ps_mask(d, _mm512_setzero_ps(), _CMP_GE_OQ);
     };
@@ -59,9 +62,9 @@ std::size_t cull_plainly(const Frustum& frustum, const Boxes& boxes, std::span<O
   // Up to where a line of memory begins, whole lines, the rest.
   const std::size_t in_line = reinterpret_cast<std::uintptr_t>(boxes.min_x.data()) / sizeof(float) % 16;
   std::size_t i = std::min(count, (16 - in_line) % 16);
-  step(0, static_cast<__mmask16>((1u << i) - 1));
-  for (; i + 16 <= count; i += 16) step(i, 0xffff);
-  step(i, static_cast<__mmask16>((1u << (count - i)) - 1));
+  step(0, std::false_type(), static_cast<__mmask16>((1u << i) - 1));
+  for (; i + 16 <= count; i += 16) step(i, std::true_type(), 0xffff);
+  step(i, std::false_type(), static_cast<__mmask16>((1u << (count - i)) - 1));
   return kept;
 }
 

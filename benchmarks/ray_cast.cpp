@@ -137,7 +137,7 @@ void run(benchmark::State& state, const Case& on, Cast cast, bool is_embree = fa
     if (same_distance && hits.object[i] == r.expected.object[i]) continue;
     (same_distance ? ties : grazed) += 1;
   }
-  if (!is_embree && ties + grazed > 0) {
+  if (is_embree ? grazed > r.grid.size() / 100 : ties + grazed > 0) {
     state.SkipWithError("a hit differs from the plain walk's");
     return;
   }
@@ -209,7 +209,8 @@ void add_all(const Case& on) {
     };
     add_scene(name, &Setting::fast);
     add_scene(name + "Robust", &Setting::robust);
-    add_scene(name + "Avx2", &Setting::avx2);
+    // Without AVX-512 Embree takes packets of 16 apart, and what they bear is lost.
+    if (name != "Embree16") add_scene(name + "Avx2", &Setting::avx2);
   }
   if (!on.coherent) return;
   add("WideRaysAllCores", on, wide_rays_all_cores)->UseRealTime();

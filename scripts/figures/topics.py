@@ -1,5 +1,6 @@
 """What is measured, topic by topic: each function gives the rows of one CSV. `quick` repeats less and leaves out what
 takes minutes."""
+import dataclasses
 import re
 import time
 
@@ -61,9 +62,21 @@ def occlusion(quick):
                                    counters=(("excess_%", "%", 1),), **repeats(quick))
 
 
+def fastest(rows, forms, name):
+    """A row for each case of the fastest of several benchmarks: those that `forms` matches, told apart by what `name`
+    makes of the match."""
+    best = {}
+    for row in rows:
+        if re.fullmatch(forms, row.benchmark):
+            key = re.sub(forms, name, row.benchmark), row.case
+            best[key] = min(best.get(key, row), row, key=lambda one: one.median)
+    return [dataclasses.replace(row, benchmark=benchmark) for (benchmark, _), row in best.items()]
+
+
 def rays(quick):
     """Rays at boxes beside Embree, the paper's five ways, and rays at triangles."""
     rows = google_benchmark("ray_cast", **repeats(quick))
+    rows += fastest(rows, r"Embree(?:Stream)?\d+(?:Robust)?(Avx2)?(Random)?", r"EmbreeUserGeometry\1\2")
     # Beside our own with the same rays and the same vectors.
     compare_with(rows, lambda name: re.sub("^.*?(Avx2)?(Random)?/", r"WideRays\1\2/", name))
     if quick:
