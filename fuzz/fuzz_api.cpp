@@ -187,7 +187,7 @@ Status draw(Numbers& in, OcclusionBuffer& buffer) {
   for (Sides& s : sides) s = in.byte() & 1 ? Sides::front : Sides::both;
   const auto mesh = OccluderMesh::make(points, indices, sides);
   if (!done(mesh)) return mesh.error();
-  if (in.byte() % 16 == 0) make_occluder_of(in, points, indices, sides);
+  if (in.byte() % 64 == 0) make_occluder_of(in, points, indices, sides);
   Mat4 transform;
   if (in.byte() & 1) transform.m[in.byte() % 16] = in.number();
   return buffer.draw_mesh(*mesh, transform);

@@ -247,7 +247,7 @@ private:
     const Owned<sightline_occluder_mesh, sightline_occluder_mesh_destroy> mesh(made);
     require(sightline_occluder_mesh_triangles(made) <= indices.size() / 3);
     (void)done(sightline_occlusion_draw_mesh(occlusion_.get(), made, in_.byte() & 1 ? transform : nullptr));
-    if (in_.byte() % 16 == 0) make_occluder(positions, indices, sides);
+    if (in_.byte() % 64 == 0) make_occluder(positions, indices, sides);
   }
 
   void make_occluder(const std::vector<float>& positions, const std::vector<std::uint32_t>& indices,

@@ -48,7 +48,7 @@ consume() {
 
   says "frame 2: draw [0-9]* of 100000 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/my_structs.py
   says "500 m" env PYTHONPATH="$python" /usr/bin/python3 examples/python/flight.py
-  says "its occluder [5-9][0-9]" env PYTHONPATH="$python" /usr/bin/python3 examples/python/occluder.py
+  says "its occluder [3-9][0-9]" env PYTHONPATH="$python" /usr/bin/python3 examples/python/occluder.py
   says "object-frustum" "$root/bin/sightline" methods
 }
 

@@ -69,8 +69,12 @@ public:
 private:
   void choose_parts();
   void take_whole_part(const MeshPart& part, std::vector<Candidate>& flat, std::uint32_t most);
-  std::vector<Candidate> shell_of(const MeshPart& part, std::uint32_t most);
-  void add_boxes();
+  std::vector<Candidate> shell_of(const Solid& solid, const MeshPart& part, std::uint32_t most);
+  void add_boxes(const Solid& solid);
+  const SolidGrid& grid_of(const Solid& solid) {
+    if (!grid_) grid_.emplace(solid);
+    return *grid_;
+  }
   void add(std::span<const Candidate> candidates);
 
   const MeshParts& mesh_;
@@ -78,8 +82,7 @@ private:
   MeshPart all_;  // the box around all of it
   Occluder out_;
   std::vector<Candidate> solid_, flat_;
-  std::optional<Solid> closed_;    // the part at hand
-  std::optional<SolidGrid> grid_;  // of it
+  std::optional<SolidGrid> grid_;  // of the part at hand
 };
 
 // Boxes as the triangles of their sides.
@@ -102,31 +105,29 @@ Shell shell_of_boxes(std::span<const Bounds3> boxes) {
 
 // The best of what lies inside the part at hand: its convex hull where it is convex, else what the grid sees,
 // as a surface or as boxes.
-std::vector<Candidate> Maker::shell_of(const MeshPart& part, std::uint32_t most) {
-  const Shell hull = convex_shell(*closed_, most);
-  std::vector<Candidate> best = sound_triangles(*closed_, hull, most);
+std::vector<Candidate> Maker::shell_of(const Solid& solid, const MeshPart& part, std::uint32_t most) {
+  const Shell hull = convex_shell(solid, most);
+  std::vector<Candidate> best = sound_triangles(solid, hull, most);
   if (!hull.triangles.empty() && best.size() == hull.triangles.size()) return best;
-  if (!grid_) grid_.emplace(*closed_);
-  Shell shell = grid_shell(*grid_);
-  simplify(*closed_, SolidGrid::kStep, most, shell);
-  const Shell boxes = shell_of_boxes(boxes_inside(*closed_, *grid_, most / 12));
-  const Shell far_hull = convex_shell(*closed_, most, kFromLid);
+  const SolidGrid& grid = grid_of(solid);
+  Shell shell = grid_shell(grid);
+  simplify(solid, SolidGrid::kStep, most, shell);
+  const Shell boxes = shell_of_boxes(boxes_inside(solid, grid, most / 12));
+  const Shell far_hull = convex_shell(solid, most, kFromLid);
   for (const Shell& proposed : {shell, boxes, far_hull}) {
-    std::vector<Candidate> other = sound_triangles(*closed_, proposed, most);
+    std::vector<Candidate> other = sound_triangles(solid, proposed, most);
     if (covers_more(part, other, best)) best = std::move(other);
   }
   return best;
 }
 
-void Maker::add_boxes() {
-  if (!grid_) grid_.emplace(*closed_);
-  for (const Bounds3& box : boxes_inside(*closed_, *grid_, options_.most_boxes - out_.boxes.size())) {
-    const Box rounded{to_vec3(closed_->to_mesh(box.low)), to_vec3(closed_->to_mesh(box.high))};
+void Maker::add_boxes(const Solid& solid) {
+  const SolidGrid& grid = grid_of(solid);
+  for (const Bounds3& box : boxes_inside(solid, grid, options_.most_boxes - out_.boxes.size())) {
+    const Box rounded{to_vec3(solid.to_mesh(box.low)), to_vec3(solid.to_mesh(box.high))};
     Bounds3 exact;
-    exact.low = closed_->to_solid(to_double(rounded.min)),
-    exact.high = closed_->to_solid(to_double(rounded.max));
-    if (glm::all(glm::lessThan(exact.low, exact.high)) && closed_->holds(exact))
-      out_.boxes.push_back(rounded);
+    exact.low = solid.to_solid(to_double(rounded.min)), exact.high = solid.to_solid(to_double(rounded.max));
+    if (glm::all(glm::lessThan(exact.low, exact.high)) && solid.holds(exact)) out_.boxes.push_back(rounded);
   }
 }
 
@@ -136,17 +137,18 @@ void Maker::take_whole_part(const MeshPart& part, std::vector<Candidate>& flat, 
   const double least = whole ? 0 : kLeastTriangle * all_.size();
   std::erase_if(flat, [&](const Candidate& c) { return c.area < least; });
   keep_largest(flat, most);
-  closed_.reset(), grid_.reset();
+  grid_.reset();
+  std::optional<Solid> closed;
   const bool wants_boxes = out_.boxes.size() < options_.most_boxes;
-  if (!whole || (wants_boxes && part.inside != Inside::never)) closed_.emplace(mesh_, part);
-  if (closed_ && closed_->thin()) closed_.reset();
+  if (!whole || (wants_boxes && part.inside != Inside::never)) closed.emplace(mesh_, part);
+  if (closed && closed->thin()) closed.reset();
   std::vector<Candidate> shell;
-  if (closed_ && !whole && most > 0) shell = shell_of(part, most);
+  if (closed && !whole && most > 0) shell = shell_of(*closed, part, most);
   const bool better = covers_more(part, shell, flat);
   (better ? solid_ : flat_)
       .insert((better ? solid_ : flat_).end(), better ? shell.begin() : flat.begin(),
               better ? shell.end() : flat.end());
-  if (closed_ && !closed_->has_lid() && wants_boxes) add_boxes();
+  if (closed && !closed->has_lid() && wants_boxes) add_boxes(*closed);
 }
 
 // Triangles are shared out by how large parts are.

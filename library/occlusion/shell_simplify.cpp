@@ -225,7 +225,8 @@ void Simplifier::widen() {
       glm::dvec3 ways[4] = {out / length, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
       for (int a = 0; a < 3; ++a) ways[1 + a][a] = out[a] > 0 ? 1 : -1;
       for (const glm::dvec3& way : ways) {
-        for (double by = 4 * step_; by > 0.1 * step_; by /= 2) {
+        double by = 4 * step_;
+        for (int tries = 0; tries < 6; ++tries, by /= 2) {
           const glm::dvec3 at = shell_.points[v] + by * way;
           if (stays_inside(v, kNobody, at)) shell_.points[v] = at;
         }

@@ -113,7 +113,8 @@ void widen(const Solid& solid, const std::vector<Bounds3>& others, Bounds3& box)
     });
   };
   for (int side = 0; side < 6; ++side) {
-    for (double by = SolidGrid::kStep; by > SolidGrid::kStep / 100; by /= 2) {
+    double by = SolidGrid::kStep;
+    for (int tries = 0; tries < 7; ++tries, by /= 2) {
       Bounds3 wider = box;
       (side < 3 ? wider.low : wider.high)[side % 3] += side < 3 ? -by : by;
       if (free(wider)) box = wider;

@@ -63,7 +63,7 @@ class Draw(Case):
         self.assertEqual((len(made.indices), len(made.boxes)), (12, 1))
         self.assertTrue((made.boxes > 0).all() and (made.boxes < 1).all())
         self.assertIn("no triangle", sightline.Occluder(cube[:0], indices[:0]).yields)
-        self.refused("bad_mesh", "names no position", sightline.Occluder, cube, indices, index=10)
+        self.refused("bad_mesh", "names no position", sightline.Occluder, cube, indices, index=2)
         self.bad("at most 4096", sightline.Occluder, wall, indices, most_triangles=5000)
         self.bad("positions: expected float32", sightline.Occluder, cube.astype(float), indices)
 
