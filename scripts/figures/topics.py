@@ -117,6 +117,13 @@ WALKS = ("czest2ctf", "czest3ctf", "ctf_inyard")
 RASTER = "vfc-vc,roc,hroc,hroc?leaf=boxes,ioc,ihzb,vertex-chunk,resident-chunk,hiz,masked"
 
 
+def near_view(key, scene):
+    """Occlusion on a device in one view near the ground, each method beside vertex-chunk."""
+    view = compare(scene, RASTER, key, device="any", size="640x360", path="near", frames=1)
+    return compare_with(view, lambda name: re.sub("/[^/]*/", "/vertex-chunk/", name)
+                        if name.endswith(("/frame", "/cull-gpu", "/vertices")) else None)
+
+
 def scenes(quick):
     """Methods on scenes: culled on the CPU, drawn by lavapipe, judged by the oracle."""
     rows = compare(LEVEL.format("oasago2"), "none,vfc-vc,grid-cell,object-frustum,masked,wide-rays,guided,level-pvs",
@@ -129,10 +136,8 @@ def scenes(quick):
                        frames=6 if quick else 24)
         rows += compare_with(walk, lambda name: level + "/masked/frame" if name.endswith("/frame") else None)
     for name in ("regular", "irregular"):
-        view = compare(f"world:{name}?detail=2", RASTER, f"{name}-near", device="any", size="640x360", path="near",
-                       frames=1)
-        rows += compare_with(view, lambda name: re.sub("/[^/]*/", "/vertex-chunk/", name)
-                             if name.endswith(("/frame", "/cull-gpu", "/vertices")) else None)
+        rows += near_view(f"{name}-near", f"world:{name}?detail=2")
+        rows += near_view(f"{name}-120000-near", f"world:{name}?spheres=120000&detail=0")
     views = 40 if quick else 300
     for key, scene in (("oasago2", LEVEL.format("oasago2")), ("irregular", "world:irregular"),
                        ("forest", "world:forest?trees=3000&size=300")):
