@@ -3,9 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 #include <ranges>
+#include <vector>
 
+#include <sightline/occluder.hpp>
+#include <sightline/workbench/affine.hpp>
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
@@ -74,6 +80,43 @@ void print(const Scene& scene) {
   for (const std::string& ignored : scene.ignored) fmt::print("ignored     {}\n", ignored);
 }
 
+// All opaque triangles in world space, as occlusion takes a level.
+OccluderMesh occluders_of(const Scene& scene, TJunctions junctions) {
+  std::vector<Vec3> corners;
+  for (ObjectId o = 0; o < scene.size(); ++o) {
+    if (scene.surface[o] != Surface::opaque) continue;
+    const Mesh& mesh = scene.meshes[scene.mesh[o]];
+    const bool turned = mirrors(scene.transform[o]);
+    for (std::uint32_t i = 0; i < mesh.index_count; ++i) {
+      const std::uint32_t k = turned ? i - i % 3 + 2 - i % 3 : i;
+      const std::uint32_t vertex = mesh.first_vertex + scene.indices[mesh.first_index + k];
+      corners.push_back(transform_point(scene.transform[o], scene.positions[vertex]));
+    }
+  }
+  std::vector<std::uint32_t> indices(corners.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  return or_throw(OccluderMesh::make(corners, indices, Sides::front, junctions));
+}
+
+// How many edges of its occluders are seams, and where the longest are that stay open.
+void print_seams(const Scene& scene) {
+  const OccluderMesh mesh = occluders_of(scene, TJunctions::closed);
+  const std::size_t open = mesh.open_edges(),
+                    junctions = occluders_of(scene, TJunctions::open).open_edges() - open;
+  fmt::print("seams       {} of {} edges shared, {} along others in pieces (T-junctions), {} open\n",
+             3 * mesh.triangles() - open - junctions, 3 * mesh.triangles(), junctions, open);
+  std::vector<OccluderEdge> edges(open);
+  mesh.open_edges(edges);
+  const auto length = [](const OccluderEdge& e) {
+    return std::hypot(e.to.x - e.from.x, e.to.y - e.from.y, e.to.z - e.from.z);
+  };
+  std::ranges::stable_sort(edges, std::greater(), length);
+  constexpr std::size_t kLongest = 10;
+  for (const OccluderEdge& e : edges | std::views::take(kLongest))
+    fmt::print("open        {:.2f} m from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f})\n", length(e),
+               e.from.x, e.from.y, e.from.z, e.to.x, e.to.y, e.to.z);
+}
+
 }  // namespace
 
 void add_info(CLI::App& app, int& exit) {
@@ -81,8 +124,15 @@ void add_info(CLI::App& app, int& exit) {
       "info", "Say what is in a scene: objects and their surfaces, meshes, triangles, bounds");
   auto scene = std::make_shared<std::string>();
   command.add_option("SCENE", *scene, kSceneHelp)->required();
-  on_run(command, exit, [scene] {
-    print(load_scene(*scene));
+  auto seams = std::make_shared<bool>(false);
+  command.add_flag(
+      "--seams", *seams,
+      "Also how many edges of its occluders meet others, and the longest that do not: beside those, "
+      "occlusion leaves single pixels open");
+  on_run(command, exit, [scene, seams] {
+    const Scene loaded = load_scene(*scene);
+    print(loaded);
+    if (*seams) print_seams(loaded);
     return Exit::done;
   });
 }

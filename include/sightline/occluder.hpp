@@ -23,6 +23,11 @@ enum class TJunctions : std::uint8_t {
            ///< nothing
 };
 
+/// From one corner of a mesh to another.
+struct OccluderEdge {
+  Vec3 from, to;  ///< metres
+};
+
 /// Triangles that occlude. Vertices at one place are joined, and each triangle knows its neighbours, so that
 /// the seams between triangles are tight while the outline is drawn a little smaller than it is. Seams are
 /// edges that two or more triangles share, and T-junctions if asked for. What can be looked through
@@ -55,6 +60,10 @@ public:
 
   /// How many triangles are left.
   [[nodiscard]] std::size_t triangles() const noexcept;
+  /// How many of their edges are no seams from any side, and so are always drawn inset, each counted at every
+  /// triangle that has it; the first of them, as many as there is room for, come back in `edges`. Cost:
+  /// linear in the triangles.
+  std::size_t open_edges(std::span<OccluderEdge> edges = {}) const noexcept;
 
 private:
   friend class OcclusionBuffer;

@@ -32,7 +32,8 @@ HWY_INLINE VF least_in_tile(const DepthTiles& tiles, const PixelRange& range, st
   if (SIGHTLINE_MUTANT(last_column_not_asked) && right > left) columns &= 0xffu >> (8 - right);
   const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (7 - high))) & (~std::uint64_t{0} << (8 * low));
   const std::uint64_t wanted = columns * 0x0101010101010101u & rows;
-  const float* depth = &tiles.nearness[(std::size_t{ty} * tiles.stride + tx) * 64];
+  alignas(64) std::array<float, 64> room;
+  const float* depth = pixels_of_tile(tiles, std::size_t{ty} * tiles.stride + tx, room);
   VF least = hn::Set(f, kInfinity);
   for (std::size_t i = 0; i < 64; i += hn::Lanes(f)) {
     least = hn::Min(least,

@@ -7,6 +7,8 @@
 #define SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
 #endif
 
+#include <bit>
+
 #include "library/geometry/mutant.h"
 #include "library/occlusion/spans-inl.hpp"
 
@@ -25,7 +27,7 @@ template <std::size_t kPlanes>
 struct PlaneTile {
   Planes<kPlanes> planes;
   alignas(64) std::array<std::array<float, 16>, kPlanes> offset;
-  std::array<float, kPlanes> most;  // of all eight rows
+  std::array<float, kPlanes> most, least;  // of all eight rows
 };
 
 template <std::size_t kPlanes>
@@ -40,6 +42,7 @@ HWY_INLINE PlaneTile<kPlanes> tile_of(const Planes<kPlanes>& planes) {
                 &out.offset[p][i]);
     }
     out.most[p] = std::max(0.0f, 7 * planes.across[p]) + std::max(0.0f, 7 * planes.down[p]);
+    out.least[p] = std::min(0.0f, 7 * planes.across[p]) + std::min(0.0f, 7 * planes.down[p]);
   }
   return out;
 }
@@ -60,6 +63,8 @@ HWY_INLINE void draw_tile(DepthTiles& tiles, const PlaneTile<kPlanes>& of, std::
   const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
   if ((pixels == 0) | !(nearest > tiles.farthest[tile])) return;
   float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
+  if (tiles.nearest[tile] > -kInfinity && tiles.plane[tile].covers != 0) lay_plane(tiles.plane[tile], out);
+  tiles.plane[tile].covers = 0;
   // No branch on whether the tile was touched, which is hard to guess.
   const std::size_t kind = std::size_t{tx + 1 == tiles.columns} | std::size_t{ty + 1 == tiles.rows} << 1;
   const float* before = &tiles.untouched[kind * 64];
@@ -83,6 +88,40 @@ HWY_INLINE void draw_tile(DepthTiles& tiles, const PlaneTile<kPlanes>& of, std::
   tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(f, least));
 }
 
+// Gives tiles [begin, end) of a row to a plane that covers them where it lies before all that they hold, and
+// draws the others pixel by pixel.
+HWY_INLINE void cover_tiles(DepthTiles& tiles, const PlaneTile<1>& of, std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t ty) {
+  const F f;
+  const Planes<1>& planes = of.planes;
+  const VF at = hn::Set(f, planes.at[0]), across = hn::Set(f, planes.across[0]),
+           below = hn::Set(f, (static_cast<float>(ty * kTile) + 0.5f) * planes.down[0]),
+           rounding = hn::Set(f, kTileRounding), range = hn::Set(f, of.most[0] - of.least[0]);
+  const VF columns = hn::Mul(hn::Load(f, kLine), hn::Set(f, static_cast<float>(kTile)));
+  alignas(64) std::array<float, 16> bases;
+  for (std::uint32_t tx = begin; tx < end; tx += static_cast<std::uint32_t>(hn::Lanes(f))) {
+    const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
+    const VF x = hn::Add(hn::Set(f, static_cast<float>(tx * kTile) + 0.5f), columns);
+    const VF base = hn::Add(hn::Add(at, hn::Mul(x, across)), below),
+             nearest = hn::Add(base, hn::Set(f, of.most[0])),
+             slack = hn::Mul(rounding, hn::Add(hn::Abs(base), range)),
+             farthest = hn::Sub(hn::Add(base, hn::Set(f, of.least[0])), slack);
+    const VF was_farthest = hn::LoadU(f, &tiles.farthest[tile]),
+             was_nearest = hn::LoadU(f, &tiles.nearest[tile]);
+    const auto shows = hn::And(hn::FirstN(f, end - tx), hn::Gt(nearest, was_farthest));
+    const auto in_front = hn::And(shows, hn::Gt(farthest, was_nearest));
+    hn::StoreU(hn::IfThenElse(in_front, farthest, was_farthest), f, &tiles.farthest[tile]);
+    hn::StoreU(hn::IfThenElse(in_front, hn::Add(nearest, slack), was_nearest), f, &tiles.nearest[tile]);
+    hn::Store(base, f, bases.data());
+    for (std::uint32_t bits = bits_of(f, in_front); bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+      tiles.plane[tile + i] = {bases[i], planes.across[0], planes.down[0], 1};
+    }
+    for (std::uint32_t bits = bits_of(f, hn::AndNot(in_front, shows)); bits != 0; bits &= bits - 1)
+      draw_tile(tiles, of, tx + static_cast<std::uint32_t>(std::countr_zero(bits)), ty, ~std::uint64_t{0});
+  }
+}
+
 // Draws what `spans_from` says of sixteen lines from a pixel centre on, tile by tile.
 template <std::size_t kPlanes, class SpansFrom>
 HWY_INLINE void draw_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
@@ -96,8 +135,19 @@ HWY_INLINE void draw_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
     const bool wide = range.end_x - range.begin_x > 1;
     const std::uint32_t begin_x = wide ? first_column(spans, line) / kTile : range.begin_x,
                         end_x = wide ? (end_column(spans, line) + kTile - 1) / kTile : range.end_x;
-    for (std::uint32_t tx = begin_x; tx < end_x; ++tx)
-      draw_tile(tiles, of, tx, ty, pixels_of(spans, line, tx * kTile));
+    const auto draw = [&](std::uint32_t begin, std::uint32_t end) HWY_ATTR {
+      for (std::uint32_t tx = begin; tx < end; ++tx)
+        draw_tile(tiles, of, tx, ty, pixels_of(spans, line, tx * kTile));
+    };
+    // Tiles that all lines cover; the last row's lines may end beyond the image.
+    std::uint32_t full_x = end_x, full_end = end_x;
+    if (kPlanes == 1 && end_x - begin_x > 1 && (ty + 1 < tiles.rows || tiles.height % kTile == 0)) {
+      full_x = std::min(end_x, (last_begin(spans, line) + kTile - 1) / kTile);
+      full_end = std::max(full_x, first_end(spans, line) / kTile);
+    }
+    draw(begin_x, full_x);
+    if constexpr (kPlanes == 1) cover_tiles(tiles, of, full_x, full_end, ty);
+    draw(full_end, end_x);
   }
 }
 

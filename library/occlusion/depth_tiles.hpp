@@ -34,6 +34,12 @@ struct MeshScratch {
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
 };
 
+/// The depth of a tile that one plane covers, and so all that is written of it.
+struct TilePlane {
+  float base, across, down;  ///< nearness at the first pixel's centre, and its growth
+  std::uint32_t covers;      ///< 0 where DepthTiles::nearness has the tile; undefined where nothing was drawn
+};
+
 struct DepthTiles {
   WorldView view{{{}, {}, 1, 1}, {}};
   bool begun = false;
@@ -46,14 +52,24 @@ struct DepthTiles {
   geometry::AlignedVector<float> farthest;
   /// One a tile: no pixel of it is nearer; -infinity where nothing was drawn.
   geometry::AlignedVector<float> nearest;
-  /// 64 a tile, row by row; undefined where `nearest` is -infinity. Pixels without an occluder hold
-  /// -infinity, those beyond the image +infinity.
+  /// One a tile.
+  geometry::AlignedVector<TilePlane> plane;
+  /// 64 a tile, row by row; undefined where `nearest` is -infinity or a plane covers the tile. Pixels without
+  /// an occluder hold -infinity, those beyond the image +infinity.
   geometry::AlignedVector<float> nearness;
   /// What an untouched tile holds: one within the image, in the last column, in the last row, in both.
   geometry::AlignedVector<float> untouched;
 
   MeshScratch mesh;
 };
+
+/// The plane's nearness at a pixel of its tile, to the bit as vectors of pixels have it.
+inline float nearness_of(const TilePlane& plane, std::uint32_t column, std::uint32_t row) noexcept {
+  float at =
+      plane.base + (plane.across * static_cast<float>(column) + plane.down * static_cast<float>(row % 2));
+  for (std::uint32_t pair = 0; pair < row / 2; ++pair) at += 2 * plane.down;
+  return at;
+}
 
 /// A box that crosses the near plane, about the eye.
 void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,

@@ -170,6 +170,36 @@ HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const Corners& c
   return bits_of(f, hn::Or(hn::Or(left, right), hn::Or(above, below)));
 }
 
+alignas(64) constexpr float kColumn[64] = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5,
+                                           6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3,
+                                           4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
+alignas(64) constexpr float kRow[64] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2,
+                                        2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5,
+                                        5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7};
+
+// The 64 pixels of a tile that a plane covers.
+HWY_INLINE void lay_plane(const TilePlane& plane, float* HWY_RESTRICT out) {
+  const F f;
+  const VF base = hn::Set(f, plane.base), across = hn::Set(f, plane.across), down = hn::Set(f, plane.down),
+           step = hn::Set(f, 2 * plane.down);
+  for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
+    VF depth = hn::Add(
+        base, hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i))));
+    for (std::size_t at = i; at < 64; at += 16) {
+      hn::Store(depth, f, out + at);
+      depth = hn::Add(depth, step);
+    }
+  }
+}
+
+// The 64 pixels of a tile that was drawn to; `room` for those that are nowhere yet.
+HWY_INLINE const float* pixels_of_tile(const DepthTiles& tiles, std::size_t tile,
+                                       std::array<float, 64>& room) {
+  if (tiles.plane[tile].covers == 0) return &tiles.nearness[tile * 64];
+  lay_plane(tiles.plane[tile], room.data());
+  return room.data();
+}
+
 }  // namespace sightline::occlusion::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -102,4 +102,21 @@ std::size_t OccluderMesh::triangles() const noexcept {
   return topology_->triangles.size();
 }
 
+std::size_t OccluderMesh::open_edges(std::span<OccluderEdge> edges) const noexcept {
+  const OccluderTopology& mesh = *topology_;
+  std::size_t count = 0;
+  auto shared = mesh.shared.begin();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const bool is_shared = shared != mesh.shared.end() && shared->triangle == t && shared->edge == k;
+      if (is_shared) ++shared;
+      if (is_shared || mesh.neighbours[t][k] != OccluderTopology::kNone) continue;
+      const auto corner = [&](std::uint32_t i) { return mesh.positions[mesh.triangles[t][i % 3]]; };
+      if (count < edges.size()) edges[count] = {corner(k), corner(k + 1)};
+      ++count;
+    }
+  }
+  return count;
+}
+
 }  // namespace sightline

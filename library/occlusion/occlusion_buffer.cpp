@@ -31,6 +31,7 @@ void set_size(DepthTiles& t, std::uint32_t width, std::uint32_t height) {
     std::fill_n(t.farthest.begin() + std::size_t{row} * t.stride, t.columns, -kInfinity);
   }
   t.nearest.assign(t.farthest.size(), -kInfinity);
+  if (t.plane.size() < t.farthest.size()) t.plane.resize(t.farthest.size());
   if (t.nearness.size() < 64 * t.farthest.size()) t.nearness.resize(64 * t.farthest.size());
   t.untouched.resize(4 * 64);
   for (std::uint32_t kind = 0; kind < 4; ++kind) {
@@ -47,6 +48,14 @@ Status check_begun(const DepthTiles& tiles) noexcept {
   if (tiles.begun) return {};
   return {StatusCode::stale_buffer,
           "occlusion: the buffer was never begun, expected begin() with a view first"};
+}
+
+float nearness_at(const DepthTiles& t, std::uint32_t x, std::uint32_t y) noexcept {
+  const std::size_t tile = std::size_t{y / kTile} * t.stride + x / kTile;
+  if (!(t.nearest[tile] > -kInfinity)) return -kInfinity;
+  const std::uint32_t column = x % kTile, row = y % kTile;
+  if (t.plane[tile].covers != 0) return occlusion::nearness_of(t.plane[tile], column, row);
+  return t.nearness[tile * 64 + row * kTile + column];
 }
 
 bool is_affine(const Mat4& m) noexcept {
@@ -210,9 +219,7 @@ Status OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
     return {StatusCode::buffer_too_small, "occlusion: expected room for width x height pixels"};
   for (std::uint32_t y = 0; y < t.height; ++y) {
     for (std::uint32_t x = 0; x < t.width; ++x) {
-      const std::size_t tile = std::size_t{y / kTile} * t.stride + x / kTile;
-      pixels[std::size_t{y} * t.width + x] =
-          t.nearest[tile] > -kInfinity ? t.nearness[tile * 64 + y % kTile * kTile + x % kTile] : -kInfinity;
+      pixels[std::size_t{y} * t.width + x] = nearness_at(t, x, y);
     }
   }
   return {};

@@ -16,13 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-alignas(64) constexpr float kColumn[64] = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5,
-                                           6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3,
-                                           4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
-alignas(64) constexpr float kRow[64] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2,
-                                        2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5,
-                                        5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7};
-
 alignas(64) constexpr float kLine[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 // Tiles [begin_x, end_x) × [begin_y, end_y).
@@ -102,7 +95,8 @@ HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, floa
   return out;
 }
 
-// The columns that the spans of a tile's scanlines hold; and of the tile that starts at column x the pixels,
+// The columns that the spans of a tile's scanlines hold, and those from which on and up to which all hold
+// them; and of the tile that starts at column x the pixels,
 // a byte a scanline, a bit a pixel.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
@@ -110,6 +104,12 @@ HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
 }
 HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
   return static_cast<std::uint32_t>(*std::max_element(&spans.end[line], &spans.end[line] + kTile));
+}
+HWY_INLINE std::uint32_t last_begin(const Spans& spans, std::size_t line) {
+  return static_cast<std::uint32_t>(*std::max_element(&spans.begin[line], &spans.begin[line] + kTile));
+}
+HWY_INLINE std::uint32_t first_end(const Spans& spans, std::size_t line) {
+  return static_cast<std::uint32_t>(*std::min_element(&spans.end[line], &spans.end[line] + kTile));
 }
 HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
   std::uint64_t pixels = 0;
@@ -129,6 +129,14 @@ HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
 HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
   const hn::FixedTag<std::int16_t, 8> i16;
   return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.end[line]))));
+}
+HWY_INLINE std::uint32_t last_begin(const Spans& spans, std::size_t line) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.begin[line]))));
+}
+HWY_INLINE std::uint32_t first_end(const Spans& spans, std::size_t line) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Load(i16, &spans.end[line]))));
 }
 HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
   const hn::FixedTag<std::int16_t, 8> i16;

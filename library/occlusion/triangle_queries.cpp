@@ -96,6 +96,7 @@ HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size
   const TileRange range = tiles_of(tiles, t.left[i], t.right[i], t.top[i], t.bottom[i]);
   const VF across = hn::Set(f, t.across[i]), down = hn::Set(f, t.down[i]), most = hn::Set(f, t.nearest[i]);
   Spans spans;
+  alignas(64) std::array<float, 64> room;
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
     const std::size_t line = (ty - range.begin_y) % 2 * kTile;
     if (line == 0)
@@ -106,13 +107,14 @@ HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size
       const std::uint64_t pixels = pixels_of(spans, line, tx * kTile);
       if (pixels == 0) continue;
       if (!(tiles.nearest[tile] > -kInfinity)) return true;
+      const float* depth = pixels_of_tile(tiles, tile, room);
       const VF x = hn::Set(f, static_cast<float>(tx * kTile) + 0.5f),
                y = hn::Set(f, static_cast<float>(ty * kTile) + 0.5f);
       auto open = hn::Lt(most, most);
       for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
         const VF column = hn::Add(x, hn::Load(f, kColumn + at)), row = hn::Add(y, hn::Load(f, kRow + at));
         const VF plane = hn::Add(hn::Add(hn::Set(f, t.at[i]), hn::Mul(across, column)), hn::Mul(down, row));
-        const auto nearer = hn::Ge(hn::Min(plane, most), hn::Load(f, &tiles.nearness[tile * 64 + at]));
+        const auto nearer = hn::Ge(hn::Min(plane, most), hn::Load(f, depth + at));
         open = hn::Or(open, hn::And(nearer, mask_of(f, pixels >> at)));
       }
       if (!hn::AllFalse(f, open)) return true;
