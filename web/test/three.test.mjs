@@ -23,3 +23,13 @@ test('three.js draws the same with the culler, and less', async () => {
     assert.deepEqual(await tab.evaluate(() => window.changes()), { bad: [], own: 2, left: 0 });
   });
 });
+
+test('WebGPURenderer draws the same with the culler', async () => {
+  await withPage(new URL('browser/webgpu.mjs', import.meta.url).pathname, async (tab) => {
+    await tab.waitForFunction(() => window.compare);
+    const result = await tab.evaluate((count) => window.compare(count), full ? 300 : 40);
+    assert.equal(result.backend, 'webgpu');
+    assert.equal(result.differing, 0, JSON.stringify(result));
+    assert.ok(result.hidden > 0.2 * result.objects && result.shown > 30, JSON.stringify(result));
+  });
+});

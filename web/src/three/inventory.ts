@@ -103,7 +103,8 @@ export class Inventory {
     const first = this.#free.get(count)?.pop() ?? this.slots;
     if (first === this.slots) this.slots += count;
     const thing: Thing = {
-      mesh, kind, count, first, parent, geometry: mesh.geometry, matrix: new Float64Array(16), version: -1 };
+      mesh, kind, count, first, parent, geometry: mesh.geometry, matrix: new Float64Array(16), version: -1,
+      matrices: new Float32Array(kind === 'mesh' ? 0 : 16 * count), shapes: -1 };
     this.things.add(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;

@@ -30,6 +30,9 @@ export interface Thing {
   geometry: BufferGeometry;
   readonly matrix: Float64Array;
   version: number;
+  /** Of its instances, as their boxes were made. */
+  readonly matrices: Float32Array;
+  shapes: number;
 }
 
 const local = new Box();
@@ -71,6 +74,16 @@ export function isOther(thing: Thing): boolean {
   return kind === 'batched' && ((mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled);
 }
 
+// Whether instance i has another matrix than its box was made of.
+function isMoved(thing: Thing, matrices: ArrayLike<number>, i: number): boolean {
+  const known = thing.matrices;
+  let moved = false;
+  for (let k = 16 * i; k < 16 * i + 15; ++k) {
+    if (known[k] !== matrices[k]) (moved = true), (known[k] = matrices[k]!);
+  }
+  return moved;
+}
+
 function boxOf(geometry: BufferGeometry): Box3 {
   if (geometry.boundingBox === null) geometry.computeBoundingBox();
   return geometry.boundingBox!;
@@ -99,6 +112,7 @@ function updateInstances(thing: Thing, mesh: InstancedMesh, changed: boolean, bo
   thing.version = version;
   const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements;
   for (let i = 0; i < thing.count; ++i) {
+    if (!isMoved(thing, array, i) && !changed) continue;
     if (writeBox(boxes, thing.first + i, box, array, 16 * i, world)) moved(thing.first + i);
   }
 }
@@ -106,15 +120,16 @@ function updateInstances(thing: Thing, mesh: InstancedMesh, changed: boolean, bo
 function updateBatch(thing: Thing, mesh: Batch, changed: boolean, boxes: Float64Array,
   moved: (slot: number) => void): void {
   const { _matricesTexture: matrices, _instanceInfo: all } = mesh;
-  let state = matrices.version; // and which geometry each instance has, of which three keeps no version
-  for (let i = 0; i < all.length; ++i) state = (Math.imul(state, 31) + (all[i]!.active ? all[i]!.geometryIndex : -1)) | 0;
-  if (!changed && state === thing.version) return;
-  thing.version = state;
+  let shapes = 0; // which geometry each instance has, of which three keeps no version
+  for (let i = 0; i < all.length; ++i) shapes = (Math.imul(shapes, 31) + (all[i]!.active ? all[i]!.geometryIndex : -1)) | 0;
+  if (shapes !== thing.shapes) (changed = true), (thing.shapes = shapes);
+  if (!changed && matrices.version === thing.version) return;
+  thing.version = matrices.version;
   const world = mesh.matrixWorld.elements, data = matrices.image.data;
   let known = -1;
   for (let i = 0; i < all.length; ++i) {
     const { active, geometryIndex } = all[i]!;
-    if (!active) continue;
+    if (!active || (!isMoved(thing, data, i) && !changed)) continue;
     if (known !== geometryIndex) mesh.getBoundingBoxAt((known = geometryIndex), local);
     if (writeBox(boxes, thing.first + i, local, data, 16 * i, world)) moved(thing.first + i);
   }

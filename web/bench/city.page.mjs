@@ -1,0 +1,37 @@
+// In the page: how long render() keeps the main thread, with and without the culler, frame by frame in turns.
+import * as THREE from 'three';
+import { ready, SightlineCuller } from 'sightline-culling/three';
+import { add, look, places, random } from '../test/browser/city.mjs';
+
+window.time = async (kind, count, aerial, frames) => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true });
+  renderer.setSize(640, 360);
+  const scene = new THREE.Scene(), { all, side } = places(count);
+  const move = add(scene, kind, all, new THREE.MeshBasicMaterial());
+  const camera = new THREE.PerspectiveCamera(60, 16 / 9, 0.1, aerial ? 20000 : 1000), next = random(3);
+  const culler = new SightlineCuller(scene), gl = renderer.getContext(), pixel = new Uint8Array(4);
+  await new Promise((loaded) => setTimeout(loaded, 100));
+  const times = [[], []], whole = [[], []];
+  let drawn = 0;
+  for (let frame = 0; frame < frames; ++frame) {
+    if (aerial) camera.position.set(side / 2, 2 * side, side / 2), camera.lookAt(side / 2, 0, side / 2 + 1);
+    else look(camera, next, side);
+    for (let k = 0; k < count / 1000; ++k) {
+      const i = Math.floor(next() * count), place = all[i];
+      if (place.turn !== 0) move(i, { ...place, turn: 6 * next() });
+    }
+    for (const on of frame % 2 ? [0, 1] : [1, 0]) {
+      culler.enabled = on === 1;
+      const start = performance.now();
+      renderer.render(scene, camera);
+      if (frame > 0) times[on].push(performance.now() - start);
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits for the GPU
+      if (frame > 0) whole[on].push(performance.now() - start);
+    }
+    drawn += culler.stats.drawn / frames;
+  }
+  const median = (list) => list.sort((a, b) => a - b)[Math.floor(list.length / 2)];
+  renderer.dispose(), renderer.forceContextLoss();
+  return { frames: whole.map(median), without: median(times[0]), with: median(times[1]), drawn: Math.round(drawn) };
+};
