@@ -12,7 +12,7 @@ ensure_packages $run_packages
 cmake --preset release -DSIGHTLINE_TESTS=OFF -DSIGHTLINE_BENCHMARKS=OFF >/dev/null
 cmake --build --preset release
 
-build/release/sightline compare "$scene" --report report
+build/release/sightline compare "$scene" --size 640x360 --frames 8 --report report
 echo
 echo "The report: $PWD/report/index.html"
 echo "This took $(elapsed "$start")."

@@ -61,7 +61,7 @@ expect 0 "objects     300" "$sightline" info forest.glb
 expect 0 "holds" "$sightline" verify "$world" --views 20
 expect 0 "0 pixels wrongly" "$sightline" occluders "$world" -o occluders.glb --views 3 --pixels 200
 expect 0 "objects     " "$sightline" info occluders.glb
-expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 2 --size 64x48 --json rows.json --report page
+expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 2 --size 64x48 --no-draw --json rows.json --report page
 [ -s page/index.html ] || fail "compare --report wrote no page"
 for field in scene method guarantee view objects tested visible culled draw_calls triangles cull_vertices cull_cpu_ms \
     cull_cpu_ms_min cull_cpu_ms_max cull_gpu_ms frame_ms fps lost_objects lost_pixels excess_objects; do
@@ -88,6 +88,7 @@ refused "no share" "$sightline" verify "$world" --device any --moving nan
 refused "/proc/page" "$sightline" compare "$world" --report /proc/page
 refused "/proc/page" "$sightline" reproduce ray-pvs --report /proc/page
 refused "--device" "$sightline" compare "$world" --device ""
+refused "--no-draw" "$sightline" compare "$world" --device any --no-draw
 refused "--size" "$sightline" compare "$world" --size 99999x1
 refused "--views" "$sightline" verify "$world" --views 0
 refused "whole number" "$sightline" verify "$world" --seed -1

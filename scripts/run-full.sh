@@ -30,6 +30,7 @@ line surfaces scripts/check-surfaces.sh build/release --full
 line occluders scripts/check-occluders.sh build/release
 line occlusion scripts/check-occlusion.sh build/release --full
 line answers scripts/check-answers.sh build/asan
+line verdicts scripts/check-verdicts.py build/release
 line reproductions scripts/check-reproductions.sh build/release
 line ports scripts/check-ports.sh --full
 line web scripts/check-web.sh build/release --full

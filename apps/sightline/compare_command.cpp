@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include <sightline/workbench/io.hpp>
 
@@ -18,19 +19,25 @@ namespace sightline::app {
 namespace {
 
 struct CompareOptions {
-  std::string scene, methods, path, size = "1280x720", device = "cpu", pvs, json, report;
+  std::string scene, methods, path, size = "1280x720", pvs, json, report;
+  std::optional<std::string> device;
   std::size_t frames = 24;
   double moving = 0;
-  bool limit = false;
+  bool limit = false, no_draw = false;
   RasterState faces = RasterState::materials;
 };
+
+std::unique_ptr<device::Device> device_of(const CompareOptions& options) {
+  if (options.no_draw) return nullptr;
+  return options.device ? open_device_or_cpu(*options.device) : open_device_if_any();
+}
 
 int run_compare(const CompareOptions& options) {
   measure::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   measure.moving = options.moving;
   measure.limit = options.limit;
-  const auto device = open_device_or_cpu(options.device);
+  const auto device = device_of(options);
   if (device) measure.repeats = 5;
   Scene scene = load_scene(options.scene);
   set_raster_state(scene, options.faces);
@@ -78,7 +85,12 @@ void add_compare(CLI::App& app, int& exit) {
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
-  command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
+  CLI::Option* device = command
+                            .add_option("--device", options->device,
+                                        std::string(kDeviceHelp) + " (default: any where there is one)")
+                            ->type_name("cpu|NAME");
+  command.add_flag("--no-draw", options->no_draw, "cull on the CPU and draw nothing, as --device cpu does")
+      ->excludes(device);
   add_faces(command, options->faces);
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
       ->check(share());

@@ -41,6 +41,16 @@ std::unique_ptr<device::Device> open_device_or_cpu(const std::string& name) {
   return name == "cpu" ? nullptr : open_device(name);
 }
 
+std::unique_ptr<device::Device> open_device_if_any() {
+  if (device::list_devices().empty()) return nullptr;
+  try {
+    return open_device("any");
+  } catch (const Error& error) {
+    fmt::print(stderr, "sightline: {}; nothing is drawn\n", error.what());
+    return nullptr;
+  }
+}
+
 void expect_silence(const device::Device* device) {
   if (device && device->messages() > 0) {
     throw Error(

@@ -15,6 +15,8 @@ inline constexpr const char* kDeviceHelp =
 std::unique_ptr<device::Device> open_device(const std::string& name);
 /// The same; null for "cpu".
 std::unique_ptr<device::Device> open_device_or_cpu(const std::string& name);
+/// The fastest kind; null where there is none, or none that can draw, which is said on stderr.
+std::unique_ptr<device::Device> open_device_if_any();
 /// Throws Error where validation complained; nothing on the CPU.
 void expect_silence(const device::Device* device);
 

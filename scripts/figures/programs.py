@@ -69,6 +69,7 @@ def benchmark_rows(name, entries, rate=None, counters=()):
 def compare(scene, methods, key=None, **options):
     """Rows of `sightline compare`: a view's mean over the path, with its mean least and greatest over the repeats, for
     what each method took to cull, and for its frames where a device drew them; beside what was kept and lost."""
+    options.setdefault("device", "cpu")
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
         arguments = [f"--{name}={value}" for name, value in options.items() if value is not True]
         flags = [f"--{name}" for name, value in options.items() if value is True]

@@ -87,7 +87,7 @@ std::string verdict(const measure::Comparison& comparison) {
   return fmt::format(
              "Beaten by no other that keeps its promise, in culling time, triangles and draw calls together: "
              "{}.\n"
-             "Nothing was drawn, so this does not say which frame is quickest: --device any draws them.",
+             "Nothing was drawn, so this does not say which frame is quickest: a Vulkan device draws them.",
              joined(names)) +
          defects(all);
 }

@@ -13,7 +13,9 @@ bool leaves_open(FloatBuffer pyramid, vec3 centre, vec3 half_extent) {
   const uvec2 first = uvec2(clamp(floor(print.low), vec2(0), vec2(image - 1)));
   const uvec2 last = uvec2(clamp(floor(print.high), vec2(0), vec2(image - 1)));
   const uint span = max(last.x - first.x, last.y - first.y);
-  const uint level = SIGHTLINE_MUTANT(hiz_mip_too_coarse) ? findMSB(2 * span + 1) : span < 2 ? 0 : findMSB(span);
+  const uint level = SIGHTLINE_MUTANT(hiz_mip_too_coarse) ? findMSB(2 * span + 1)
+                     : span < 2                           ? 0
+                                                          : findMSB(span);
   uint offset = 0;
   uvec2 size = image;
   for (uint i = 0; i < level; ++i) {
