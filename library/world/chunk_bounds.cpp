@@ -54,7 +54,12 @@ Box bounds_of(const Side& side, std::uint32_t count) {
 }  // namespace
 
 Box ChunkMap::tight(const Chunk& c) const noexcept {
-  return world::bounds_of([&](std::uint32_t side) { return lanes(c, side); }, c.count);
+  if (c.live == c.count) return world::bounds_of([&](std::uint32_t side) { return lanes(c, side); }, c.count);
+  Box box = kEmptyBox;
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    if (ids(c)[i] != kNoObject) box = united(box, box_at(c, i));
+  }
+  return box;
 }
 
 Box ChunkMap::tight(const Group& group) const noexcept {
@@ -69,7 +74,8 @@ Box ChunkMap::chunk_bounds(std::uint32_t chunk) const noexcept {
 }
 
 void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
-  const Chunk& c = chunks_[chunk];
+  Chunk& c = chunks_[chunk];
+  c.bounds = box;
   auto& b = groups_[c.group].bounds;
   const std::uint32_t i = c.index_in_group;
   b[0][i] = box.min.x, b[1][i] = box.min.y, b[2][i] = box.min.z;
@@ -77,7 +83,7 @@ void ChunkMap::set_bounds(std::uint32_t chunk, const Box& box) noexcept {
 }
 
 void ChunkMap::extend(std::uint32_t chunk, const Box& box) noexcept {
-  const Box bounds = chunk_bounds(chunk);
+  const Box bounds = chunks_[chunk].bounds;
   if (holds(bounds, box) || SIGHTLINE_MUTANT(stale_chunk_bounds)) return;
   set_bounds(chunk, united(bounds, box));
   extend_group(chunks_[chunk].group, box);
@@ -89,7 +95,8 @@ void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
   if (c.group == kNone) return;
   Group& b = groups_[c.group];
   b.first_lane[c.index_in_group] = c.first_lane;
-  b.count_and_size[c.index_in_group] = c.count | (c.capacity == kSmallCapacity ? Group::kSmall : 0);
+  b.count_and_size[c.index_in_group] = c.count | (c.capacity == kSmallCapacity ? Group::kSmall : 0) |
+                                       (c.live < c.count || c.pool == kMovers ? Group::kLoose : 0);
 }
 
 void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {
@@ -143,6 +150,10 @@ void ChunkMap::loosen(std::uint32_t node, const Box& gone) noexcept {
 
 void ChunkMap::tighten() {
   arrange();
+  tighten_nodes();
+}
+
+void ChunkMap::tighten_nodes() noexcept {
   if (!any_loose_) return;
   any_loose_ = false;
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents
@@ -153,6 +164,7 @@ void ChunkMap::tighten() {
     if (nodes_[n].first_child != kNone) {
       for (int i = 0; i < 4; ++i) box = united(box, nodes_[nodes_[n].first_child + i].bounds);
     }
+    if (n == 0 && mover_node_ != kNone) box = united(box, nodes_[mover_node_].bounds);
     nodes_[n].bounds = box;
   }
 }
@@ -180,7 +192,7 @@ std::uint32_t ChunkMap::add_group(std::uint32_t node) {
 
 // Puts a chunk and its objects into `group`, or into any of its region where that is kNone.
 void ChunkMap::put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds) {
-  const std::uint32_t node = keys_[chunks_[chunk].key].node;
+  const std::uint32_t node = chunks_[chunk].pool == kMovers ? mover_node_ : keys_[chunks_[chunk].key].node;
   if (group == kNone) {
     const auto& all = nodes_[node].groups;
     group = !all.empty() && groups_[all.back()].count < kGroupCapacity ? all.back() : add_group(node);
@@ -192,9 +204,11 @@ void ChunkMap::put_in_group(std::uint32_t chunk, std::uint32_t group, const Box&
   c.group = group;
   c.index_in_group = b.count;
   b.chunks[b.count++] = chunk;
+  b.pool = c.pool;
   set_bounds(chunk, bounds);
   note_shape(chunk);
-  add_objects(group, static_cast<std::int32_t>(c.count));
+  add_objects(group, static_cast<std::int32_t>(c.live));
+  c.counted = c.live;
   extend_group(group, bounds);
 }
 
@@ -260,7 +274,7 @@ std::uint32_t ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
     to.count_and_size[i] = old.count_and_size[from];
     chunks_[chunk].group = up ? added : group;
     chunks_[chunk].index_in_group = i;
-    if (up) moved_objects += chunks_[chunk].count;
+    if (up) moved_objects += chunks_[chunk].counted;
   }
   set_box(group, tight(low));
   set_box(added, tight(high));

@@ -20,40 +20,51 @@ Status ChunkMap::check_chunk(std::uint32_t chunk) const {
     if (c.count != 0) return bad("chunk map: objects in free chunk", chunk);
     return {};
   }
-  if (c.count == 0) return bad("chunk map: no object in chunk", chunk);
+  if (c.dirty) return bad("chunk map: not flushed chunk", chunk);
+  if (c.live == 0 && !c.grown && c.pool == kStill) return bad("chunk map: no object in chunk", chunk);
   if (c.count > c.capacity || c.capacity >= 100) return bad("chunk map: too many objects in chunk", chunk);
   if (c.group == kNone || groups_[c.group].chunks[c.index_in_group] != chunk)
     return bad("chunk map: wrong group of chunk", chunk);
-  if (groups_[c.group].node != keys_[c.key].node) return bad("chunk map: wrong region of chunk", chunk);
-  if (chunk_bounds(chunk) != tight(c)) return bad("chunk map: bounds not tight of chunk", chunk);
+  const std::uint32_t node = c.pool == kMovers ? mover_node_ : keys_[c.key].node;
+  if (groups_[c.group].node != node || groups_[c.group].pool != c.pool)
+    return bad("chunk map: wrong region of chunk", chunk);
+  if (chunk_bounds(chunk) != c.bounds || !holds(c.bounds, tight(c)))
+    return bad("chunk map: bounds too small of chunk", chunk);
+  if (!loosely_ && c.bounds != tight(c)) return bad("chunk map: bounds not tight of chunk", chunk);
+  std::uint32_t live = 0;
   for (std::uint32_t slot = 0; slot < c.count; ++slot) {
-    const ObjectId object = ids_[c.first_lane + slot];
-    const Location at = (*locations_)[object];
-    if (at.chunk != chunk || at.slot != slot) return bad("chunk map: wrong location of object", object);
+    const ObjectId object = ids(c)[slot];
+    if (object == kNoObject) continue;
+    ++live;
+    const Location& at = (*locations_)[object];
+    if (at.chunk != chunk || at.slot() != slot) return bad("chunk map: wrong location of object", object);
+    if (loosely_) continue;
     const Box box = box_at(c, slot);
     if (regions(box) != keys_[c.key].regions) return bad("chunk map: wrong key of object", object);
     std::uint32_t found = find_chunk(keys_[c.key], centre_of(box));
     while (found != kNone && found != chunk) found = chunks_[found].next;
     if (found != chunk) return bad("chunk map: the splits do not lead to object", object);
   }
+  if (live != c.live || live != c.counted) return bad("chunk map: wrong number of objects in chunk", chunk);
   return {};
 }
 
 Status ChunkMap::check_group(std::uint32_t group) const {
   const Group& g = groups_[group];
   const Node& node = nodes_[g.node];
-  if (g.box != tight(g)) return bad("chunk map: bounds not tight of group", group);
+  if (!loosely_ && g.box != tight(g)) return bad("chunk map: bounds not tight of group", group);
   if (!holds(node.bounds, g.box)) return bad("chunk map: bounds too small of region", g.node);
+  if (!holds(g.box, tight(g))) return bad("chunk map: bounds too small of group", group);
   const auto& rows = node.group_boxes.sides;
   const std::size_t i = g.index_in_node;
   const Box row{{rows[0][i], rows[1][i], rows[2][i]}, {rows[3][i], rows[4][i], rows[5][i]}};
   if (row != g.box) return bad("chunk map: wrong bounds in the region of group", group);
   std::size_t held = 0;
   for (std::uint32_t k = 0; k < g.count; ++k) {
-    held += chunks_[g.chunks[k]].count;
+    held += chunks_[g.chunks[k]].live;
     const ChunkView here = chunk(g, k), there = chunk(g.chunks[k]);
-    if (here.objects != there.objects || here.count != there.count || here.min_y != there.min_y ||
-        here.max_z != there.max_z)
+    if (here.objects != there.objects || here.count != there.count || here.loose != there.loose ||
+        here.min_y != there.min_y || here.max_z != there.max_z)
       return bad("chunk map: wrong lanes in the group of chunk", g.chunks[k]);
   }
   if (held != g.objects) return bad("chunk map: wrong number of objects in group", group);
@@ -78,6 +89,11 @@ Status ChunkMap::check_node(std::uint32_t n) const {
       below += child.objects;
     }
   }
+  if (n == 0 && mover_node_ != kNone) {
+    if (movers() > 0 && !holds(node.bounds, nodes_[mover_node_].bounds))
+      return bad("chunk map: bounds too small of region", n);
+    below += movers();
+  }
   if (below != node.objects) return bad("chunk map: wrong number of objects in region", n);
   return {};
 }
@@ -86,7 +102,7 @@ Status ChunkMap::check() const {
   std::size_t objects = 0, chunks = 0;
   for (std::uint32_t i = 0; i < chunks_.size(); ++i) {
     if (const Status sound = check_chunk(i); !sound) return sound;
-    objects += chunks_[i].count;
+    objects += chunks_[i].live;
   }
   if (objects != size_) return bad("chunk map: wrong size", size_);
   for (std::uint32_t n = 0; n < nodes_.size(); ++n) {

@@ -106,22 +106,21 @@ std::uint32_t ChunkMap::find_chunk(const Key& key, const Vec3& centre) const noe
 
 // --- memory ---
 
-std::uint32_t ChunkMap::take_lanes(std::uint32_t capacity) {
-  ++misplaced_;
-  std::vector<std::uint32_t>& free = capacity == kCapacity ? free_large_ : free_small_;
+std::uint32_t ChunkMap::take_lanes(Pool& pool, std::uint32_t capacity) {
+  std::vector<std::uint32_t>& free = capacity == kCapacity ? pool.free_large : pool.free_small;
   if (!free.empty()) {
     const std::uint32_t first = free.back();
     free.pop_back();
     return first;
   }
-  const auto first = static_cast<std::uint32_t>(ids_.size());
-  ids_.resize(ids_.size() + capacity);
-  lanes_.resize(lanes_.size() + 6 * std::size_t{capacity});
+  const auto first = static_cast<std::uint32_t>(pool.ids.size());
+  pool.ids.resize(pool.ids.size() + capacity);
+  pool.lanes.resize(pool.lanes.size() + 6 * std::size_t{capacity});
   return first;
 }
 
-void ChunkMap::give_lanes(std::uint32_t first, std::uint32_t capacity) {
-  (capacity == kCapacity ? free_large_ : free_small_).push_back(first);
+void ChunkMap::give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacity) {
+  (capacity == kCapacity ? pool.free_large : pool.free_small).push_back(first);
 }
 
 Box ChunkMap::box_at(const Chunk& c, std::uint32_t slot) const noexcept {
@@ -131,20 +130,37 @@ Box ChunkMap::box_at(const Chunk& c, std::uint32_t slot) const noexcept {
 }
 
 void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, const Box& box) noexcept {
-  Chunk& c = chunks_[chunk];
+  const Chunk& c = chunks_[chunk];
+  write_box(c, slot, box);
+  ids(c)[slot] = object;
+  Location& at = (*locations_)[object];
+  at.chunk = chunk, at.slot_and_history = (at.slot_and_history & ~0xffu) | slot;
+}
+
+void ChunkMap::write_box(const Chunk& c, std::uint32_t slot, const Box& box) noexcept {
   float* at = lanes(c, 0) + slot;
   const std::size_t step = c.capacity;
   at[0] = box.min.x, at[step] = box.min.y, at[2 * step] = box.min.z;
   at[3 * step] = box.max.x, at[4 * step] = box.max.y, at[5 * step] = box.max.z;
-  ids_[c.first_lane + slot] = object;
-  (*locations_)[object] = {chunk, slot};
 }
 
-std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell) {
+// A hole, or the next slot; there must be room.
+std::uint32_t ChunkMap::take_slot(Chunk& c) noexcept {
+  if (c.live++ == c.count) return c.count++;
+  const ObjectId* const all = ids(c);
+  return static_cast<std::uint32_t>(std::find(all, all + c.count, kNoObject) - all);
+}
+
+std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool) {
   const std::uint32_t chunk = take_element(chunks_, free_chunks_);
   Chunk added;
-  added.key = key, added.capacity = capacity, added.first_lane = take_lanes(capacity), added.cell = cell;
-  added.changed = chunks_[chunk].changed;  // its number may still stand among the changed
+  added.bounds = kEmptyBox, added.moved = {}, added.pool = pool;
+  added.key = key, added.capacity = capacity, added.cell = cell;
+  added.first_lane = take_lanes(pools_[pool], capacity);
+  misplaced_ += pool == kStill;
+  // Its number may still stand in these lists.
+  const Chunk& old = chunks_[chunk];
+  added.changed = old.changed, added.dirty = old.dirty, added.grown = old.grown;
   chunks_[chunk] = added;
   note_change(chunk);
   return chunk;
@@ -153,21 +169,23 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 void ChunkMap::free_chunk(std::uint32_t chunk) {
   take_from_group(chunk);
   Chunk& c = chunks_[chunk];
-  give_lanes(c.first_lane, c.capacity);
-  c.count = 0;
+  give_lanes(pools_[c.pool], c.first_lane, c.capacity);
+  c.count = c.live = c.counted = 0;
   c.key = kNone;
   note_change(chunk);
   free_chunks_.push_back(chunk);
 }
 
 void ChunkMap::grow(std::uint32_t chunk) {
-  const std::uint32_t first = take_lanes(kCapacity);
   Chunk& c = chunks_[chunk];
+  Pool& pool = pools_[c.pool];
+  const std::uint32_t first = take_lanes(pool, kCapacity);
+  misplaced_ += c.pool == kStill;
   const Chunk old = c;
   c.first_lane = first, c.capacity = kCapacity;
   for (std::uint32_t side = 0; side < 6; ++side) std::copy_n(lanes(old, side), old.count, lanes(c, side));
-  std::copy_n(ids_.data() + old.first_lane, old.count, ids_.data() + first);
-  give_lanes(old.first_lane, old.capacity);
+  std::copy_n(ids(old), old.count, ids(c));
+  give_lanes(pool, old.first_lane, old.capacity);
 }
 
 void ChunkMap::note_change(std::uint32_t chunk) {
@@ -186,12 +204,13 @@ void ChunkMap::acknowledge_changes() noexcept {
 // --- objects ---
 
 void ChunkMap::append(std::uint32_t chunk, ObjectId object, const Box& box) {
-  const std::uint32_t slot = chunks_[chunk].count++;
-  write(chunk, slot, object, box);
-  if (chunks_[chunk].group == kNone) {
+  Chunk& c = chunks_[chunk];
+  write(chunk, take_slot(c), object, box);
+  if (c.group == kNone) {
     put_in_group(chunk, kNone, box);
   } else {
-    add_objects(chunks_[chunk].group, 1);
+    add_objects(c.group, static_cast<std::int32_t>(c.live - c.counted));
+    c.counted = c.live;
     extend(chunk, box);
   }
   note_change(chunk);
@@ -200,6 +219,12 @@ void ChunkMap::append(std::uint32_t chunk, ObjectId object, const Box& box) {
 void ChunkMap::insert(ObjectId object, const Box& box) {
   if (locations_ == &own_locations_ && object >= own_locations_.size())
     own_locations_.resize(object + std::size_t{1});
+  file(object, box);
+  ++size_;
+}
+
+// Puts an object that is already counted where it belongs.
+void ChunkMap::file(ObjectId object, const Box& box) {
   const std::uint32_t key = find_key(regions(box));
   const Vec3 centre = centre_of(box);
   if (keys_[key].root == kNone) {
@@ -209,44 +234,59 @@ void ChunkMap::insert(ObjectId object, const Box& box) {
   } else {
     append(make_room(find_chunk(keys_[key], centre), centre), object, box);
   }
-  ++size_;
 }
 
 void ChunkMap::insert_all(const Boxes& boxes) {
   if (locations_ == &own_locations_) own_locations_.reserve(boxes.size());
   const std::size_t lanes = boxes.size() + boxes.size() / 2;
-  ids_.reserve(lanes);
-  lanes_.reserve(6 * lanes);
+  pools_[kStill].ids.reserve(lanes);
+  pools_[kStill].lanes.reserve(6 * lanes);
   for (std::size_t i = 0; i < boxes.size(); ++i) insert(static_cast<ObjectId>(i), boxes[i]);
 }
 
+// Fills the slot with the last object, and forgets holes behind that.
 void ChunkMap::erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept {
   Chunk& c = chunks_[chunk];
+  ObjectId* const all = ids(c);
+  all[slot] = kNoObject;
+  --c.live;
+  const auto trim = [&] {
+    while (c.count > 0 && all[c.count - 1] == kNoObject) --c.count;
+  };
+  trim();
+  if (slot >= c.count) return;
   const std::uint32_t last = --c.count;
-  if (slot != last) write(chunk, slot, ids_[c.first_lane + last], box_at(c, last));
+  write(chunk, slot, all[last], box_at(c, last));
+  trim();
 }
 
 void ChunkMap::remove(ObjectId object) {
   const Location at = (*locations_)[object];
-  const Box box = box_at(chunks_[at.chunk], at.slot);
-  erase_slot(at.chunk, at.slot);
-  (*locations_)[object] = {};
+  (*locations_)[object].chunk = kNone;
   --size_;
-  add_objects(chunks_[at.chunk].group, -1);
+  Chunk& c = chunks_[at.chunk];
+  if (c.pool == kMovers) {
+    leave(at.chunk, at.slot());
+    return flush();
+  }
+  const Box box = box_at(c, at.slot());
+  erase_slot(at.chunk, at.slot());
+  add_objects(c.group, static_cast<std::int32_t>(c.live) - static_cast<std::int32_t>(c.counted));
+  c.counted = c.live;
   note_change(at.chunk);
-  if (chunks_[at.chunk].count == 0) return unlink(at.chunk);
-  shrink(at.chunk, box);
+  if (c.live == 0) return unlink(at.chunk);
+  if (!c.grown) shrink(at.chunk, box);
   try_merge(at.chunk);
 }
 
 void ChunkMap::move(ObjectId object, const Box& box) {
-  const Location at = (*locations_)[object];
+  const Location& at = (*locations_)[object];
   Chunk& c = chunks_[at.chunk];
-  if (keys_[c.key].regions == regions(box) && holds_centre(c.cell, centre_of(box))) {
-    const Box old = box_at(c, at.slot);
-    write(at.chunk, at.slot, object, box);
+  if (c.pool == kStill && keys_[c.key].regions == regions(box) && holds_centre(c.cell, centre_of(box))) {
+    const Box old = box_at(c, at.slot());
+    write(at.chunk, at.slot(), object, box);
     extend(at.chunk, box);
-    shrink(at.chunk, old);
+    if (!c.grown) shrink(at.chunk, old);
     note_change(at.chunk);
     return;
   }
@@ -259,8 +299,8 @@ bool ChunkMap::contains(ObjectId object) const noexcept {
 }
 
 Box ChunkMap::box(ObjectId object) const noexcept {
-  const Location at = (*locations_)[object];
-  return box_at(chunks_[at.chunk], at.slot);
+  const Location& at = (*locations_)[object];
+  return box_at(chunks_[at.chunk], at.slot());
 }
 
 }  // namespace sightline::world

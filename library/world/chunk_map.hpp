@@ -7,6 +7,10 @@
 // key. Within a key, chunks split by a k-d tree over the box centres when they are full. Above the chunks
 // stand groups of up to 32 chunks, and above these the quadtree's nodes; bounds are tight unions at every
 // chunk and group, and never too small at a node.
+//
+// Where `movers` is asked for, move_loosely() lets what moves cost little: a chunk's bounds may be wider than
+// its boxes, an object that leaves them or moves frame after frame stands in chunks of movers, filed by when
+// it came and not by where it is, and rest() files those that no longer move.
 #pragma once
 
 #include <array>
@@ -20,6 +24,7 @@
 #include <sightline/status.hpp>
 
 #include "library/geometry/aligned_vector.hpp"
+#include "library/geometry/box_reader.hpp"
 
 namespace sightline::world {
 
@@ -45,6 +50,13 @@ struct ChunkMapOptions {
   std::uint32_t depth = 3;  ///< of the quadtree, 0 … 6; 4^depth leaf regions
 };
 
+/// What a call that moves objects loosely knows of its frame.
+struct Moving {
+  std::uint16_t tick = 0;       ///< counts frames
+  bool many = false;            ///< so many move that each becomes a mover at once
+  std::uint32_t allowance = 0;  ///< how many may become movers for moving often
+};
+
 class ChunkMap {
 public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -53,19 +65,27 @@ public:
   static constexpr std::uint32_t kGroupCapacity = 32;  ///< chunks a group
   static constexpr std::uint32_t kMaxDepth = 6;
 
-  /// Where an object stands.
-  struct Location {
-    std::uint32_t chunk = kNone, slot = 0;
+  /// Where an object stands, and what else is kept of it, so that all of it comes with one line of memory.
+  struct alignas(16) Location {
+    std::uint32_t chunk = kNone;
+    /// The slot in 8 bits; then 8 of history, bit k being whether it moved k frames before the frame that the
+    /// highest 16 count. One number, for a load that needs parts of what several stores just wrote must wait
+    /// until they, and all stores before them, have reached the cache.
+    std::uint32_t slot_and_history = 0;
+    std::uint32_t sector = kNone, generation = 0;  ///< the World's
+
+    [[nodiscard]] std::uint32_t slot() const noexcept { return slot_and_history & 0xff; }
   };
   /// One a possible object id; maps that share no object may share the table.
-  using Locations = std::vector<Location>;
+  using Locations = geometry::LargeVector<Location>;
 
   /// The objects of a chunk: arrays of `count` values, aligned to 64 bytes and readable up to the next
-  /// multiple of 16.
+  /// multiple of 16. Where it is loose, some objects may be kNoObject, and their boxes mean nothing.
   struct ChunkView {
     const float *min_x, *min_y, *min_z, *max_x, *max_y, *max_z;
     const ObjectId* objects;
     std::uint32_t count;
+    bool loose;  ///< movers' or with holes
   };
 
   /// Bounds of up to 32 chunks, one array a coordinate in the order of ChunkView.
@@ -73,13 +93,14 @@ public:
     std::array<std::array<float, kGroupCapacity>, 6> bounds{};
     std::array<std::uint32_t, kGroupCapacity> chunks{};
     /// Of each chunk, what ChunkMap::chunk() would look up elsewhere: where its lanes begin, and how many
-    /// objects it holds, with kSmall set where it has kSmallCapacity.
+    /// objects it holds, with kSmall set where it has kSmallCapacity and kLoose where it is loose.
     std::array<std::uint32_t, kGroupCapacity> first_lane{}, count_and_size{};
-    static constexpr std::uint32_t kSmall = 0x80000000u;
+    static constexpr std::uint32_t kSmall = 0x80000000u, kLoose = 0x40000000u;
     Box box;                  ///< of all of them
     std::uint32_t count = 0;  ///< 0: the group is free
     std::uint32_t node = 0, index_in_node = 0;
     std::uint32_t objects = 0;
+    std::uint32_t pool = 0;  ///< whose lanes its chunks have
   };
 
   /// Boxes in structure of arrays, padded to a multiple of 16.
@@ -112,11 +133,44 @@ public:
   /// Objects 0 … size-1 of an empty map at once; the same as inserting them one by one.
   void insert_all(const Boxes& boxes);
 
+  /// The same as move(), but for where the object then stands and how tight bounds are. Bounds and counts of
+  /// groups are behind until flush().
+  void move_loosely(ObjectId object, const Box& box, Moving& moving);
+  /// Puts a new object among the movers, where there are enough objects for that; else as insert(). flush()
+  /// is due, too.
+  void insert_moving(ObjectId object, const Box& box);
+  /// Moves `count` objects while they are found at `slot` of the mover chunk `chunk` or not far behind, in
+  /// the order listed, and nothing but their own boxes changes. Returns how many did; chunk and slot are then
+  /// where the next may stand. `past_cache`: there are so many that the cache cannot hold them anyway.
+  std::uint32_t move_run(std::uint32_t& chunk, std::uint32_t& slot, const ObjectId* objects,
+                         const geometry::BoxBlock& boxes, std::size_t first, std::uint32_t count,
+                         bool past_cache) noexcept;
+  /// Asks for the memory that moving an object will need; of an object that may have left, it asks in vain.
+  void prefetch_chunk(ObjectId object) const noexcept;
+  void prefetch_lanes(ObjectId object, bool many) const noexcept;
+  /// Brings the groups up to date.
+  void flush();
+  /// Files some of the movers that rested for two rounds or more, and tightens the bounds of some chunks that
+  /// rest. To be called once a frame; a round is kRound calls.
+  void rest();
+  static constexpr std::uint32_t kRound = 128;
+  /// Whether rest() has anything to do.
+  [[nodiscard]] bool restless() const noexcept { return !grown_.empty() || movers() > 0; }
+  /// How many objects are movers.
+  [[nodiscard]] std::size_t movers() const noexcept {
+    return mover_node_ == kNone ? 0 : nodes_[mover_node_].objects;
+  }
+  /// The region that holds the movers' groups, a child of node 0 that first_child does not list; or kNone.
+  [[nodiscard]] std::uint32_t mover_node() const noexcept { return mover_node_; }
+  [[nodiscard]] bool is_mover(ObjectId object) const noexcept {
+    return chunks_[(*locations_)[object].chunk].pool == kMovers;
+  }
+
   [[nodiscard]] bool contains(ObjectId object) const noexcept;
   [[nodiscard]] Box box(ObjectId object) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const ChunkMapOptions& options() const noexcept { return options_; }
-  [[nodiscard]] Location location(ObjectId object) const noexcept { return (*locations_)[object]; }
+  [[nodiscard]] const Location& location(ObjectId object) const noexcept { return (*locations_)[object]; }
 
   /// Chunk numbers lie below this; free ones have a count of 0. A number may be reused.
   [[nodiscard]] std::uint32_t chunk_limit() const noexcept {
@@ -124,30 +178,27 @@ public:
   }
   [[nodiscard]] ChunkView chunk(std::uint32_t chunk) const noexcept {
     const Chunk& c = chunks_[chunk];
-    return {lanes(c, 0),
-            lanes(c, 1),
-            lanes(c, 2),
-            lanes(c, 3),
-            lanes(c, 4),
-            lanes(c, 5),
-            ids_.data() + c.first_lane,
-            c.count};
+    return {lanes(c, 0), lanes(c, 1), lanes(c, 2),
+            lanes(c, 3), lanes(c, 4), lanes(c, 5),
+            ids(c),      c.count,     c.count != c.live || c.pool != kStill};
   }
   /// The chunk at place i of a group.
   [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
     const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
     const std::size_t step = size & Group::kSmall ? kSmallCapacity : kCapacity;
-    const float* at = lanes_.data() + 6 * std::size_t{first};
+    const Pool& pool = pools_[group.pool];
+    const float* at = pool.lanes.data() + 6 * std::size_t{first};
     return {at,
             at + step,
             at + 2 * step,
             at + 3 * step,
             at + 4 * step,
             at + 5 * step,
-            ids_.data() + first,
-            size & ~Group::kSmall};
+            pool.ids.data() + first,
+            size & ~(Group::kSmall | Group::kLoose),
+            (size & Group::kLoose) != 0};
   }
-  /// Tight union of the chunk's boxes.
+  /// Tight union of the chunk's boxes; after move_loosely() it may be wider.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;
   [[nodiscard]] RegionSet chunk_regions(std::uint32_t chunk) const noexcept;
   /// Which leaf regions a box touches.
@@ -167,18 +218,39 @@ public:
   /// pages of memory, and looking a page up costs more than reading a line of it. Spread over the insertions
   /// between, that copies each object less than thrice. ChunkViews are void afterwards.
   void tighten();
+  /// Only the former.
+  void tighten_nodes() noexcept;
 
   /// Whether every invariant above holds; for tests, it looks at everything.
   [[nodiscard]] Status check() const;
 
 private:
-  struct Chunk {
-    Box cell;  // of the centres that the k-d tree sends here
+  // What a small move reads comes first, in a line of memory.
+  struct alignas(64) Chunk {
+    Box bounds;  // what the group says, or will say once flush() has been called
     std::uint32_t first_lane = 0, capacity = 0, count = 0;
+    std::uint32_t live = 0;              // objects: count less the holes
+    std::array<std::uint64_t, 2> moved;  // a bit a slot of movers, else a word, since rest() was last here
+    std::uint8_t pool = 0;
+    bool dirty = false;         // waits for flush()
+    bool grown = false;         // stands in grown_
+    bool wide = false;          // of a chunk of still objects: its bounds have grown by all that they may
+    std::uint32_t counted = 0;  // `live` as the group knows it
+
+    Box cell;  // of the centres that the k-d tree sends here
     std::uint32_t key = kNone, parent = kNone;
-    std::uint32_t next = kNone, previous = kNone;  // chunks that could not be split: all centres equal
+    // Chunks that could not be split: all centres equal. Of movers: the one begun after this, or what it
+    // became.
+    std::uint32_t next = kNone, previous = kNone;
     std::uint32_t group = kNone, index_in_group = 0;
     bool changed = false;
+  };
+  static constexpr std::uint8_t kStill = 0, kMovers = 1;
+  // Movers have lanes of their own, so that those who come all at once make nobody copy the others'.
+  struct Pool {
+    geometry::LargeVector<float> lanes;
+    geometry::LargeVector<ObjectId> ids;
+    std::vector<std::uint32_t> free_small, free_large;
   };
   struct Key {
     RegionSet regions;
@@ -196,18 +268,24 @@ private:
   };
 
   float* lanes(const Chunk& chunk, std::uint32_t side) noexcept {
-    return lanes_.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
+    return pools_[chunk.pool].lanes.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
   }
   const float* lanes(const Chunk& chunk, std::uint32_t side) const noexcept {
-    return lanes_.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
+    return pools_[chunk.pool].lanes.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
+  }
+  ObjectId* ids(const Chunk& chunk) noexcept { return pools_[chunk.pool].ids.data() + chunk.first_lane; }
+  const ObjectId* ids(const Chunk& chunk) const noexcept {
+    return pools_[chunk.pool].ids.data() + chunk.first_lane;
   }
   Box box_at(const Chunk& chunk, std::uint32_t slot) const noexcept;
   void write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, const Box& box) noexcept;
+  void write_box(const Chunk& chunk, std::uint32_t slot, const Box& box) noexcept;
+  std::uint32_t take_slot(Chunk& chunk) noexcept;
 
   void build_nodes();
   std::uint32_t find_key(RegionSet regions);
   std::uint32_t find_chunk(const Key& key, const Vec3& centre) const noexcept;
-  std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell);
+  std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool = kStill);
   void free_chunk(std::uint32_t chunk);
   std::uint32_t make_room(std::uint32_t chunk, const Vec3& centre);
   bool split(std::uint32_t chunk);
@@ -216,13 +294,26 @@ private:
   void try_merge(std::uint32_t chunk);
   void replace_reference(std::uint32_t key, std::uint32_t parent, std::uint32_t from,
                          std::uint32_t to) noexcept;
-  std::uint32_t take_lanes(std::uint32_t capacity);
-  void give_lanes(std::uint32_t first, std::uint32_t capacity);
+  std::uint32_t take_lanes(Pool& pool, std::uint32_t capacity);
+  static void give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacity);
+  void file(ObjectId object, const Box& box);
   void append(std::uint32_t chunk, ObjectId object, const Box& box);
   void erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept;
   void note_change(std::uint32_t chunk);
   void note_shape(std::uint32_t chunk) noexcept;
   void arrange();
+
+  void make_dirty(std::uint32_t chunk);
+  void note_grown(std::uint32_t chunk);
+  void add_mover(ObjectId object, const Box& box);
+  std::uint32_t open_mover_chunk();
+  void leave(std::uint32_t chunk, std::uint32_t slot);
+  void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
+  void tighten_grown(std::uint32_t chunk);
+  bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
+  void rest_grown();
+  [[nodiscard]] bool keeps_movers() const noexcept { return size_ >= kFewestForMovers; }
+  static constexpr std::size_t kFewestForMovers = 1024;
 
   std::uint32_t add_group(std::uint32_t node);
   void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);
@@ -246,9 +337,8 @@ private:
   float columns_per_metre_ = 0, rows_per_metre_ = 0;
   std::uint32_t last_region_ = 0;  // of a row or column
 
-  geometry::LargeVector<float> lanes_;
-  geometry::LargeVector<ObjectId> ids_;
-  std::vector<Chunk> chunks_;
+  std::array<Pool, 2> pools_;  // kStill, kMovers
+  geometry::LargeVector<Chunk> chunks_;
   std::vector<Split> splits_;
   std::vector<Key> keys_;
   std::unordered_map<std::uint32_t, std::uint32_t> key_of_regions_;
@@ -256,10 +346,16 @@ private:
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;
+  bool loosely_ = false;  // move_loosely() was called: bounds may be wide, splits may not lead to an object
   std::size_t misplaced_ = 0;  // how many chunks were given lanes anywhere since arrange()
 
-  std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_, free_small_, free_large_;
+  std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_;
   std::vector<std::uint32_t> changed_;
+  std::vector<std::uint32_t> dirty_;         // chunks that wait for flush()
+  std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
+  std::vector<std::uint32_t> mover_chunks_;  // the last one is open
+  std::uint32_t mover_node_ = kNone, mover_group_ = kNone;
+  std::size_t grown_hand_ = 0, mover_hand_ = 0;  // where rest() goes on
   Locations own_locations_;
   Locations* locations_;
   std::size_t size_ = 0;

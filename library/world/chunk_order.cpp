@@ -7,23 +7,25 @@ void ChunkMap::arrange() {
   constexpr std::size_t kFewestWorthIt = 64;  // chunks: fewer lie in a few pages anyway
   if (misplaced_ < kFewestWorthIt || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
   misplaced_ = 0;
+  Pool& pool = pools_[kStill];
   geometry::LargeVector<float> lanes;
   geometry::LargeVector<ObjectId> ids;
-  lanes.reserve(lanes_.size()), ids.reserve(ids_.size());
+  lanes.reserve(pool.lanes.size()), ids.reserve(pool.ids.size());
   for (const Node& node : nodes_) {
     for (const std::uint32_t group : node.groups) {
       Group& b = groups_[group];
+      if (b.pool != kStill) continue;
       for (std::uint32_t i = 0; i < b.count; ++i) {
         Chunk& c = chunks_[b.chunks[i]];
         const std::ptrdiff_t from = c.first_lane, to = from + static_cast<std::ptrdiff_t>(c.capacity);
         c.first_lane = b.first_lane[i] = static_cast<std::uint32_t>(ids.size());
-        lanes.insert(lanes.end(), lanes_.begin() + 6 * from, lanes_.begin() + 6 * to);
-        ids.insert(ids.end(), ids_.begin() + from, ids_.begin() + to);
+        lanes.insert(lanes.end(), pool.lanes.begin() + 6 * from, pool.lanes.begin() + 6 * to);
+        ids.insert(ids.end(), pool.ids.begin() + from, pool.ids.begin() + to);
       }
     }
   }
-  lanes_ = std::move(lanes), ids_ = std::move(ids);
-  free_small_.clear(), free_large_.clear();
+  pool.lanes = std::move(lanes), pool.ids = std::move(ids);
+  pool.free_small.clear(), pool.free_large.clear();
 }
 
 }  // namespace sightline::world

@@ -59,7 +59,7 @@ void ChunkMap::replace_reference(std::uint32_t key, std::uint32_t parent, std::u
 
 // Halves a full chunk at the median of its centres along their longest axis. False where all are one point.
 bool ChunkMap::split(std::uint32_t chunk) {
-  const std::uint32_t count = chunks_[chunk].count;
+  const std::uint32_t count = chunks_[chunk].count;  // full: there are no holes
   std::array<Vec3, kCapacity> centres;
   for (std::uint32_t i = 0; i < count; ++i) centres[i] = centre_of(box_at(chunks_[chunk], i));
   const std::optional<Cut> cut = median_cut(std::span(centres).first(count));
@@ -69,7 +69,7 @@ bool ChunkMap::split(std::uint32_t chunk) {
   Chunk &low = chunks_[chunk], &high = chunks_[added];
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const ObjectId object = ids_[low.first_lane + i];
+    const ObjectId object = ids(low)[i];
     const Box box = box_at(low, i);
     if (coordinate(centres[i], cut->axis) >= cut->at) {
       write(added, high.count++, object, box);
@@ -78,7 +78,8 @@ bool ChunkMap::split(std::uint32_t chunk) {
       ++kept;
     }
   }
-  low.count = kept;
+  low.count = low.live = kept;
+  high.live = high.count;
   coordinate(low.cell.max, cut->axis) = cut->at;
   coordinate(high.cell.min, cut->axis) = cut->at;
 
@@ -88,7 +89,9 @@ bool ChunkMap::split(std::uint32_t chunk) {
   low.parent = high.parent = node;
 
   const std::uint32_t group = low.group;
-  add_objects(group, -static_cast<std::int32_t>(high.count));
+  add_objects(group, static_cast<std::int32_t>(kept) - static_cast<std::int32_t>(low.counted));
+  low.counted = kept;
+  low.wide = false;
   set_bounds(chunk, tight(low));
   note_change(chunk);
   put_in_group(added, group, tight(high));
@@ -97,7 +100,7 @@ bool ChunkMap::split(std::uint32_t chunk) {
 
 // A chunk with room for the centre: `chunk`, one of its halves, or a new head of its chain.
 std::uint32_t ChunkMap::make_room(std::uint32_t chunk, const Vec3& centre) {
-  if (chunks_[chunk].count < chunks_[chunk].capacity) return chunk;
+  if (chunks_[chunk].live < chunks_[chunk].capacity) return chunk;
   if (chunks_[chunk].capacity < kCapacity) {
     grow(chunk);
     return chunk;
@@ -145,25 +148,27 @@ void ChunkMap::unlink(std::uint32_t chunk) {
 // Joins a chunk that has become small with its sibling, where both together stay half empty.
 void ChunkMap::try_merge(std::uint32_t chunk) {
   const Chunk& c = chunks_[chunk];
-  if (c.parent == kNone || c.next != kNone || c.previous != kNone || c.count > kCapacity / 4) return;
+  if (c.parent == kNone || c.next != kNone || c.previous != kNone || c.live > kCapacity / 4) return;
   const Split& split = splits_[c.parent];
   const std::uint32_t side = split.child[0] == (chunk | kChunkBit);
   if (!is_chunk(split.child[side])) return;
   const std::uint32_t sibling = split.child[side] & ~kChunkBit;
   Chunk& s = chunks_[sibling];
-  if (s.next != kNone || s.count + c.count > kCapacity / 2 || s.count + c.count > s.capacity) return;
-  const Box moved = chunk_bounds(chunk);
-  for (std::uint32_t i = 0; i < c.count; ++i) write(sibling, s.count++, ids_[c.first_lane + i], box_at(c, i));
-  const auto taken = static_cast<std::int32_t>(c.count);
-  add_objects(c.group, -taken);
-  add_objects(s.group, taken);
+  if (s.next != kNone || s.live + c.live > kCapacity / 2 || s.live + c.live > s.capacity) return;
+  const Box moved = c.bounds;
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    if (ids(c)[i] != kNoObject) write(sibling, take_slot(s), ids(c)[i], box_at(c, i));
+  }
+  add_objects(c.group, -static_cast<std::int32_t>(c.counted));
+  add_objects(s.group, static_cast<std::int32_t>(s.live) - static_cast<std::int32_t>(s.counted));
+  s.counted = s.live;
   extend(sibling, moved);
   coordinate(s.cell.min, split.axis) =
       std::min(coordinate(s.cell.min, split.axis), coordinate(c.cell.min, split.axis));
   coordinate(s.cell.max, split.axis) =
       std::max(coordinate(s.cell.max, split.axis), coordinate(c.cell.max, split.axis));
   note_change(sibling);
-  chunks_[chunk].count = 0;
+  chunks_[chunk].count = chunks_[chunk].live = chunks_[chunk].counted = 0;
   unlink(chunk);
 }
 

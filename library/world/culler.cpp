@@ -143,6 +143,7 @@ private:
     visited_ += node.groups.size();
     find_groups(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
                 state_.entries);
+    if (index == 0 && map_.movers() > 0) visit(map_.mover_node(), planes);
     if (node.first_child == ChunkMap::kNone) return;
     for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
   }
@@ -225,6 +226,11 @@ DifferentViews different_views(std::span<const CullView> views) noexcept {
   return out;
 }
 
+// The map's nodes, with the one that it gets with its first mover.
+std::size_t nodes_of(const Sector& sector) {
+  return sector.map->nodes().size() + (sector.map->mover_node() == ChunkMap::kNone);
+}
+
 // Sorts the sectors: adds to the state those that some view may see, and their groups. Returns how many
 // regions and groups it looked at.
 std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
@@ -238,7 +244,7 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
   state.views.reserve(sectors.size() * different.count);
   for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
     state.failed.emplace_back();
-    if (sectors[s].map) state.failed[s].resize(sectors[s].map->nodes().size() * kMaxViews, 0);
+    if (sectors[s].map) state.failed[s].resize(nodes_of(sectors[s]) * kMaxViews, 0);
   }
   std::uint64_t visited = 0;
   for (std::size_t s = 0; s < sectors.size(); ++s) {
@@ -254,7 +260,7 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
     const auto kept = static_cast<std::uint32_t>(state.maps.size());
     state.maps.push_back(sector.map.get());
     for (const std::uint8_t v : of_different) state.views.push_back(sector_view(views[v], sector));
-    state.failed[s].resize(sector.map->nodes().size() * kMaxViews, 0);
+    state.failed[s].resize(nodes_of(sector) * kMaxViews, 0);
     visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
   }
   return visited;
@@ -346,6 +352,8 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
   if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
   world::CullerState& state = *state_;
   state.world = &WorldAccess::state(world);
+  auto& culled = state.world->culled;
+  if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
   const world::DifferentViews different = world::different_views(views);
   CullResult result;
   result.nodes_visited = world::find_entries(state, views, different);

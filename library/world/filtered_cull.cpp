@@ -2,6 +2,7 @@
 #include "library/geometry/mutant.h"
 #include "library/world/world_cull.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #undef HWY_TARGET_INCLUDE
@@ -42,6 +43,7 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
       mask = hn::And(mask, hn::Or(large, hn::Le(distance, radius)));
     }
     if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
+    if (chunk.loose) mask = hn::And(mask, hn::RebindMask(f, are_objects(hn::Load(U(), chunk.objects + i))));
     return mask;
   });
 }
@@ -60,7 +62,9 @@ std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& gro
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    dropped += map.chunk(group.chunks[i]).count;
+    const ChunkMap::ChunkView chunk = map.chunk(group, static_cast<std::uint32_t>(i));
+    dropped += chunk.count -
+               static_cast<std::uint64_t>(std::count(chunk.objects, chunk.objects + chunk.count, kNoObject));
   }
   return dropped;
 }

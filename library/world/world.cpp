@@ -1,13 +1,12 @@
 #include <sightline/world.hpp>
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "library/geometry/box_reader.hpp"
+#include "library/world/chunk_runs.hpp"
 #include "library/world/free_list.hpp"
 #include "library/world/world_state.hpp"
 
@@ -36,11 +35,13 @@ std::uint32_t WorldState::sector_at(const SectorCell& cell) {
   const auto found = sector_of_cell.find(cell);
   if (found != sector_of_cell.end()) return found->second;
   const std::uint32_t added = take_element(sectors, free_sectors);
+  const bool awake_before = sectors[added].awake;  // it may still stand in the list
   sectors[added] = {{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
                      static_cast<double>(cell.z) * kSectorSide},
-                    std::make_unique<ChunkMap>(kSectorMap, &locations),
+                    std::make_unique<ChunkMap>(kSectorMap, &objects),
                     {},
-                    false};
+                    false,
+                    awake_before};
   sector_of_cell.emplace(cell, added);
   return added;
 }
@@ -51,14 +52,14 @@ void WorldState::touch(std::uint32_t sector) {
   touched.push_back(sector);
 }
 
-void WorldState::tidy() {
+void WorldState::tidy(bool after_insertions) {
   // Which sector is freed first says which is used again first: in order, whatever order they were touched
   // in.
   std::sort(touched.begin(), touched.end());
   for (const std::uint32_t s : touched) {
     Sector& sector = sectors[s];
     sector.touched = false;
-    sector.map->tighten();
+    after_insertions ? sector.map->tighten() : sector.map->tighten_nodes();
     sector.bounds = sector.map->nodes()[0].bounds;
     if (sector.map->size() > 0) continue;
     const WorldPoint& o = sector.origin;
@@ -84,6 +85,8 @@ using Column = Strided<const std::uint32_t>;
 Status check_boxes(const BoxView& boxes) noexcept {
   if (!boxes.sound())
     return {StatusCode::bad_argument, "world: a box's pointer is null or its stride too short"};
+  std::span<const Box> structs;
+  if (BoxReader::lies_as_structs(boxes, {}, structs) && world::boxes_are_sound(structs)) return {};
   std::array<WorldBox, kBlock> block;
   for (std::size_t first = 0; first < boxes.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, boxes.size() - first);
@@ -100,8 +103,11 @@ Status check_boxes(const BoxView& boxes) noexcept {
 Status check_handles(const World& world, const Handles& handles) noexcept {
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
+  const std::span<const ChunkMap::Location> objects = WorldAccess::state(world).objects;
   for (std::size_t i = 0; i < handles.size(); ++i) {
-    if (!world.contains(handles[i]))
+    const Handle handle = handles[i];
+    if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
+        objects[handle.index].generation != handle.generation)
       return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
   }
   return {};
@@ -133,7 +139,6 @@ void reserve(WorldState& s, std::size_t more) {
   if (limit <= s.objects.capacity()) return;
   const std::size_t room = std::max(limit, 2 * s.objects.capacity());
   s.objects.reserve(room);
-  s.locations.reserve(room);
 }
 
 // A column comes to be with the first value that somebody sets; ids without one have `otherwise`(id).
@@ -193,7 +198,6 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles, const Object
   std::uint32_t sector = ChunkMap::kNone;
   for_each_box(boxes, [&](std::size_t i, const WorldBox& box) {
     const ObjectId id = world::take_element(s.objects, s.free_ids);
-    if (s.locations.size() < s.objects.size()) s.locations.emplace_back();
     const world::SectorCell cell = world::sector_cell(box);
     if (sector == ChunkMap::kNone || !(cell == last_cell)) {
       sector = s.sector_at(cell), last_cell = cell;
@@ -203,7 +207,7 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles, const Object
     s.objects[id].sector = sector;
     handles.set(i, {id, s.objects[id].generation});
   });
-  s.tidy();
+  s.tidy(true);
   s.size += boxes.size();
   const bool any_column =
       columns.layers.size() + columns.values.size() + s.layers.size() + s.values.size() > 0;
@@ -215,30 +219,7 @@ Status World::move(Strided<const Handle> handles, const BoxView& boxes) {
   if (boxes.size() != handles.size()) return {StatusCode::bad_argument, "world: expected one box a handle"};
   if (const Status stand = check_handles(*this, handles); !stand) return stand;
   if (const Status sound = check_boxes(boxes); !sound) return sound;
-  WorldState& s = *state_;
-  // Where an object stands is the first thing to wait for.
-  constexpr std::size_t kAhead = 16;
-  for_each_box(boxes, [&](std::size_t i, const WorldBox& box) {
-    const ObjectId id = handles[i].index;
-    if (i + kAhead < handles.size()) hwy::Prefetch(&s.locations[handles[i + kAhead].index]);
-    const world::SectorCell cell = world::sector_cell(box);
-    const std::uint32_t from = s.objects[id].sector;
-    const WorldPoint& origin = s.sectors[from].origin;
-    const bool stays = static_cast<double>(cell.x) * world::kSectorSide == origin.x &&
-                       static_cast<double>(cell.y) * world::kSectorSide == origin.y &&
-                       static_cast<double>(cell.z) * world::kSectorSide == origin.z;
-    s.touch(from);
-    if (stays) {
-      s.sectors[from].map->move(id, geometry::relative_box(box, origin));
-    } else {
-      const std::uint32_t to = s.sector_at(cell);
-      s.touch(to);
-      s.sectors[from].map->remove(id);
-      s.sectors[to].map->insert(id, geometry::relative_box(box, s.sectors[to].origin));
-      s.objects[id].sector = to;
-    }
-  });
-  s.tidy();
+  state_->move(handles, boxes);
   return {};
 }
 
@@ -256,14 +237,14 @@ Status World::remove(Strided<const Handle> handles) {
   }
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const ObjectId id = handles[i].index;
-    world::WorldObject& object = s.objects[id];
+    ChunkMap::Location& object = s.objects[id];
     s.touch(object.sector);
     s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
     s.free_ids.push_back(id);
   }
   s.size -= handles.size();
-  s.tidy();
+  s.tidy(false);
   return {};
 }
 

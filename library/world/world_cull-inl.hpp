@@ -110,6 +110,31 @@ HWY_INLINE void copy_ids(const ObjectId* HWY_RESTRICT from, std::size_t count, O
   if (count > 64) copy(64, ChunkMap::kCapacity);
 }
 
+// The lanes of `ids` that are no holes.
+HWY_INLINE hn::Mask<U> are_objects(hn::Vec<U> ids) {
+  return hn::Ne(ids, hn::Set(U(), kNoObject));
+}
+
+// All objects of a chunk with holes; writes up to a vector more. Returns how many there are.
+HWY_INLINE std::size_t copy_objects(const ChunkMap::ChunkView& chunk, ObjectId* HWY_RESTRICT to) {
+  const U u;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(u)) {
+    const auto ids = hn::Load(u, chunk.objects + i);
+    auto keep = are_objects(ids);
+    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    kept += store_kept(u, ids, keep, to + kept);
+  }
+  return kept;
+}
+
+// The same, holes or not; writes up to 63 more.
+HWY_INLINE std::size_t copy_chunk(const ChunkMap::ChunkView& chunk, ObjectId* HWY_RESTRICT to) {
+  if (chunk.loose) return copy_objects(chunk, to);
+  copy_ids(chunk.objects, chunk.count, to);
+  return chunk.count;
+}
+
 // The sides of boxes that lie farthest along a plane's normal, and the plane.
 struct Corner {
   const float *x, *y, *z;
@@ -239,24 +264,27 @@ HWY_INLINE void store_masks(hn::Vec<U> masks, std::uint8_t* HWY_RESTRICT to) {
 // (not null), behind the first `kept` of a pass, and returns how many.
 HWY_INLINE std::size_t write_whole(const ChunkMap::ChunkView& chunk, std::uint8_t mask, std::size_t kept,
                                    ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
-  copy_ids(chunk.objects, chunk.count, ids + kept);
-  if (masks) fill_masks(mask, chunk.count, masks + kept);
-  return chunk.count;
+  const std::size_t count = copy_chunk(chunk, ids + kept);
+  if (masks) fill_masks(mask, count, masks + kept);
+  return count;
 }
 
-// The objects of a chunk that views see.
-HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, const ChunkViews& views, std::size_t kept,
-                                  ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
+// The objects of a chunk that views see; those of `whole` see all of them.
+HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, std::uint8_t whole,
+                                  const ChunkViews& views, std::size_t kept, ObjectId* HWY_RESTRICT ids,
+                                  std::uint8_t* HWY_RESTRICT masks) {
   const U u;
   const std::size_t lanes = hn::Lanes(u), before = kept;
   for (std::size_t i = 0; i < chunk.count; i += lanes) {
-    auto mask = hn::Zero(u);
+    auto mask = hn::Set(u, whole);
     for (std::size_t k = 0; k < views.count; ++k)
       mask = hn::Or(mask, hn::IfThenElseZero(mask_at(u, views.seen[k], i), hn::Set(u, views.bits[k])));
     auto keep = hn::Ne(mask, hn::Zero(u));
     if (i + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    const auto objects = hn::Load(u, chunk.objects + i);
+    if (chunk.loose) keep = hn::And(keep, are_objects(objects));
     if (masks) store_masks(hn::Compress(mask, keep), masks + kept);
-    kept += store_kept(u, hn::Load(u, chunk.objects + i), keep, ids + kept);
+    kept += store_kept(u, objects, keep, ids + kept);
   }
   return kept - before;
 }
@@ -279,7 +307,7 @@ HWY_INLINE void write_masks(const ChunkMap::ChunkView& chunk, std::uint8_t whole
 HWY_INLINE std::size_t write_parts(const ChunkMap::ChunkView& chunk, std::uint8_t whole,
                                    const ChunkViews& views, std::size_t kept, ObjectId* HWY_RESTRICT ids,
                                    std::uint8_t* HWY_RESTRICT masks) {
-  if (whole == 0) return write_seen(chunk, views, kept, ids, masks);
+  if (whole == 0 || chunk.loose) return write_seen(chunk, whole, views, kept, ids, masks);
   copy_ids(chunk.objects, chunk.count, ids + kept);
   write_masks(chunk, whole, views, masks + kept);
   return chunk.count;

@@ -48,6 +48,32 @@ HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntr
   if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
 }
 
+// All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
+HWY_INLINE void prefetch_boxes(const ChunkMap::ChunkView& chunk) {
+  for (std::size_t i = 0; i < 6 * ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.min_x + i);
+}
+
+// cull_chunk() of a chunk with holes or of movers, which nearly always cross all planes. By itself, as worlds
+// that stand still never come here.
+HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, const Corner* corners,
+                                          std::size_t planes, ObjectId* HWY_RESTRICT out) {
+  if (planes == 0) return copy_chunk(chunk, out);
+  const U u;
+  std::size_t kept = 0;
+  const auto take = [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const auto ids = hn::Load(u, chunk.objects + i);
+    auto keep = hn::And(hn::RebindMask(u, mask), are_objects(ids));
+    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    kept += store_kept(u, ids, keep, out + kept);
+  };
+  if (planes == Frustum::sides) {
+    test_planes<Frustum::sides>(corners, planes, chunk.count, take);
+  } else {
+    test_planes(corners, planes, chunk.count, take);
+  }
+  return kept;
+}
+
 PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* end = out;
@@ -63,7 +89,13 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       const ChunkMap::ChunkView& chunk = chunks[i];
       const PlaneSet planes = planes_of(bits, i, entry.planes[0]);
-      if (planes == 0) {
+      if (chunk.loose) {
+        if (const std::uint32_t later = rest & (rest - 1); at.group.pool != 0 && later != 0)
+          prefetch_boxes(chunks[static_cast<std::uint32_t>(std::countr_zero(later))]);
+        Corner corners[Frustum::sides];
+        if (planes != 0) counts.tested += chunk.count;
+        end += cull_loose_chunk(chunk, corners, corners_of(chunk, *at.views, planes, corners), end);
+      } else if (planes == 0) {
         copy_ids(chunk.objects, chunk.count, end);
         end += chunk.count;
       } else {
@@ -141,7 +173,9 @@ struct CrossedChunk {
   HWY_INLINE std::size_t write_one(int v, std::size_t kept, ObjectId* HWY_RESTRICT ids,
                                    std::uint8_t* HWY_RESTRICT masks) const {
     Corner planes[Frustum::sides];
-    const std::size_t count = cull_chunk(chunk, planes, corners(v, planes), ids + kept);
+    const std::size_t crossed = corners(v, planes);
+    const std::size_t count = chunk.loose ? cull_loose_chunk(chunk, planes, crossed, ids + kept)
+                                          : cull_chunk(chunk, planes, crossed, ids + kept);
     if (masks) fill_masks(input.bits[v], count, masks + kept);
     return count;
   }

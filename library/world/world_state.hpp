@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -37,20 +38,15 @@ struct Sector {
   std::unique_ptr<ChunkMap> map;  ///< relative to the origin; null: the sector is free
   Box bounds;                     ///< the map's, kept here so that a cull need not fetch it from there
   bool touched = false;           ///< stands in WorldState::touched
-};
-
-/// In WorldState::objects, one an id.
-struct WorldObject {
-  std::uint32_t sector = ChunkMap::kNone;  ///< kNone: the id is free
-  std::uint32_t generation = 0;
+  bool awake = false;             ///< stands in WorldState::awake
 };
 
 struct WorldState {
   std::vector<Sector> sectors;
   std::vector<std::uint32_t> free_sectors;
   std::unordered_map<SectorCell, std::uint32_t, SectorCellHash> sector_of_cell;
-  ChunkMap::Locations locations;  ///< shared by all sectors' maps
-  std::vector<WorldObject> objects;
+  /// One an id, shared by all sectors' maps; where the sector is kNone the id is free.
+  ChunkMap::Locations objects;
   std::vector<ObjectId> free_ids;
   /// One an id, or empty as long as nobody has set any.
   std::vector<std::uint32_t> layers, values;
@@ -58,11 +54,26 @@ struct WorldState {
   std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
 
+  /// Whether anybody has culled since the last frame began: then the next change begins another.
+  mutable std::atomic<bool> culled{false};
+  std::uint16_t tick = 0;       ///< counts frames
+  std::uint32_t allowance = 0;  ///< how many more objects may become movers in this frame for moving often
+  std::vector<std::uint32_t> awake;  ///< sectors whose maps have something to rest, or had
+  std::size_t awake_hand = 0;        ///< where let_rest() goes on
+  static constexpr std::uint32_t kFewestAtRest = 64;
+
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose map changes.
   void touch(std::uint32_t sector);
-  /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty.
-  void tidy();
+  /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty;
+  /// after insertions also puts chunks side by side.
+  void tidy(bool after_insertions);
+  /// World::move, of what has been checked.
+  void move(const Strided<const Handle>& handles, const BoxView& boxes);
+  /// Counts frames; true where a new one begins.
+  bool begin_frame();
+  /// Lets some of the awake sectors' maps rest.
+  void let_rest();
 };
 
 /// The sector that holds a box's centre.

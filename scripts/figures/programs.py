@@ -49,7 +49,7 @@ def place_of(named_runs):
 def benchmark_rows(name, entries, rate=None, counters=()):
     """A row for the time, or for the rate where `rate` is its unit in millions; one for each of the counters, which
     are (name, unit, factor)."""
-    short_name = re.sub(r"^BM_|/real_time$|/iterations:\d+", "", name)
+    short_name = re.sub(r"^BM_|/(real|manual)_time$|/iterations:\d+", "", name)
     first = entries[0]
     judged = {key: first[key] for key in ("lost", "excess") if key in first}
     kept = first.get("visible")
@@ -58,7 +58,7 @@ def benchmark_rows(name, entries, rate=None, counters=()):
     if rate and "items_per_second" in first:
         rows = [row_of(short_name, rate, [e["items_per_second"] / 1e6 for e in entries], **judged)]
     else:
-        clock = "real_time" if name.endswith("/real_time") else "cpu_time"
+        clock = "real_time" if name.endswith(("/real_time", "/manual_time")) else "cpu_time"
         rows = [row_of(short_name, UNITS[first["time_unit"]], [e[clock] for e in entries], **judged)]
     for counter, unit, factor in counters:
         if counter in first:

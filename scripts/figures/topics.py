@@ -23,6 +23,13 @@ def world(quick):
                         "one_view" if name.startswith("four_views") else "world/1000000")
 
 
+def moving(quick):
+    """A world that moves beside flat arrays: means over 600 frames, or 60, and the world's slowest frame."""
+    rows = google_benchmark("movers", 1, 0.01, f"^{'short' if quick else 'movers'}/.*/by_id")
+    return compare_with(rows, lambda name: name.removesuffix("world") + "flat" if name.endswith("/world") else
+                        name.removesuffix("worst_frame") + "world" if name.endswith("/worst_frame") else None)
+
+
 def movers(quick):
     """What moves: a world's boxes, the chunks of the raster methods, a scene's objects under each method."""
     rows = google_benchmark("world", 3, 0.02, "^(build|move_|far_sectors/move)")
@@ -260,6 +267,6 @@ def startup(quick):
     return rows
 
 
-TOPICS = {"world": world, "movers": movers, "frustum": frustum, "occlusion": occlusion, "rays": rays,
+TOPICS = {"world": world, "movers": movers, "moving": moving, "frustum": frustum, "occlusion": occlusion, "rays": rays,
           "scenes": scenes, "surfaces": surfaces, "memory": memory, "startup": startup, "large": large, "bake": bake,
           "draw-calls": draw_calls}

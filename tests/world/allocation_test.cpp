@@ -106,6 +106,32 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
   EXPECT_GT(kept, 1000u);
 }
 
+TEST(Allocation, MovingTheSameObjectsAllocatesNothingOnceWarm) {
+  scene::Random random(2);
+  World world;
+  std::vector<Box> boxes(20000);
+  for (Box& b : boxes) {
+    const Vec3 at = random.inside({{-500, 0, -500}, {500, 30, 500}});
+    b = {at, {at.x + 1, at.y + 1, at.z + 1}};
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  const CullView view{.view = {*make_view({}, 64, 64), {}}};
+  std::vector<ObjectId> visible(cull_capacity(world));
+  Culler culler;
+  std::size_t warm = 0;
+  for (int frame = 0; frame < 700; ++frame) {
+    if (frame == 400) warm = allocations;
+    for (std::size_t i = 0; i < 500; ++i) {
+      const float by = random.between(-1, 1);
+      boxes[i].min.x += by, boxes[i].max.x += by;
+    }
+    ASSERT_TRUE(world.move(std::span(handles).first(500), BoxView(std::span(boxes).first(500))));
+    EXPECT_TRUE(culler.cull(world, view, visible));
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+}
+
 }  // namespace
 }  // namespace sightline
 #endif

@@ -48,6 +48,7 @@ std::uint64_t hash_of_run(const Setting& run) {
   std::vector<Handle> handles(boxes.size());
   for (WorldBox& b : boxes) b = box();
   EXPECT_TRUE(world.insert(boxes, handles));
+  std::vector<WorldBox> movers(boxes.end() - 2000, boxes.end());
   const CullOptions options{.jobs = {test::run_threads, nullptr, run.threads}};
   Culler culler;
   std::uint64_t h = 0xcbf29ce484222325u;
@@ -55,6 +56,12 @@ std::uint64_t hash_of_run(const Setting& run) {
     std::vector<Handle> some(handles.begin() + frame * 500, handles.begin() + frame * 500 + 1000);
     for (std::size_t i = 0; i < some.size(); ++i) boxes[i] = box();
     EXPECT_TRUE(world.move(some, std::span(boxes).first(some.size())));
+    // Others move a little, frame after frame.
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+      const double by = coarse(random.between(-1, 1));
+      movers[i].min.x += by, movers[i].max.x += by;
+    }
+    EXPECT_TRUE(world.move(std::span(handles).last(movers.size()), movers));
     std::vector<WorldView> views;
     for (int v = 0; v < 1 + frame % 3; ++v) {
       Camera camera;

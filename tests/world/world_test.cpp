@@ -12,80 +12,15 @@
 #include "library/world/world_state.hpp"
 #include "support/cull.hpp"
 #include "support/random_views.hpp"
-#include "support/run_threads.hpp"
+#include "support/world_twin.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline {
 namespace {
 
 using scene::Random;
-
-WorldBox wide(const Box& b, const WorldPoint& by = {}) {
-  return {{b.min.x + by.x, b.min.y + by.y, b.min.z + by.z}, {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
-}
-
-// Least signed distance of the box's best corner over all planes, in double precision, from the matrices
-// alone.
-double depth_in(const WorldView& view, const WorldBox& b) {
-  using namespace geometry;
-  const glm::dmat4 rows =
-      glm::transpose(to_double(view.view.eye_to_clip) * to_double(view.view.world_to_eye));
-  double least = 1e300;
-  for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
-                                  rows[2], rows[3] - rows[2]}) {
-    const double length = glm::length(glm::dvec3(plane));
-    if (length < 1e-12 * std::fabs(plane.w)) continue;
-    const glm::dvec3 corner((plane.x >= 0 ? b.max.x : b.min.x) - view.origin.x,
-                            (plane.y >= 0 ? b.max.y : b.min.y) - view.origin.y,
-                            (plane.z >= 0 ? b.max.z : b.min.z) - view.origin.z);
-    least = std::min(least, (glm::dot(glm::dvec3(plane), corner) + plane.w) / length);
-  }
-  return least;
-}
-
-void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
-                  std::span<const WorldView> views, double tolerance) {
-  std::vector<ObjectId> visible(cull_capacity(world));
-  std::vector<std::uint8_t> masks(visible.size());
-  const std::vector<CullView> all = test::cull_views(views);
-  const CullResult with_masks = test::cull(culler, world, all, visible, masks);
-  std::map<ObjectId, std::uint8_t> seen;
-  for (std::size_t i = 0; i < with_masks.count; ++i) {
-    ASSERT_TRUE(twin.contains(visible[i]));
-    ASSERT_NE(masks[i], 0);
-    ASSERT_TRUE(seen.emplace(visible[i], masks[i]).second) << "written twice: " << visible[i];
-  }
-  for (const auto& [id, box] : twin) {
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      const double depth = depth_in(views[v], box);
-      const bool kept = seen.contains(id) && (seen[id] >> v & 1);
-      if (depth >= 0) ASSERT_TRUE(kept) << "lost object " << id << " in view " << v;
-      if (depth < -tolerance)
-        ASSERT_FALSE(kept) << "kept object " << id << " in view " << v << " at " << depth;
-    }
-  }
-  // So do threads, to the bit.
-  const CullOptions threaded{.jobs = {test::run_threads, nullptr, 4}};
-  std::vector<ObjectId> by_threads(cull_capacity(world, threaded));
-  std::vector<std::uint8_t> their_masks(by_threads.size());
-  ASSERT_EQ(test::cull(culler, world, all, by_threads, their_masks, threaded).count, with_masks.count);
-  ASSERT_TRUE(std::equal(by_threads.begin(),
-                         by_threads.begin() + static_cast<std::ptrdiff_t>(with_masks.count),
-                         visible.begin()));
-  ASSERT_TRUE(std::equal(their_masks.begin(),
-                         their_masks.begin() + static_cast<std::ptrdiff_t>(with_masks.count), masks.begin()));
-  // The plain passes say the same, in the same order.
-  const CullResult plain = test::cull(culler, world, all, visible);
-  ASSERT_EQ(plain.count, with_masks.count);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    std::vector<ObjectId> single(visible.size());
-    const CullResult one = test::cull(culler, world, std::span(all).subspan(v, 1), single);
-    std::size_t expected = 0;
-    for (const auto& [id, mask] : seen) expected += mask >> v & 1;
-    ASSERT_EQ(one.count, expected);
-    for (std::size_t i = 0; i < one.count; ++i) ASSERT_TRUE(seen[single[i]] >> v & 1);
-  }
-}
+using test::expect_right;
+using test::wide;
 
 TEST(World, EqualsBruteForceAfterTenThousandRandomOperations) {
   for (const double shift : {0.0, 1e7}) {

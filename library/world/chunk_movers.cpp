@@ -1,0 +1,267 @@
+// Moving at little cost: within a chunk's bounds a move touches nothing but its box; what leaves them, or
+// moves frame after frame, stands in chunks of movers, in the order in which it came, until it rests.
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "library/geometry/box_math.hpp"
+#include "library/world/chunk_map.hpp"
+
+namespace sightline::world {
+
+using namespace geometry;
+
+namespace {
+
+// No key's number: movers have none.
+constexpr std::uint32_t kMoverKey = 0xfffffffeu;
+
+float longest_side(const Box& b) {
+  return std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
+}
+
+// Room for moves to come: small beside the box, so that culling hardly sees it.
+Box widened(const Box& b) {
+  constexpr float kSlack = 0.125f;
+  const float by = kSlack * longest_side(b);
+  return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
+}
+
+// Whether an object that moves now has done so in most of the last frames.
+bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
+  constexpr int kOften = 4;  // of 8
+  const std::uint32_t before = at.slot_and_history;
+  const auto since = static_cast<std::uint16_t>(tick - (before >> 16));
+  const std::uint32_t history = since >= 8 ? 1 : ((before >> 8 & 0xff) << since | 1) & 0xff;
+  at.slot_and_history = std::uint32_t{tick} << 16 | history << 8 | (before & 0xff);
+  return std::popcount(history) >= kOften;
+}
+
+}  // namespace
+
+void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
+  loosely_ = true;
+  Location& at = (*locations_)[object];
+  Chunk& c = chunks_[at.chunk];
+  if (c.pool == kMovers) return move_mover(at.chunk, at.slot(), box);
+  const bool for_movers = keeps_movers();
+  if (for_movers && (moving.many || (moves_often(at, moving.tick) && moving.allowance > 0))) {
+    moving.allowance -= !moving.many;
+  } else if (holds(c.bounds, box)) {
+    write_box(c, at.slot(), box);
+    c.moved[0] = 1;
+    return;
+  } else if (!for_movers) {
+    return move(object, box);
+  } else if (const Box wide = widened(c.bounds); !c.wide && holds(wide, box)) {
+    c.bounds = wide, c.wide = true;
+    make_dirty(at.chunk), note_grown(at.chunk);
+    write_box(c, at.slot(), box);
+    c.moved[0] = 1;
+    return;
+  }
+  leave(at.chunk, at.slot());
+  add_mover(object, box);
+}
+
+void ChunkMap::insert_moving(ObjectId object, const Box& box) {
+  if (!keeps_movers()) return insert(object, box);
+  loosely_ = true;
+  add_mover(object, box);
+  ++size_;
+}
+
+void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box) {
+  Chunk& c = chunks_[chunk];
+  if (!holds(c.bounds, box)) {
+    c.bounds = widened(united(c.bounds, box));
+    make_dirty(chunk);
+  }
+  write_box(c, slot, box);
+  c.moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+}
+
+void ChunkMap::prefetch_chunk(ObjectId object) const noexcept {
+  const std::uint32_t chunk = (*locations_)[object].chunk;
+  if (chunk < chunks_.size()) hwy::Prefetch(&chunks_[chunk]);
+}
+
+void ChunkMap::prefetch_lanes(ObjectId object, bool many) const noexcept {
+  const Location& at = (*locations_)[object];
+  if (at.chunk >= chunks_.size()) return;
+  const Chunk& c = chunks_[at.chunk];
+  if (at.slot() >= c.capacity) return;
+  if (many && c.pool == kStill) return hwy::Prefetch(ids(c) + at.slot());  // it will leave
+  for (std::uint32_t side = 0; side < 6; ++side) hwy::Prefetch(lanes(c, side) + at.slot());
+}
+
+void ChunkMap::make_dirty(std::uint32_t chunk) {
+  if (chunks_[chunk].dirty) return;
+  chunks_[chunk].dirty = true;
+  dirty_.push_back(chunk);
+}
+
+void ChunkMap::note_grown(std::uint32_t chunk) {
+  if (chunks_[chunk].grown) return;
+  chunks_[chunk].grown = true;
+  grown_.push_back(chunk);
+}
+
+// Makes a hole of a slot.
+void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
+  Chunk& c = chunks_[chunk];
+  ids(c)[slot] = kNoObject;
+  --c.live;
+  make_dirty(chunk);
+  if (c.pool == kMovers) {
+    c.moved[slot / 64] &= ~(std::uint64_t{1} << slot % 64);
+  } else {
+    c.moved[0] = 1;
+    note_grown(chunk);
+  }
+}
+
+// The chunk that takes the next mover.
+std::uint32_t ChunkMap::open_mover_chunk() {
+  if (!mover_chunks_.empty() && chunks_[mover_chunks_.back()].count < kCapacity) return mover_chunks_.back();
+  if (mover_node_ == kNone) {
+    mover_node_ = static_cast<std::uint32_t>(nodes_.size());
+    Node& node = nodes_.emplace_back();
+    node.parent = 0, node.bounds = kEmptyBox;
+    loose_.push_back(0);
+  }
+  Pool& pool = pools_[kMovers];
+  if (pool.ids.empty()) {
+    // For all at once; memory that is never written costs nothing.
+    const std::size_t room = size_ + size_ / 16 + 4 * kCapacity;
+    pool.ids.reserve(room), pool.lanes.reserve(6 * room);
+  }
+  const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers);
+  if (!mover_chunks_.empty()) chunks_[mover_chunks_.back()].next = added;
+  mover_chunks_.push_back(added);
+  return added;
+}
+
+void ChunkMap::add_mover(ObjectId object, const Box& box) {
+  const std::uint32_t chunk = open_mover_chunk();
+  Chunk& c = chunks_[chunk];
+  const std::uint32_t slot = c.count++;
+  ++c.live;
+  write(chunk, slot, object, box);
+  c.moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+  if (!holds(c.bounds, box)) c.bounds = united(c.bounds, box);
+  make_dirty(chunk);
+}
+
+void ChunkMap::flush() {
+  for (const std::uint32_t chunk : dirty_) {
+    Chunk& c = chunks_[chunk];
+    c.dirty = false;
+    if (c.key == kNone) continue;  // it was freed
+    if (c.group == kNone) {
+      put_in_group(chunk, kNone, c.bounds);
+      continue;
+    }
+    set_bounds(chunk, c.bounds);
+    extend_group(c.group, c.bounds);
+    note_shape(chunk);
+    if (c.counted == c.live) continue;
+    add_objects(c.group, static_cast<std::int32_t>(c.live) - static_cast<std::int32_t>(c.counted));
+    c.counted = c.live;
+  }
+  dirty_.clear();
+}
+
+// --- rest ---
+
+void ChunkMap::rest() {
+  flush();
+  rest_grown();
+  auto budget = static_cast<std::uint32_t>(movers() / kRound) + 64;
+  for (std::size_t left = (mover_chunks_.size() + kRound - 1) / kRound; left > 0 && !mover_chunks_.empty();
+       --left) {
+    if (mover_hand_ >= mover_chunks_.size()) mover_hand_ = 0;
+    const std::uint32_t chunk = mover_chunks_[mover_hand_];
+    if (!rest_movers(chunk, budget)) break;
+    if (chunks_[chunk].key != kNone) {
+      ++mover_hand_;
+      continue;
+    }
+    // The last one stays the last, for it is open.
+    mover_chunks_[mover_hand_] = mover_chunks_.back();
+    mover_chunks_.pop_back();
+    if (mover_hand_ + 1 < mover_chunks_.size()) std::swap(mover_chunks_[mover_hand_], mover_chunks_.back());
+  }
+  flush();
+}
+
+// Visits the next of the still chunks with wide bounds or holes.
+void ChunkMap::rest_grown() {
+  constexpr std::size_t kVisits = 64;  // a part of all
+  for (std::size_t left = (grown_.size() + kVisits - 1) / kVisits; left > 0; --left) {
+    if (grown_hand_ >= grown_.size()) grown_hand_ = 0;
+    const std::uint32_t chunk = grown_[grown_hand_];
+    Chunk& c = chunks_[chunk];
+    const bool stands = c.key != kNone && c.pool == kStill;
+    if (stands && c.moved[0] != 0) {
+      c.moved[0] = 0;
+      ++grown_hand_;
+      continue;
+    }
+    c.grown = false;
+    grown_[grown_hand_] = grown_.back();
+    grown_.pop_back();
+    if (stands) tighten_grown(chunk);
+  }
+}
+
+void ChunkMap::tighten_grown(std::uint32_t chunk) {
+  Chunk& c = chunks_[chunk];
+  c.wide = false;
+  if (c.live == 0) return unlink(chunk);
+  const Box before = c.bounds;
+  set_bounds(chunk, tight(c));
+  shrink_group(c.group, before);
+  try_merge(chunk);
+}
+
+// Files those of a chunk's movers that rested since the last visit, as far as the budget goes; false where it
+// ended. A chunk of few is given up, and its movers stand together with the newest.
+bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
+  const bool open = chunk == mover_chunks_.back() && chunks_[chunk].count < kCapacity;
+  for (std::uint32_t slot = 0; slot < chunks_[chunk].count; ++slot) {
+    const Chunk& c = chunks_[chunk];
+    const ObjectId object = ids(c)[slot];
+    if (object == kNoObject || (c.moved[slot / 64] >> slot % 64 & 1)) continue;
+    if (budget == 0) return false;
+    --budget;
+    const Box box = box_at(c, slot);
+    leave(chunk, slot);
+    (*locations_)[object].slot_and_history = 0;
+    file(object, box);
+  }
+  chunks_[chunk].moved = {};
+  if (open) return true;
+  if (chunks_[chunk].live <= kCapacity / 4) {
+    for (std::uint32_t slot = 0; slot < chunks_[chunk].count && chunks_[chunk].live > 0; ++slot) {
+      const ObjectId object = ids(chunks_[chunk])[slot];
+      if (object == kNoObject) continue;
+      const Box box = box_at(chunks_[chunk], slot);
+      leave(chunk, slot);
+      add_mover(object, box);
+    }
+    flush();
+    free_chunk(chunk);
+    return true;
+  }
+  flush();
+  const Box before = chunks_[chunk].bounds;
+  const Box now = widened(tight(chunks_[chunk]));
+  set_bounds(chunk, now);
+  extend_group(chunks_[chunk].group, now);  // first, for shrinking asks nobody above to grow
+  shrink_group(chunks_[chunk].group, before);
+  return true;
+}
+
+}  // namespace sightline::world

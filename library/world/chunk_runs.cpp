@@ -1,0 +1,194 @@
+// Movers that are listed in the order in which they stand: whole rows of boxes at a time.
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "library/world/chunk_runs.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include "library/geometry/simd-inl.hpp"
+#include "library/world/chunk_map.hpp"
+#include "library/world/chunk_runs.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::world::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, 16>;
+using U = hn::RebindToUnsigned<F>;
+using geometry::HWY_NAMESPACE::bits_of;
+
+// A bit a box that lies within the bounds, of at most 64.
+HWY_INLINE std::uint64_t held_boxes(const std::array<const float*, 6>& from, const Box& bounds,
+                                    std::uint32_t count) {
+  const F f;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(f));
+  const auto low_x = hn::Set(f, bounds.min.x), low_y = hn::Set(f, bounds.min.y),
+             low_z = hn::Set(f, bounds.min.z), high_x = hn::Set(f, bounds.max.x),
+             high_y = hn::Set(f, bounds.max.y), high_z = hn::Set(f, bounds.max.z);
+  std::uint64_t bits = 0;
+  std::uint32_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const auto at = [&](std::size_t side) HWY_ATTR { return hn::LoadU(f, from[side] + i); };
+    const auto below = hn::Or(hn::Lt(at(0), low_x), hn::Or(hn::Lt(at(1), low_y), hn::Lt(at(2), low_z)));
+    const auto above = hn::Or(hn::Gt(at(3), high_x), hn::Or(hn::Gt(at(4), high_y), hn::Gt(at(5), high_z)));
+    bits |= std::uint64_t{bits_of(f, hn::Not(hn::Or(below, above)))} << i;
+  }
+  for (; i < count; ++i) {
+    const bool held = from[0][i] >= bounds.min.x && from[1][i] >= bounds.min.y &&
+                      from[2][i] >= bounds.min.z && from[3][i] <= bounds.max.x &&
+                      from[4][i] <= bounds.max.y && from[5][i] <= bounds.max.z;
+    bits |= std::uint64_t{held} << i;
+  }
+  return bits;
+}
+
+// Where the id stands among the next ones of a chunk; kNowhere beyond some vectors.
+constexpr std::uint32_t kNowhere = 0xffffffffu;
+HWY_INLINE std::uint32_t find_id(const ObjectId* ids, ObjectId wanted, std::uint32_t count) {
+  const U u;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(u));
+  constexpr std::uint32_t kReach = 32;
+  const auto id = hn::Set(u, wanted);
+  std::uint32_t i = 0;
+  for (; i + lanes <= count && i < kReach; i += lanes) {
+    const std::intptr_t at = hn::FindFirstTrue(u, hn::Eq(hn::LoadU(u, ids + i), id));
+    if (at >= 0) return i + static_cast<std::uint32_t>(at);
+  }
+  for (; i < count && i < kReach; ++i) {
+    if (ids[i] == wanted) return i;
+  }
+  return kNowhere;
+}
+
+// Writes from slot on; returns how many of the objects, and the slot behind the last.
+std::uint32_t write_run(const MoverRun& run, std::uint32_t& slot, const ObjectId* HWY_RESTRICT objects,
+                        const std::array<const float*, 6>& from, std::uint32_t count) {
+  const F f;
+  const U u;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(f));
+  const std::uint64_t held = held_boxes(from, run.bounds, count);
+  std::array<std::uint64_t, 2> moved{run.moved[0], run.moved[1]};
+  const std::uint64_t whole = (std::uint64_t{1} << lanes) - 1;
+  std::uint32_t i = 0, at = slot;
+  bool dense = true;
+  while (i < count) {
+    // A vector of neighbours, as long as they follow one another.
+    dense = dense && i + lanes <= count && at + lanes <= run.count && (held >> i & whole) == whole &&
+            hn::AllTrue(u, hn::Eq(hn::LoadU(u, run.ids + at), hn::LoadU(u, objects + i)));
+    if (dense) {
+      const bool past_cache = run.past_cache && at % lanes == 0;
+      for (std::size_t side = 0; side < 6; ++side) {
+        const auto values = hn::LoadU(f, from[side] + i);
+        float* const to = run.boxes + side * ChunkMap::kCapacity + at;
+        past_cache ? hn::Stream(values, f, to) : hn::StoreU(values, f, to);
+      }
+      moved[at / 64] |= whole << at % 64;
+      if (at % 64 + lanes > 64) moved[1] |= whole >> (64 - at % 64);
+      i += lanes, at += lanes;
+      continue;
+    }
+    const std::uint32_t next = at < run.count ? find_id(run.ids + at, objects[i], run.count - at) : kNowhere;
+    if (next == kNowhere || !(held >> i & 1)) break;
+    at += next;
+    for (std::size_t side = 0; side < 6; ++side) run.boxes[side * ChunkMap::kCapacity + at] = from[side][i];
+    moved[at / 64] |= std::uint64_t{1} << at % 64;
+    ++i, ++at;
+  }
+  run.moved[0] = moved[0], run.moved[1] = moved[1];
+  slot = at;
+  return i;
+}
+
+// Boxes are pairs of points: their coordinates are taken apart, then minima and maxima.
+float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
+  std::size_t i = 0;
+  float reach = 0;
+#if HWY_TARGET != HWY_SCALAR  // which has no pairs to take apart
+  const F f;
+  const std::size_t lanes = hn::Lanes(f);
+  auto most = hn::Zero(f);
+  for (; i + lanes <= count; i += lanes) {
+    hn::Vec<F> x[2], y[2], z[2];
+    for (std::size_t half = 0; half < 2; ++half)
+      hn::LoadInterleaved3(f, boxes + 6 * i + half * 3 * lanes, x[half], y[half], z[half]);
+    const auto part = [&](std::size_t side, const hn::Vec<F>* both) HWY_ATTR {
+      const auto low = hn::ConcatEven(f, both[1], both[0]), high = hn::ConcatOdd(f, both[1], both[0]);
+      hn::Store(low, f, &out.values[side][i]);
+      hn::Store(high, f, &out.values[side + 3][i]);
+      most = hn::Max(most, hn::Max(hn::Neg(low), high));
+    };
+    part(0, x), part(1, y), part(2, z);
+  }
+  reach = hn::GetLane(hn::MaxOfLanes(f, most));
+#endif
+  for (; i < count; ++i) {
+    for (std::size_t side = 0; side < 6; ++side) {
+      const float value = out.values[side][i] = boxes[6 * i + side];
+      reach = std::max(reach, side < 3 ? -value : value);
+    }
+  }
+  return reach;
+}
+
+// Six floats a box, and three further on stands what is no less; 48 of them repeat the order in vectors.
+bool are_sound(const float* values, std::size_t boxes, float reach) {
+  constexpr std::size_t kStep = 48;
+  const F f;
+  const std::size_t lanes = hn::Lanes(f), count = 6 * boxes;
+  alignas(64) std::array<float, kStep> pattern;
+  for (std::size_t i = 0; i < kStep; ++i) pattern[i] = i % 6 < 3 ? 1.0f : 0.0f;
+  const auto top = hn::Set(f, reach), bottom = hn::Set(f, -reach);
+  auto sound = hn::Eq(top, top);
+  std::size_t i = 0;
+  for (; i + kStep + 3 <= count; i += kStep) {
+    for (std::size_t k = 0; k < kStep; k += lanes) {
+      const auto low = hn::LoadU(f, values + i + k), high = hn::LoadU(f, values + i + k + 3);
+      const auto right = hn::And(hn::Le(low, high), hn::And(hn::Ge(low, bottom), hn::Le(high, top)));
+      sound = hn::And(sound, hn::Or(right, hn::Eq(hn::Load(f, &pattern[k]), hn::Zero(f))));
+    }
+  }
+  bool rest = true;
+  for (; i < count; i += 6) {
+    for (std::size_t k = i; k < i + 3; ++k)
+      rest = rest && values[k] <= values[k + 3] && values[k] >= -reach && values[k + 3] <= reach;
+  }
+  return rest && hn::AllTrue(f, sound);
+}
+
+}  // namespace sightline::world::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::world {
+HWY_EXPORT(write_run);
+HWY_EXPORT(are_sound);
+HWY_EXPORT(lay_out);
+
+bool boxes_are_sound(std::span<const Box> boxes) noexcept {
+  // The greatest float that is not beyond kWorldReach.
+  constexpr auto kReach = static_cast<float>(kWorldReach);
+  static_assert(static_cast<double>(kReach) <= kWorldReach);
+  return boxes.empty() || HWY_DYNAMIC_DISPATCH(are_sound)(&boxes[0].min.x, boxes.size(), kReach);
+}
+
+float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept {
+  return HWY_DYNAMIC_DISPATCH(lay_out)(&boxes[0].min.x, boxes.size(), out);
+}
+
+std::uint32_t ChunkMap::move_run(std::uint32_t& chunk, std::uint32_t& slot, const ObjectId* objects,
+                                 const geometry::BoxBlock& boxes, std::size_t first, std::uint32_t count,
+                                 bool past_cache) noexcept {
+  Chunk& c = chunks_[chunk];
+  if (c.pool != kMovers || slot >= c.count) return 0;
+  std::array<const float*, 6> from;
+  for (std::size_t side = 0; side < 6; ++side) from[side] = boxes.values[side].data() + first;
+  const MoverRun run{c.bounds, ids(c), lanes(c, 0), c.count, c.moved.data(), past_cache};
+  const std::uint32_t moved = HWY_DYNAMIC_DISPATCH(write_run)(run, slot, objects, from, count);
+  if (slot == kCapacity && c.next != kNone) chunk = c.next, slot = 0;
+  return moved;
+}
+
+}  // namespace sightline::world
+#endif

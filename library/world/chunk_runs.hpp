@@ -1,0 +1,28 @@
+// What moving many boxes at once stands on, in SIMD.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <sightline/types.hpp>
+
+#include "library/geometry/box_reader.hpp"
+
+namespace sightline::world {
+
+/// A chunk of movers.
+struct MoverRun {
+  const Box& bounds;
+  const ObjectId* ids;
+  float* boxes;  ///< its minimum x; the other sides ChunkMap::kCapacity floats apart
+  std::uint32_t count;
+  std::uint64_t* moved;  ///< a bit a slot
+  bool past_cache;       ///< whole vectors need not stay in the cache
+};
+
+/// Lays at most a block of boxes out, an array a coordinate. Returns how far they reach from 0 on any axis.
+float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept;
+/// Whether all are valid: min <= max within ±kWorldReach.
+[[nodiscard]] bool boxes_are_sound(std::span<const Box> boxes) noexcept;
+
+}  // namespace sightline::world

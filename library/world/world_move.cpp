@@ -1,0 +1,176 @@
+// World::move: a block of boxes at a time, with an eye on the memory that the next ones need.
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <array>
+
+#include "library/geometry/box_reader.hpp"
+#include "library/world/chunk_runs.hpp"
+#include "library/world/world_state.hpp"
+
+namespace sightline::world {
+
+using geometry::kBlock;
+
+namespace {
+
+class BlockMover {
+public:
+  BlockMover(WorldState& state, const Strided<const Handle>& handles, const BoxView& boxes, Moving& moving)
+      : s_(state),
+        handles_(handles),
+        boxes_(boxes),
+        moving_(moving),
+        past_cache_(boxes.size() > kPastCache) {}
+
+  void move(std::size_t first) {
+    first_ = first;
+    const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
+    for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
+    begin_sector(s_.objects[ids_[0]].sector);
+    const bool inside = read_boxes(count);
+    for (std::uint32_t i = 0; i < count;) {
+      if (inside && run_chunk_ != ChunkMap::kNone && patience_ == 0) {
+        const std::uint32_t moved =
+            map_->move_run(run_chunk_, run_slot_, &ids_[i], block_, i, count - i, past_cache_);
+        if (moved < kWorthARun && run_slot_ > 0) patience_ = kFruitless;
+        i += moved;
+        if (moved > 0) continue;
+      }
+      patience_ -= patience_ > 0;
+      prefetch(first + i);
+      move_one(i++, inside);
+    }
+  }
+
+private:
+  void begin_sector(std::uint32_t sector) {
+    s_.touch(sector);
+    if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
+    sector_ = sector, map_ = s_.sectors[sector].map.get();
+    run_chunk_ = ChunkMap::kNone;
+  }
+
+  // Returns whether all surely have their centres in the sector.
+  bool read_boxes(std::uint32_t count) {
+    constexpr auto kInside = static_cast<float>(kSectorSide / 2);
+    const WorldPoint& origin = s_.sectors[sector_].origin;
+    std::span<const Box> structs;
+    if (BoxReader::lies_as_structs(boxes_, origin, structs))
+      return lay_out_structs(structs.subspan(first_, count), block_) < kInside;
+    BoxReader::lay_out(boxes_, first_, count, origin, block_);
+    float most = 0;
+    for (std::size_t side = 0; side < 6; ++side) {
+      const float sign = side < 3 ? -1.0f : 1.0f;
+      for (std::uint32_t i = 0; i < count; ++i) most = std::max(most, sign * block_.values[side][i]);
+    }
+    return most < kInside;
+  }
+
+  // What objects need is asked for in three steps, each when the one before has arrived.
+  void prefetch(std::size_t at) const {
+    constexpr std::size_t kLanes = 8, kChunk = 16, kObject = 32;
+    if (at + kObject >= handles_.size()) return;
+    hwy::Prefetch(&s_.objects[handles_[at + kObject].index]);
+    map_->prefetch_chunk(handles_[at + kChunk].index);
+    map_->prefetch_lanes(handles_[at + kLanes].index, moving_.many);
+  }
+
+  void move_one(std::uint32_t i, bool inside) {
+    const ObjectId id = ids_[i];
+    if (!inside || s_.objects[id].sector != sector_) return move_anywhere(id, boxes_[first_ + i]);
+    const auto& v = block_.values;
+    map_->move_loosely(id, {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}}, moving_);
+    expect_next(id);
+  }
+
+  void expect_next(ObjectId id) {
+    const ChunkMap::Location& at = map_->location(id);
+    run_chunk_ = map_->is_mover(id) ? at.chunk : ChunkMap::kNone;
+    run_slot_ = at.slot() + 1u;
+  }
+
+  void move_anywhere(ObjectId id, const WorldBox& box) {
+    const SectorCell cell = sector_cell(box);
+    const std::uint32_t from = s_.objects[id].sector;
+    const WorldPoint& origin = s_.sectors[from].origin;
+    s_.touch(from);
+    run_chunk_ = ChunkMap::kNone;
+    if (static_cast<double>(cell.x) * kSectorSide == origin.x &&
+        static_cast<double>(cell.y) * kSectorSide == origin.y &&
+        static_cast<double>(cell.z) * kSectorSide == origin.z)
+      return s_.sectors[from].map->move_loosely(id, geometry::relative_box(box, origin), moving_);
+    const std::uint32_t to = s_.sector_at(cell);
+    s_.touch(to);
+    s_.sectors[from].map->remove(id);
+    s_.sectors[to].map->insert_moving(id, geometry::relative_box(box, s_.sectors[to].origin));
+    s_.objects[id].sector = to;
+    map_ = s_.sectors[sector_].map.get();
+  }
+
+  WorldState& s_;
+  const Strided<const Handle>& handles_;
+  const BoxView& boxes_;
+  Moving& moving_;
+  static constexpr std::size_t kPastCache = 400'000;  // boxes of 24 bytes
+  bool past_cache_;
+  std::size_t first_ = 0;
+  // A run that ends at once was not worth looking for: then some objects are moved one by one.
+  static constexpr std::uint32_t kWorthARun = 4, kFruitless = 16;
+  std::uint32_t patience_ = 0;
+  std::uint32_t sector_ = ChunkMap::kNone;
+  ChunkMap* map_ = nullptr;
+  // Where the next object stands if they are listed as they stand.
+  std::uint32_t run_chunk_ = ChunkMap::kNone, run_slot_ = 0;
+  std::array<ObjectId, kBlock> ids_;
+  geometry::BoxBlock block_;
+};
+
+}  // namespace
+
+bool WorldState::begin_frame() {
+  if (!culled.load(std::memory_order_relaxed)) return false;
+  culled.store(false, std::memory_order_relaxed);
+  ++tick;
+  return true;
+}
+
+void WorldState::let_rest() {
+  // Of many sectors, some a frame.
+  for (std::size_t left = std::min(awake.size(), kFewestAtRest + awake.size() / 16); left > 0; --left) {
+    if (awake_hand >= awake.size()) awake_hand = 0;
+    Sector& sector = sectors[awake[awake_hand]];
+    if (sector.map && sector.map->restless()) {
+      touch(awake[awake_hand++]);
+      sector.map->rest();
+      continue;
+    }
+    sector.awake = false;
+    awake[awake_hand] = awake.back();
+    awake.pop_back();
+  }
+}
+
+void WorldState::move(const Strided<const Handle>& handles, const BoxView& boxes) {
+  const bool new_frame = begin_frame();
+  constexpr std::size_t kManyOf = 16, kOftenOf = 64;
+  const std::size_t count = boxes.size();
+  Moving moving{tick, kManyOf * count >= size, allowance};
+  moving.allowance += static_cast<std::uint32_t>(count / kOftenOf);
+  if (new_frame) moving.allowance = static_cast<std::uint32_t>(count / kOftenOf) + kFewestAtRest;
+  BlockMover mover(*this, handles, boxes, moving);
+  for (std::size_t first = 0; first < count; first += kBlock) mover.move(first);
+  hwy::FlushStream();  // what went past the cache is there before anybody on another thread is told to look
+  allowance = moving.allowance;
+  for (const std::uint32_t t : touched) {
+    Sector& sector = sectors[t];
+    sector.map->flush();
+    if (sector.awake || !sector.map->restless()) continue;
+    sector.awake = true;
+    awake.push_back(t);
+  }
+  if (new_frame) let_rest();
+  tidy(false);
+}
+
+}  // namespace sightline::world

@@ -1,0 +1,187 @@
+// What moves: right whatever it does, in the order of its history alone, and settled when it rests.
+#include <sightline/world.hpp>
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "library/world/world_state.hpp"
+#include "support/random_views.hpp"
+#include "support/world_twin.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+using test::wide;
+
+std::size_t movers_of(const World& world) {
+  std::size_t count = 0;
+  for (const world::Sector& sector : WorldAccess::state(world).sectors)
+    count += sector.map ? sector.map->movers() : 0;
+  return count;
+}
+
+void expect_sound(const World& world) {
+  for (const world::Sector& sector : WorldAccess::state(world).sectors) {
+    if (!sector.map) continue;
+    const Status sound = sector.map->check();
+    ASSERT_TRUE(sound) << sound.message() << " " << sound.index();
+  }
+}
+
+constexpr Box kOneSector{{-1000, -50, -1000}, {1000, 50, 1000}},
+    kTwoSectors{{-1000, -50, -1000}, {1800, 50, 1000}};
+
+// A world and what stands in it, frame by frame.
+class Crowd {
+public:
+  Crowd(std::uint32_t seed, const Box& around) : random_(seed), around_(around) {}
+
+  void insert(std::size_t count) {
+    std::vector<WorldBox> boxes;
+    for (std::size_t i = 0; i < count; ++i) boxes.push_back(wide(test::random_box(random_, around_)));
+    std::vector<Handle> handles(count);
+    ASSERT_TRUE(world_.insert(boxes, handles));
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_TRUE(twin_.emplace(handles[i].index, boxes[i]).second);
+      standing_.push_back(handles[i]);
+    }
+  }
+
+  // Those from first on, in the order in which they stand in the list.
+  void move(std::size_t first, std::size_t count, float by) {
+    std::vector<Handle> handles;
+    std::vector<Box> boxes;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Handle handle = standing_[i % standing_.size()];
+      const WorldBox& old = twin_[handle.index];
+      const auto x = static_cast<float>(old.min.x), y = static_cast<float>(old.min.y),
+                 z = static_cast<float>(old.min.z);
+      const Vec3 at = by > 0 ? Vec3{x + random_.between(-by, by), y, z + random_.between(-by, by)}
+                             : random_.inside(around_);
+      const auto side = [](double low, double high) { return static_cast<float>(high - low); };
+      boxes.push_back({at,
+                       {at.x + side(old.min.x, old.max.x), at.y + side(old.min.y, old.max.y),
+                        at.z + side(old.min.z, old.max.z)}});
+      handles.push_back(handle);
+    }
+    ASSERT_TRUE(world_.move(handles, BoxView(boxes)));
+    for (std::size_t i = 0; i < handles.size(); ++i) twin_[handles[i].index] = wide(boxes[i]);
+  }
+
+  void remove(std::size_t count) {
+    std::vector<Handle> handles;
+    for (; count > 0 && !standing_.empty(); --count) {
+      std::swap(standing_[random_.below(static_cast<std::uint32_t>(standing_.size()))], standing_.back());
+      handles.push_back(standing_.back());
+      twin_.erase(standing_.back().index);
+      standing_.pop_back();
+    }
+    ASSERT_TRUE(world_.remove(handles));
+  }
+
+  void expect_right() {
+    std::vector<WorldView> views;
+    for (std::size_t v = 1 + random_.below(3); v > 0; --v)
+      views.push_back({test::random_view(random_, around_), {}});
+    test::expect_right(world_, culler_, twin_, views, 0.02);
+  }
+
+  void cull() {
+    std::vector<ObjectId> visible(cull_capacity(world_));
+    (void)test::cull(culler_, world_, test::cull_views(std::array{WorldView{*make_view({}, 64, 64), {}}}),
+                     visible);
+  }
+
+  [[nodiscard]] const World& world() const { return world_; }
+  [[nodiscard]] std::size_t size() const { return standing_.size(); }
+  Random& random() { return random_; }
+
+private:
+  Random random_;
+  Box around_;
+  World world_;
+  Culler culler_;
+  std::map<ObjectId, WorldBox> twin_;
+  std::vector<Handle> standing_;
+};
+
+TEST(Movers, EqualBruteForceAfterTenThousandRandomOperations) {
+  Crowd crowd(31, kTwoSectors);
+  crowd.insert(4000);
+  std::size_t most = 0;
+  for (int step = 0; step < 10000; ++step) {
+    const std::uint32_t dice = crowd.random().below(100);
+    if (dice < 50) {
+      crowd.move(0, 40, 1);  // the same again and again
+    } else if (dice < 70) {
+      crowd.move(crowd.random().below(4000), 1 + crowd.random().below(30), 1);
+    } else if (dice < 80) {
+      crowd.move(crowd.random().below(4000), 1 + crowd.random().below(30), 0);
+    } else if (dice < 81) {
+      crowd.move(crowd.random().below(4000), crowd.size() / 2, step % 3 == 0 ? 0.0f : 2.0f);
+    } else if (dice < 90) {
+      crowd.insert(1 + crowd.random().below(9));
+    } else {
+      crowd.remove(1 + crowd.random().below(9));
+    }
+    most = std::max(most, movers_of(crowd.world()));
+    if (step % 4 == 0) crowd.cull();  // frames end
+    if (step % 100 == 99) {
+      expect_sound(crowd.world());
+      crowd.expect_right();
+    }
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(most, 1000u);
+}
+
+// All settle when nobody moves, a part a frame, and a world that is given up leaves nothing behind.
+TEST(Movers, SettleWhenTheyRest) {
+  Crowd crowd(32, kOneSector);
+  crowd.insert(6000);
+  EXPECT_EQ(movers_of(crowd.world()), 0u);
+  for (int frame = 0; frame < 5; ++frame) {
+    crowd.move(0, 3000, 1);
+    crowd.cull();
+  }
+  EXPECT_EQ(movers_of(crowd.world()), 3000u);
+  std::size_t before = 3000;
+  for (int frame = 0; frame < 1000; ++frame) {
+    crowd.move(0, 100, 1);
+    crowd.cull();
+    const std::size_t now = movers_of(crowd.world());
+    ASSERT_GE(now + 64 + before / 64, before) << "too much in one frame";
+    before = now;
+  }
+  EXPECT_EQ(before, 100u);
+  expect_sound(crowd.world());
+  crowd.expect_right();
+  for (int frame = 0; frame < 600; ++frame) {
+    crowd.move(0, 0, 1);
+    crowd.cull();
+  }
+  EXPECT_EQ(movers_of(crowd.world()), 0u);
+  EXPECT_TRUE(WorldAccess::state(crowd.world()).awake.empty());
+  expect_sound(crowd.world());
+  crowd.remove(crowd.size());
+  EXPECT_TRUE(WorldAccess::state(crowd.world()).sector_of_cell.empty());
+}
+
+// What moves a little stays where it stands: chunks are not searched again.
+TEST(Movers, SmallMovesStayInTheirChunk) {
+  Crowd crowd(33, kOneSector);
+  crowd.insert(20000);
+  for (int frame = 0; frame < 40; ++frame) {
+    crowd.move(static_cast<std::size_t>(frame) * 500, 500, 0.2f);
+    crowd.cull();
+  }
+  EXPECT_LT(movers_of(crowd.world()), 1000u);
+  expect_sound(crowd.world());
+  crowd.expect_right();
+}
+
+}  // namespace
+}  // namespace sightline
