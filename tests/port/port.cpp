@@ -264,8 +264,8 @@ void answer_rays(const std::vector<NamedView>& views, Answers& out) {
   }
   grid.rays.resize(grid.prepared.size());
   rays::cast_wide(tree, grid, stack, hits);
-  print("rays.objects.anywhere", hits.object);
-  print("rays.distances.anywhere", hits.distance);
+  out.add_all("rays.objects.anywhere", hits.object);
+  out.add_all("rays.distances.anywhere", hits.distance);
 }
 
 }  // namespace
