@@ -5,6 +5,7 @@
   ```cpp, ```c, ```python   a program, or the body of one's main(); it must end with 0
   ```cpp continues          goes on where the block of its language above it ends, and sees all that it sees
   ```cmake                  configures, with its targets as programs of their own
+  ```js                     a module that Node can read; the npm package's own tests run such
   ```sh                     scripts, presets, targets, and the commands and options of `sightline` are there
   ```sh run                 is run besides, in the folder that the page's programs then run in
   ```                       anything else"""
@@ -20,7 +21,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.M | re.S)
 LINK = re.compile(r"(!?)\[(?:[^][]|\[[^]]*\])*\]\(([^)\s]+)\)")
-FOLDERS = "apps|benchmarks|bindings|cmake|docs|examples|fuzz|include|library|scripts|tests|workbench"
+FOLDERS = "apps|benchmarks|bindings|cmake|docs|examples|fuzz|include|library|scripts|tests|web|workbench"
 PATH = re.compile(rf"`((?:{FOLDERS})/[\w./-]*|[\w-]+\.(?:sh|md))`")
 PROGRAMS = {"cpp": ["g++", "-std=c++20"], "c": ["cc", "-std=c99", "-pedantic"]}
 
@@ -96,8 +97,12 @@ class Checker:
                 self.check_shell(page, line, text)
                 if words == ["run"]:
                     self.expect(page, line, ["bash", "-euo", "pipefail", "-c", text], folder)
+            elif language == "js":
+                module = folder / f"{line}.mjs"
+                module.write_text(text, encoding="utf-8")
+                self.expect(page, line, ["node", "--check", module], folder)
             elif language not in ("cpp", "c", "python", "cmake", ""):
-                page.complain(line, f"expected a block of cpp, c, python, cmake, sh or nothing, not '{language}'")
+                page.complain(line, f"expected a block of cpp, c, python, cmake, js, sh or nothing, not '{language}'")
         for language in ("cpp", "c", "python"):
             for line, parts in programs(page, language, blocks):
                 self.check_program(page, line, language, parts, folder)

@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t kFewEdges = 256, kMostOfTriangles = 8;  // 1 in 8: more is more hole than surface
 
-using OpenEdge = std::pair<std::uint32_t, std::uint32_t>;
+using RimEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 // Edges that the part's triangles use more often one way than the other, so often, that way round.
-std::vector<OpenEdge> open_edges(const MeshParts& mesh, const MeshPart& part) {
+std::vector<RimEdge> rim_edges(const MeshParts& mesh, const MeshPart& part) {
   struct Use {
     std::uint64_t ends;
     int turn;
@@ -28,7 +28,7 @@ std::vector<OpenEdge> open_edges(const MeshParts& mesh, const MeshPart& part) {
     }
   }
   std::ranges::sort(uses, {}, &Use::ends);
-  std::vector<OpenEdge> out;
+  std::vector<RimEdge> out;
   for (std::size_t i = 0; i < uses.size();) {
     const std::uint64_t ends = uses[i].ends;
     int turns = 0;
@@ -43,7 +43,7 @@ std::vector<OpenEdge> open_edges(const MeshParts& mesh, const MeshPart& part) {
 }  // namespace
 
 Lid lid_of(const MeshParts& mesh, const MeshPart& part) {
-  const std::vector<OpenEdge> edges = open_edges(mesh, part);
+  const std::vector<RimEdge> edges = rim_edges(mesh, part);
   if (edges.size() > std::max(kFewEdges, part.triangles.size() / kMostOfTriangles)) return {};
   std::vector<std::uint32_t> vertices;
   for (const auto& [a, b] : edges) vertices.insert(vertices.end(), {a, b});

@@ -14,7 +14,7 @@ using namespace geometry;
 
 namespace {
 
-constexpr std::uint32_t kNone = OccluderTopology::kNone;
+constexpr std::uint32_t kNoNeighbour = OccluderTopology::kNone;
 // Of the coordinates: differences and products of floats are all but exact in double precision.
 constexpr double kOnLine = 1e-12;
 // So many edges along one line are looked at to either side of one. What is missed is drawn inset.
@@ -51,7 +51,7 @@ std::vector<OpenEdge> open_edges(const OccluderTopology& mesh, double reach) {
   std::vector<OpenEdge> out;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (mesh.neighbours[t][k] != kNone) continue;
+      if (mesh.neighbours[t][k] != kNoNeighbour) continue;
       const glm::dvec3 a = to_double(mesh.positions[mesh.triangles[t][k]]),
                        b = to_double(mesh.positions[mesh.triangles[t][(k + 1) % 3]]);
       glm::dvec3 direction;
