@@ -67,15 +67,15 @@ int run_occluders(const OccludersCall& call) {
   Scene scene = load_scene(call.scene);
   set_raster_state(scene, call.faces);
   const auto occluders = measure::make_occluders(scene, call.options, progress("meshes"));
-  if (occluders.size() <= kMostRows) {
-    for (const measure::MadeOccluder& made : occluders) print_row(made);
-  }
-  print_sum(occluders);
   if (!call.output.empty()) {
     const Scene made = measure::occluder_scene(scene, occluders);
     if (made.empty()) throw Error(call.scene + ": nothing occludes, so there is nothing to write");
     write_glb(made, call.output);
   }
+  if (occluders.size() <= kMostRows) {
+    for (const measure::MadeOccluder& made : occluders) print_row(made);
+  }
+  print_sum(occluders);
   return call.views == 0 || examine_all(scene, occluders, call) ? Exit::done : Exit::check_failed;
 }
 

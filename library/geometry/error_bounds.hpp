@@ -119,10 +119,9 @@ inline constexpr float kFacePart = 1e-5f, kFaceDistance = 1e-6f, kFaceSine = 1e-
 // --- the near plane ---
 
 /// How far before it the prepared near plane lies, by the eye's distance from the plane and from the origin,
-/// so that nothing is drawn that the plane cuts off: the plane was rounded outwards by 8 u, and evaluating it
-/// loses 7 u of what reaches about as far as the plane does. Needs 0.2 of eyes no farther from the origin
-/// than from the plane. Not enough where the eye is more than some 20 times as far from the view's origin,
-/// for those 8 u are of that distance: a plane up to 8 u of it behind the true one is what such a view gets.
+/// so that nothing is drawn that the plane cuts off: rounding its row and evaluating it about the eye loses
+/// 9 u of what reaches about as far as the plane does, and double precision next to nothing of the eye. Needs
+/// 0.08.
 inline double near_plane_slack(double at_eye, double eye) noexcept {
   return 1e-5 * (std::fabs(at_eye) + 1e-3 * eye + 1e-3);
 }

@@ -29,14 +29,23 @@ Reach reach_of(const glm::dmat4& rows) {
   return {glm::abs(eye), glm::abs(inverse[0]) + glm::abs(inverse[1]) + glm::abs(inverse[2]), rows[3]};
 }
 
+bool is_at_infinity(const glm::dvec4& plane) {
+  const double length = glm::length(glm::dvec3(plane));
+  return !(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0;
+}
+
+// Whether z >= 0, of 0 <= z <= w, is the near plane's half space: not with reversed depth.
+bool low_is_front(const glm::dmat4& rows, const Vec3& forward) {
+  return !is_at_infinity(rows[2]) && glm::dot(glm::dvec3(rows[2]), to_double(forward)) > 0;
+}
+
 // A plane a·x + b·y + c·z + d >= 0 in double precision, normalised, rounded, and moved outwards by
 // `rounding`, what rounding the coefficients and evaluating signed_distance() within reach can lose: turned a
 // little, where reach grows with w.
 Plane round_outwards(const glm::dvec4& plane, const Reach& reach, double rounding) {
   constexpr Plane at_infinity{{0, 0, 0}, std::numeric_limits<float>::max()};  // never rejects
-  const double length = glm::length(glm::dvec3(plane));
-  if (!(length > kPlaneAtInfinity * std::fabs(plane.w)) || length == 0) return at_infinity;
-  const glm::dvec4 unit = plane / length;
+  if (is_at_infinity(plane)) return at_infinity;
+  const glm::dvec4 unit = plane / glm::length(glm::dvec3(plane));
   const glm::dvec3 size = glm::abs(glm::dvec3(unit));
   const double least = glm::dot(size, reach.at_eye) + std::fabs(unit.w);
   if (SIGHTLINE_MUTANT(planes_not_moved_outwards))
@@ -55,13 +64,9 @@ Frustum frustum_within(const glm::dmat4& rows, const Vec3& forward, const Reach&
   frustum.planes[Frustum::bottom] = round_outwards(rows[3] + rows[1], reach, rounding);
   frustum.planes[Frustum::top] = round_outwards(rows[3] - rows[1], reach, rounding);
   // 0 <= z <= w: with reversed depth the first of these is the far plane, and the half spaces are the same.
-  const Plane z_low = round_outwards(rows[2], reach, rounding);
-  const Plane z_high = round_outwards(rows[3] - rows[2], reach, rounding);
-  const Vec3& n = z_low.normal;
-  const bool has_low = n.x != 0 || n.y != 0 || n.z != 0;
-  const bool low_is_front = has_low && n.x * forward.x + n.y * forward.y + n.z * forward.z > 0;
-  frustum.planes[Frustum::front] = low_is_front ? z_low : z_high;
-  frustum.planes[Frustum::back] = low_is_front ? z_high : z_low;
+  const bool low = low_is_front(rows, forward);
+  frustum.planes[low ? Frustum::front : Frustum::back] = round_outwards(rows[2], reach, rounding);
+  frustum.planes[low ? Frustum::back : Frustum::front] = round_outwards(rows[3] - rows[2], reach, rounding);
   return frustum;
 }
 
@@ -77,8 +82,10 @@ Frustum geometry::frustum_of(const glm::dmat4& clip, const Vec3& forward, const 
   return frustum_within(glm::transpose(clip), forward, {to_double(largest(extent))});
 }
 
-Plane geometry::near_plane(const View& view) noexcept {
-  return frustum_within(clip_rows(view), view_direction(view), {glm::dvec3(0)}).planes[Frustum::front];
+glm::dvec4 geometry::near_plane(const View& view) noexcept {
+  const glm::dmat4 rows = clip_rows(view);
+  const glm::dvec4 plane = low_is_front(rows, view_direction(view)) ? rows[2] : rows[3] - rows[2];
+  return is_at_infinity(plane) ? glm::dvec4(0) : plane / glm::length(glm::dvec3(plane));
 }
 
 Plane geometry::far_plane_within(const View& view) noexcept {

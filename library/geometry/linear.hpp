@@ -87,8 +87,9 @@ inline Vec3 largest(const Box& box) noexcept {
 /// make_frustum for any matrix to clip space, still in double precision, and for what lies within `extent`
 /// alone; `forward` tells front from back.
 Frustum frustum_of(const glm::dmat4& clip, const Vec3& forward, const Box& extent) noexcept;
-/// The front plane rounded where it stands, without what evaluating it elsewhere loses.
-Plane near_plane(const View& view) noexcept;
+/// The front plane as the matrices have it, in double precision: (normal, distance), >= 0 before the eye; 0
+/// where there is none.
+glm::dvec4 near_plane(const View& view) noexcept;
 /// A plane a little before the far one: a point that signed_distance() says is on its inner side is within
 /// the frustum. Its normal is 0 where there is no far plane.
 Plane far_plane_within(const View& view) noexcept;

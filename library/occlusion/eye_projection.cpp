@@ -79,10 +79,10 @@ PixelRays pixel_rays(const View& view) noexcept {
   }
   const double turn = glm::determinant(glm::dmat3(rows.x, rows.y, last));
   out.turns_right = turn * scale < 0;
-  const Plane front = geometry::near_plane(view);
-  const glm::dvec3 normal(front.normal.x, front.normal.y, front.normal.z);
+  const glm::dvec4 front = geometry::near_plane(view);
+  const glm::dvec3 normal(front);
   if (glm::length(normal) > 0.5) {
-    const double at_eye = glm::dot(normal, rows.eye) + front.distance;
+    const double at_eye = glm::dot(normal, rows.eye) + front.w;
     // A little behind the plane: what is cut off must not be drawn.
     const double safe = near_plane_slack(at_eye, glm::length(rows.eye));
     out.near_plane = to_vec4(normal, at_eye - safe);

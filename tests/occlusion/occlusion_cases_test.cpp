@@ -128,6 +128,25 @@ TEST(OcclusionCases, BeforeALongThinTriangleThatTheNearPlaneCuts) {
       {{0.337599933f, -0.0370386653f, -0.530917764f}, {0.337601006f, -0.0370376036f, -0.530912459f}}));
 }
 
+TEST(OcclusionCases, BehindWhatTheNearPlaneCutsOffFarFromTheOrigin) {
+  // A wall 50 µm nearer than the near plane, or 1 mm farther, seen from 231 m away from the origin.
+  const std::array<std::uint32_t, 6> indices{0, 1, 2, 0, 2, 3};
+  const Camera camera{.eye = {2.5f, 1.5f, 231.5f}, .forward = {0, 0, -1}, .near_plane = 0.0128f};
+  for (const Depth depth : {Depth::standard, Depth::reversed}) {
+    Camera here = camera;
+    here.depth = depth;
+    for (const float farther : {-5e-5f, 1e-3f}) {
+      const float z = 231.5f - (camera.near_plane + farther);
+      const std::array<Vec3, 4> wall{Vec3{1.5f, 0.5f, z}, Vec3{3.5f, 0.5f, z}, Vec3{3.5f, 2.5f, z},
+                                     Vec3{1.5f, 2.5f, z}};
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({*make_view(here, 160, 120), {}}));
+      ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(wall, indices)));
+      EXPECT_EQ(buffer.may_see(Box{{2, 1, 225}, {3, 2, 226}}), farther < 0) << farther;
+    }
+  }
+}
+
 TEST(OcclusionCases, BesideTheTipOfAFanWhoseFarCornersLieBeyondTheImage) {
   // The middle triangle meets the outline at the tip alone, where two seams bound it; the boxes lie 0.035 and
   // 0.002 pixels outside.

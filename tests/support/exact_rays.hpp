@@ -25,8 +25,7 @@ public:
     const glm::dmat4 to_world = glm::inverse(to_double(view.world_to_eye));
     eye_ = glm::dvec3(to_world[3]);
     forward_ = glm::normalize(-glm::dvec3(to_world[2]));
-    const Plane front = near_plane(view);
-    near_ = {front.normal.x, front.normal.y, front.normal.z, front.distance};
+    near_ = near_plane(view);
   }
 
   /// The nearest point in front of the near plane where the pixel's ray meets the box's surface;

@@ -18,15 +18,15 @@ bool has_reversed_depth(const View& view) noexcept {
 namespace {
 
 // How far one plane may lie before another within `extent`: of a linear function the farthest corner's.
-float most_between(const Plane& before, const Plane& behind, const Box& extent) {
-  const auto most = [](float a, float b, float low, float high) {
-    const double slope = double{a} - double{b};
+float most_between(const Plane& before, const glm::dvec4& behind, const Box& extent) {
+  const auto most = [](float a, double b, float low, float high) {
+    const double slope = double{a} - b;
     return slope * double{slope >= 0 ? high : low};
   };
-  return static_cast<float>(most(before.normal.x, behind.normal.x, extent.min.x, extent.max.x) +
-                            most(before.normal.y, behind.normal.y, extent.min.y, extent.max.y) +
-                            most(before.normal.z, behind.normal.z, extent.min.z, extent.max.z) +
-                            (double{before.distance} - double{behind.distance}));
+  return static_cast<float>(most(before.normal.x, behind.x, extent.min.x, extent.max.x) +
+                            most(before.normal.y, behind.y, extent.min.y, extent.max.y) +
+                            most(before.normal.z, behind.z, extent.min.z, extent.max.z) +
+                            (double{before.distance} - behind.w));
 }
 
 // Where near and far lie far apart, depth rounds to its end long before the far plane, or long after it: 2 km
@@ -72,7 +72,8 @@ shared::ViewData view_data(const View& view, const Box& extent) noexcept {
     out.planes[i] = {plane.normal.x, plane.normal.y, plane.normal.z, plane.distance};
   }
   out.far_end = far_end(view);
-  out.near_push = 1.01f * most_between(frustum.planes[Frustum::front], geometry::near_plane(view), extent);
+  if (const glm::dvec4 near = geometry::near_plane(view); near != glm::dvec4(0))
+    out.near_push = 1.01f * most_between(frustum.planes[Frustum::front], near, extent);
   const Projector projector = make_projector(view, extent);
   const Vec3 forward = view_direction(view);
   out.eye = {projector.eye.x, projector.eye.y, projector.eye.z, projector.orthographic ? 1.0f : 0.0f};
