@@ -6,7 +6,7 @@ openarena-081-maps"
 
 test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libassimp-dev libbenchmark-dev pybind11-dev python3-dev \
 python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14 git patch g++-aarch64-linux-gnu qemu-user-static lld-19 libc++-19-dev-wasm32 \
-libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc binaryen chromium"
+libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc binaryen zopfli chromium"
 # Node is often there from elsewhere, whose package stands in the way of Debian's.
 command -v node >/dev/null || test_packages+=" nodejs"
 

@@ -1,10 +1,9 @@
-// node build.mjs: builds dist/ — the two modules for WebAssembly by clang 19 and Binaryen, their bytes as strings, and the
-// TypeScript. Everything that a package needs; `npm pack` makes it.
+// node build.mjs: builds dist/ — the two modules for WebAssembly by clang 19 and Binaryen, their bytes, packed by Zopfli, as
+// strings, and the TypeScript. Everything that a package needs; `npm pack` makes it.
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { gzipSync } from 'node:zlib';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = dirname(here);
@@ -25,7 +24,7 @@ const features = ['simd', 'bulk-memory', 'sign-ext', 'mutable-globals', 'nontrap
 for (const name of ['core', 'whole']) {
   const out = join(here, 'dist', `${name}.wasm`);
   run('wasm-opt', '-O3', ...features.map((feature) => `--enable-${feature}`), `build/wasm32/web/${name}.wasm`, '-o', out);
-  const packed = gzipSync(readFileSync(out), { level: 9 }).toString('base64');
+  const packed = execFileSync('zopfli', ['--gzip', '-c', out], { maxBuffer: 1 << 24 }).toString('base64');
   writeFileSync(join(here, 'src/bytes', `${name}.ts`), `// Made by build.mjs.\nexport const bytes =\n  '${packed}';\n`);
 }
 execFileSync(process.execPath, [join(here, 'node_modules/typescript/bin/tsc'), '-p', here], { stdio: 'inherit' });
