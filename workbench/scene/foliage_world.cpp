@@ -41,6 +41,7 @@ Shape patterned_box(float across) {
   return out;
 }
 
+// One draw a statement: compilers differ in which argument of a call they compute first.
 class Garden {
 public:
   explicit Garden(const Parameters& parameters)
@@ -59,16 +60,19 @@ public:
   void add_boxes(std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const Vec3 size{random_.between(0.5f, 4), random_.between(0.5f, 5), random_.between(0.5f, 4)};
-      scene_.add_object(solid_, placed(somewhere(), size, random_turn(random_)),
-                        {Surface::opaque, random_.below(2) == 0 ? Sides::front : Sides::both});
+      const Sides sides = random_.below(2) == 0 ? Sides::front : Sides::both;
+      const Turn turn = random_turn(random_);
+      scene_.add_object(solid_, placed(somewhere(), size, turn), {Surface::opaque, sides});
     }
   }
   void add_plants(std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const float width = random_.between(1, 5), height = random_.between(1, 6);
       const auto cutoff = static_cast<std::uint8_t>(random_.below(2) == 0 ? 128 : 64);
-      scene_.add_object(plant_, placed(somewhere(), {width, height, width}, random_turn(random_)),
-                        {Surface::cut_out, some_sides(), leaves_, cutoff});
+      const Sides sides = some_sides();
+      const Turn turn = random_turn(random_);
+      scene_.add_object(plant_, placed(somewhere(), {width, height, width}, turn),
+                        {Surface::cut_out, sides, leaves_, cutoff});
     }
   }
   void add_hedges(std::uint32_t count) {
