@@ -7,7 +7,6 @@ build=$(realpath "$1")
 full=${2:-}
 cd "$(dirname "$0")/.."
 folder=$build/occlusion
-mkdir -p "$folder"
 
 scenes=('world:regular?spheres=120000&detail=0' 'world:irregular?spheres=120000&detail=0')
 ways=("--views 20")
@@ -16,16 +15,6 @@ if [ "$full" = --full ]; then
   for name in oasago2 islandctf ctf_inyard; do scenes+=("pak1-maps.pk3:maps/$name.bsp"); done
   ways=("--views 300" "--views 100 --moving 0.1")
 fi
-failed=0
-for scene in "${scenes[@]}"; do
-  for way in "${ways[@]}"; do
-    start=$SECONDS
-    if "$build/sightline" verify "$scene" --device any --methods 'hroc,hroc?leaf=boxes,ioc,ihzb' --seed 7 $way \
-        --replays "$folder" >"$folder/log" 2>&1; then
-      echo "$scene $way: nothing lost: $((SECONDS - start)) s"
-    else
-      echo "$scene $way:"; cat "$folder/log"; failed=1
-    fi
-  done
-done
-exit $failed
+methods='hroc,hroc?leaf=boxes,ioc,ihzb'
+printf '%s\n' "${scenes[@]}" |
+  scripts/verify-each.sh "$build" "$folder" "${ways[@]/#/--device any --methods $methods }"

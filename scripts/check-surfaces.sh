@@ -37,15 +37,4 @@ ways=("--views $still" "--views $moving --moving 0.1" "--views $still --device a
 [ "$full" != --full ] ||
   ways+=("--views $still --device any --methods $triangles" "--views 300 --methods $forms"
          "--views 60 --device any --methods $forms")
-failed=0
-for scene in "${scenes[@]}"; do
-  start=$SECONDS lost=0
-  for way in "${ways[@]}"; do
-    if ! "$build/sightline" verify "$scene" --seed 7 $way >"$folder/log" 2>&1; then
-      echo "$scene $way:"; cat "$folder/log"; lost=1 failed=1
-    fi
-  done
-  [ $lost = 1 ] ||
-    echo "$scene: nothing lost in $still views, nor in $moving while things move: $((SECONDS - start)) s"
-done
-exit $failed
+printf '%s\n' "${scenes[@]}" | scripts/verify-each.sh "$build" "$folder" "${ways[@]}"
