@@ -41,14 +41,11 @@ struct ResidentPush {
 
 /// What the device finds out in a frame, as in resident.h.
 struct TestData {
-  struct Asked {
-    vk::DispatchIndirectCommand groups{0, 1, 1};
-    std::uint32_t count = 0;
-  };
   std::array<vk::DrawIndirectCommand, 2> draws;
-  Asked questions, blocks;
+  vk::DispatchIndirectCommand block_groups;
+  std::uint32_t blocks;
 };
-static_assert(sizeof(TestData) == 64);
+static_assert(sizeof(TestData) == 48);
 
 struct FacesPush {
   vk::DeviceAddress boxes, state, list;
@@ -70,8 +67,6 @@ public:
                                    .depth_write = false}),
         depth_tiles_(renderer.device(), kDepthTiles),
         against_tiles_(renderer.device(), kTileTest),
-        questions_(renderer.device(), renderer.scene().size() * kQuestionSize, device::Memory::device,
-                   "what objects ask"),
         list_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "objects to test"),
         test_(renderer.device(), sizeof(TestData), device::Memory::device, "draw commands") {
     send_changes();
@@ -93,6 +88,8 @@ private:
       resident_ = device::Buffer(device, std::uint64_t{room_} * kWords * 4, device::Memory::device, "chunks");
       chunks_in_ = device::Buffer(device, std::uint64_t{room_} * kParts * 4, device::Memory::upload,
                                   "which chunks are in");
+      questions_ = device::Buffer(device, std::uint64_t{room_} * kParts * kPart * kQuestionSize,
+                                  device::Memory::device, "what objects ask");
       changed_.resize(limit);
       for (std::uint32_t chunk = 0; chunk < limit; ++chunk) changed_[chunk] = chunk;
     } else {
@@ -136,8 +133,8 @@ private:
     if (count == 0) return;
     const TestData nothing{{vk::DrawIndirectCommand{0, 1, 0, 0},
                             vk::DrawIndirectCommand{0, 1, kFaceVertices * renderer_.buffers().objects, 0}},
-                           {},
-                           {}};
+                           {0, 1, 1},
+                           0};
     frame.commands.updateBuffer<TestData>(test_.handle(), 0, nothing);
     const std::uint32_t blocks = make_room(frame.targets.depth.width(), frame.targets.depth.height());
     frame.commands.fillBuffer(blocks_.handle(), 0, std::uint64_t{4} * blocks, 0);
@@ -157,8 +154,8 @@ private:
                             frame.widest_dispatch()};
     frame.dispatch(objects_, push, count * kPart, kPart);
     // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
-    frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, blocks)});
-    frame.dispatch(against_tiles_, push, {test_, offsetof(TestData, questions)});
+    frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, block_groups)});
+    frame.dispatch(against_tiles_, push, count * kPart, kPart);
     frame.targets.depth.end_reading(frame.commands);
     frame.begin_rendering({});
     frame.bind(faces_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);

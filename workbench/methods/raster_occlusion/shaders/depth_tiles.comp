@@ -14,7 +14,7 @@ layout(local_size_x = kBlock * kBlock) in;
 void main() {
   const uint lane = gl_LocalInvocationID.x;
   const uvec2 size = tiles_in_image(), all_blocks = blocks_in_image();
-  if (workgroup() >= test.asked[kBlocks].count) return;
+  if (workgroup() >= test.blocks) return;
   const uvec2 block = unpacked(blocks.at[all_blocks.x * all_blocks.y + workgroup()]);
   const uvec2 tile = kBlock * block + uvec2(lane % kBlock, lane / kBlock);
   if (any(greaterThanEqual(tile, size))) return;

@@ -7,8 +7,9 @@ const uint kDepthTile = 4;  // pixels, the side of a tile of depth
 const uint kBlock = 8;      // tiles, the side of a block
 
 // What an object asks. Both steps must mean the very same tiles, so they are worked out once.
+const uint kNobody = 0xffffffff;
 struct Question {
-  uint object;
+  uint object;       // or kNobody
   uint first, last;  // tiles that its box touches: x | y << 16
   uint traits;       // as below
   float nearest;     // depth
@@ -23,15 +24,11 @@ layout(buffer_reference, scalar) buffer QuestionBuffer {
 struct Draw {
   uint vertex_count, instance_count, first_vertex, first_instance;  // VkDrawIndirectCommand
 };
-struct Asked {
-  uvec3 groups;  // VkDispatchIndirectCommand, laid out as invocation.h reads them
-  uint count;
-};
 layout(buffer_reference, scalar) buffer TestBuffer {
   Draw draws[2];  // boxes wholly in the picture, listed from the front; those across its edge, from the back
-  Asked asked[2];
+  uvec3 block_groups;  // VkDispatchIndirectCommand, laid out as invocation.h reads them
+  uint blocks;         // that were asked for
 };
-const uint kQuestions = 0, kBlocks = 1;  // of `asked`
 layout(buffer_reference, scalar) buffer FloatBuffer {
   float at[];
 };

@@ -15,18 +15,10 @@ const uint kMostTiles = 1024;
 // Pixels. A smaller box is cheap to rasterise, and may miss the pixel's middle next to its point.
 const float kLarge = 8;
 
-// Has one workgroup more look at what was asked.
-void add_group(uint of, uint group) {
-  if (group < widest) {
-    atomicAdd(test.asked[of].groups.x, 1);
-  } else if (group % widest == 0) {
-    atomicAdd(test.asked[of].groups.y, 1);
-  }
-}
-
-void ask(uint object, Footprint print) {
+// What to ask about the object, kNobody where it lies beside the picture.
+Question asked_of(uint object, Footprint print) {
   const vec2 image = vec2(image_size());
-  if (any(lessThan(print.high, vec2(0))) || any(greaterThan(print.low, image))) return;
+  if (any(lessThan(print.high, vec2(0))) || any(greaterThan(print.low, image))) object = kNobody;
   const uvec2 edge = tiles_in_image() - 1;
   const uvec2 first = min(uvec2(max(print.low, vec2(0))) / kDepthTile, edge);
   const uvec2 last = min(uvec2(min(print.high, image)) / kDepthTile, edge), span = last - first + 1;
@@ -35,32 +27,38 @@ void ask(uint object, Footprint print) {
   if (all(greaterThan(print.high - print.low, vec2(kLarge)))) traits |= kHasPoints;
   if (span.x * span.y <= kMostTiles) traits |= kHasTiles;
   if (print.whole) traits = 0;
-  const uint place = atomicAdd(test.asked[kQuestions].count, 1);
-  questions.at[place] = Question(object, packed(first), packed(last), traits, print.nearest);
-  if (place % kGroup == 0) add_group(kQuestions, place / kGroup);
-  if ((traits & kHasTiles) == 0) return;
-  const uvec2 size = blocks_in_image();
+  return Question(object, packed(first), packed(last), traits, print.nearest);
+}
+
+// Has the blocks made whose tiles are asked for.
+void ask_for_blocks(Question asked) {
+  if (asked.object == kNobody || (asked.traits & kHasTiles) == 0) return;
+  const uvec2 size = blocks_in_image(), first = unpacked(asked.first), last = unpacked(asked.last);
   for (uint y = first.y / kBlock; y <= last.y / kBlock; ++y) {
     for (uint x = first.x / kBlock; x <= last.x / kBlock; ++x) {
-      if (atomicExchange(blocks.at[y * size.x + x], 1) != 0) continue;
-      const uint block = atomicAdd(test.asked[kBlocks].count, 1);
+      // Looking first spares most of the atomic exchanges, which llvmpipe does one lane after another.
+      if (blocks.at[y * size.x + x] != 0 || atomicExchange(blocks.at[y * size.x + x], 1) != 0) continue;
+      const uint block = atomicAdd(test.blocks, 1);
       blocks.at[size.x * size.y + block] = packed(uvec2(x, y));
-      add_group(kBlocks, block);
+      if (block < widest) {
+        atomicAdd(test.block_groups.x, 1);
+      } else if (block % widest == 0) {
+        atomicAdd(test.block_groups.y, 1);
+      }
     }
   }
 }
 
-void main() {
-  if (workgroup() >= parts_in) return;
-  const uint entry = chunks_in.at[workgroup()], part = entry & 0x7fffffff;
-  const uint chunk = kWords * (part / kParts), i = kGroup * (part % kParts) + gl_LocalInvocationID.x;
-  if (i >= chunk_objects.at[chunk]) return;
+// What is asked about object i of a part's chunk, kNobody where nothing need be.
+Question question_of(uint entry, uint chunk, uint i) {
+  const Question none = Question(kNobody, 0, 0, 0, 0);
+  if (i >= chunk_objects.at[chunk]) return none;
   const uint object = chunk_objects.at[chunk + 1 + i];
   const BoxData box = boxes.at[object];
   const vec3 centre = box.centre_radius.xyz;
   const vec3 half_extent = widened(centre, box.half_extent.xyz);
-  if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return;
-  if (!contributes(box.centre_radius, half_extent)) return;
+  if ((entry & 0x80000000) == 0 && outside(centre, half_extent)) return none;
+  if (!contributes(box.centre_radius, half_extent)) return none;
   const uint before = state_bits(frame - 1, state.at[object]);
   const bool drawn = (before & kSeen) != 0;
   const uint bits = drawn ? kInView | kDrawnEarly : kInView;
@@ -70,6 +68,14 @@ void main() {
   const bool seen =
       SIGHTLINE_MUTANT(resident_chunk_by_frustum) ? true : rests || reaches_near_plane(centre, half_extent);
   state.at[object] = state_word(frame, seen ? bits | kSeen : bits);
-  if (seen) return;
-  ask(object, footprint(centre, half_extent));
+  return seen ? none : asked_of(object, footprint(centre, half_extent));
+}
+
+void main() {
+  if (workgroup() >= parts_in) return;
+  const uint entry = chunks_in.at[workgroup()], part = entry & 0x7fffffff;
+  const uint chunk = kWords * (part / kParts), i = kGroup * (part % kParts) + gl_LocalInvocationID.x;
+  const Question asked = question_of(entry, chunk, i);
+  questions.at[invocation()] = asked;
+  ask_for_blocks(asked);
 }
