@@ -20,8 +20,10 @@ level() { scenes+=("pak1-maps.pk3:maps/$1.bsp"); }
 level islandctf
 if [ "$full" = --full ]; then
   still=1000 moving=1000
-  scenes+=('world:regular?columns=60&rows=60&detail=1' 'world:irregular?spheres=3000&detail=1' 'world:forest?trees=3000&size=300'
-           'world:city?objects=10000' 'world:city?objects=3000&offset=1e7' 'world:foliage?offset=-1e7')
+  # Worlds that move are divided anew by a score of methods every other view, so they are no larger than that allows.
+  scenes+=('world:regular?columns=30&rows=30&detail=1' 'world:irregular?spheres=1000&size=60&detail=1'
+           'world:forest?trees=600&size=150' 'world:city?objects=3000' 'world:city?objects=3000&offset=1e7'
+           'world:foliage?offset=-1e7')
   triangles=cluster-cone,adaptive
   for structure in grid octree kd-tree; do
     triangles+=,simple-$structure,drawcall-wise-$structure,zhang-$structure
