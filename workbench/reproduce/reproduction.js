@@ -5,12 +5,14 @@ const dark = matchMedia("(prefers-color-scheme: dark)").matches;
 Chart.defaults.color = dark ? "#9aa3af" : "#5d6673";
 Chart.defaults.borderColor = dark ? "#2d333b" : "#e2e4e8";
 const palette = ["#7f8791", "#1f77c8", "#e09a22", "#2a9d6e", "#b04fc0", "#d9553f", "#18a0b0", "#8a6d3b", "#c2557f", "#5b6bd0"];
+// What is ours has one colour on the page, beside published figures or alone.
+const colour = (series, i) => palette[series.name === "ours" ? 1 : i % palette.length];
 
 for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
   const chart = JSON.parse(canvas.dataset.chart);
   const datasets = chart.series.map((series, i) => ({
     label: series.name, data: series.values,
-    borderColor: palette[i % palette.length], backgroundColor: palette[i % palette.length],
+    borderColor: colour(series, i), backgroundColor: colour(series, i),
     borderWidth: chart.bars ? 0 : 1.75, pointRadius: chart.labels.length < 15 ? 3 : 0, tension: 0.15,
   }));
   new Chart(canvas, {
