@@ -26,6 +26,7 @@ function folder_of(path,    part, header) {
   split(path, part, "/")
   if (path ~ /^examples\/method\//) return "examples/method"
   if (path ~ /^examples\//) return "examples"
+  if (path ~ /^web\/paper\//) return "web/paper"
   if (path ~ /^web\//) return "web"
   if (path ~ /^(library|workbench|apps|bindings)\//) return part[1] "/" part[2]
   header = path

@@ -4,11 +4,14 @@ run_packages="g++ cmake ninja-build ccache pkg-config libglm-dev libhwy-dev libt
 libvulkan-dev glslc mesa-vulkan-drivers libzip-dev libpng-dev libroaring-dev libzstd-dev libopenmpi-dev openmpi-bin libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libjs-chart.js \
 openarena-081-maps"
 
+# What builds the npm package and its page.
+web_build_packages="clang-19 lld-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc binaryen zopfli"
+web_packages="cmake ninja-build libglm-dev libhwy-dev $web_build_packages"
+
 test_packages="$run_packages vulkan-validationlayers libgtest-dev libgmock-dev libassimp-dev libbenchmark-dev pybind11-dev python3-dev \
-python3-numpy dpkg-dev clang-19 libclang-rt-19-dev clang-tidy-19 clang-format-14 git patch g++-aarch64-linux-gnu qemu-user-static lld-19 libc++-19-dev-wasm32 \
-libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc binaryen zopfli chromium"
+python3-numpy dpkg-dev libclang-rt-19-dev clang-tidy-19 clang-format-14 git patch g++-aarch64-linux-gnu qemu-user-static $web_build_packages chromium"
 # Node is often there from elsewhere, whose package stands in the way of Debian's.
-command -v node >/dev/null || test_packages+=" nodejs"
+command -v node >/dev/null || { test_packages+=" nodejs"; web_packages+=" nodejs"; }
 
 # What scripts/measure.sh needs: peers are other libraries.
 measure_packages="$run_packages libbenchmark-dev libbullet-dev libopenscenegraph-dev"

@@ -15,15 +15,18 @@ const manifest = JSON.parse(readFileSync(join(here, 'package.json')));
 if (manifest.version !== version) throw new Error(`package.json says ${manifest.version}, the library ${version}`);
 
 run('cmake', '--preset', 'wasm32');
-run('cmake', '--build', 'build/wasm32', '--target', 'sightline_web_core', 'sightline_web_whole');
+run('cmake', '--build', 'build/wasm32', '--target', 'sightline_web_core', 'sightline_web_whole',
+  'sightline_web_strata');
 
 rmSync(join(here, 'dist'), { recursive: true, force: true });
 mkdirSync(join(here, 'dist'));
 mkdirSync(join(here, 'src/bytes'), { recursive: true });
+mkdirSync(join(root, 'build/web/page'), { recursive: true });
 const features = ['simd', 'bulk-memory', 'sign-ext', 'mutable-globals', 'nontrapping-float-to-int'];
-for (const name of ['core', 'whole']) {
-  const out = join(here, 'dist', `${name}.wasm`);
+for (const name of ['core', 'whole', 'strata']) {
+  const out = name === 'strata' ? join(root, 'build/web/page/strata.wasm') : join(here, 'dist', `${name}.wasm`);
   run('wasm-opt', '-O3', ...features.map((feature) => `--enable-${feature}`), `build/wasm32/web/${name}.wasm`, '-o', out);
+  if (name === 'strata') continue; // the page's alone
   const packed = execFileSync('zopfli', ['--gzip', '-c', out], { maxBuffer: 1 << 24 }).toString('base64');
   writeFileSync(join(here, 'src/bytes', `${name}.ts`), `// Made by build.mjs.\nexport const bytes =\n  '${packed}';\n`);
 }

@@ -1,7 +1,7 @@
 // In the page: how long render() keeps the main thread, with and without the culler, frame by frame in turns.
 import * as THREE from 'three';
 import { ready, SightlineCuller } from 'sightline-culling/three';
-import { add, look, places, random } from '../test/browser/city.mjs';
+import { add, look, places, random } from '../scenes/city.mjs';
 
 window.time = async (kind, count, aerial, frames) => {
   await ready;

@@ -3,7 +3,7 @@ export const codes = [
   'ok', 'bad_argument', 'bad_box', 'stale_handle', 'bad_view', 'buffer_too_small', 'stale_buffer', 'bad_mesh', 'too_many',
   'bad_file',
 ] as const;
-export type Code = (typeof codes)[number] | 'not_ready' | 'unsupported' | 'disposed' | 'detached' | 'ended';
+export type Code = (typeof codes)[number] | 'not_ready' | 'unsupported' | 'disposed' | 'detached' | 'ended' | 'lost';
 
 /** A refusal: `message` is one sentence, `index` the offending element's, where one is to blame. What was refused has
  * changed nothing. */

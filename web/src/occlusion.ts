@@ -10,7 +10,7 @@ export class OccluderMesh extends Owned {
   /** Three numbers a position, in metres; three indices a triangle. `front`: only the side from which corners turn
    * counter-clockwise occludes. Some microseconds a triangle: build once. */
   constructor(positions: Input<Float32Array>, indices: Input<Uint32Array>, sides: 'both' | 'front' = 'both') {
-    super('mesh_create', 'mesh_destroy', calling((call) => {
+    super('OccluderMesh', 'mesh_create', 'mesh_destroy', calling((call) => {
       expectKind('OccluderMesh: positions', positions, Float32Array);
       expectKind('OccluderMesh: indices', indices, Uint32Array);
       if (positions.length % 3 !== 0)
@@ -32,7 +32,7 @@ const bad_mesh = 7; // the code where there is no mesh; the library's sentence s
 /** One view's depth of occluders: begin it with a view, draw occluders, ask. */
 export class OcclusionBuffer extends Owned {
   constructor() {
-    super('occlusion_create', 'occlusion_destroy');
+    super('OcclusionBuffer', 'occlusion_create', 'occlusion_destroy');
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
   begin(view: View): void {

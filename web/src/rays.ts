@@ -11,7 +11,7 @@ export const noObject = 0xffffffff;
 /** A wide tree of boxes; answers are the same to the bit as testing all. */
 export class BoxBvh extends Owned {
   constructor() {
-    super('bvh_create', 'bvh_destroy');
+    super('BoxBvh', 'bvh_create', 'bvh_destroy');
   }
   /** Takes the boxes; rays and views count from their origin. */
   build(boxes: Boxes): void {

@@ -31,7 +31,7 @@ const list = (handles: Handles): Input<Float64Array> => {
 /** A world of boxes, anywhere within 10¹¹ m of 0. A refused call changes nothing. */
 export class World extends Owned {
   constructor() {
-    super('world_create', 'world_destroy');
+    super('World', 'world_create', 'world_destroy');
   }
 
   /** Puts objects in. Returns their handles. Linear: some 0.3 µs an object. */
@@ -160,7 +160,7 @@ export class Culler extends Owned {
   readonly #result = doubles(4);
 
   constructor() {
-    super('culler_create', 'culler_destroy');
+    super('Culler', 'culler_create', 'culler_destroy');
   }
 
   /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history

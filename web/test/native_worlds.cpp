@@ -10,9 +10,12 @@
 
 #include <sightline/sightline.hpp>
 
+#include "web/test/writer.hpp"
+
 namespace {
 
 using namespace sightline;
+using web::Writer;
 
 class Random {  // splitmix64
 public:
@@ -28,28 +31,6 @@ private:
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
   }
   std::uint64_t state_;
-};
-
-class Writer {
-public:
-  explicit Writer(std::FILE* file) : file_(file) {}
-  template <class T>
-  void all(std::span<const T> values) {
-    good_ = std::fwrite(values.data(), sizeof(T), values.size(), file_) == values.size() && good_;
-  }
-  template <class T>
-  void all(const std::vector<T>& values) {
-    all(std::span(values));
-  }
-  template <class T>
-  void one(const T& value) {
-    all(std::span(&value, 1));
-  }
-  [[nodiscard]] bool good() const { return good_; }
-
-private:
-  std::FILE* file_;
-  bool good_ = true;
 };
 
 // Worlds of one kind: about the origin or far from it, narrow or over several sectors.

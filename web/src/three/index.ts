@@ -8,10 +8,11 @@
 import type { ArrayCamera, BatchedMesh, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
 import { refuse } from '../errors.js';
 import '../index.js';
+import { floats } from '../memory.js';
 import { OcclusionBuffer } from '../occlusion.js';
 import { buffer as memory, ready, supported, wasm } from '../runtime.js';
-import { clipZeroToOne } from '../views.js';
 import { Culler, type CullView } from '../world.js';
+import { eyeOf, isRigid } from './eye.js';
 import { Inventory } from './inventory.js';
 import { fill, narrow, restore, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
@@ -55,15 +56,20 @@ const restFrames = 16;
 export class SightlineCuller {
   /** Whether it culls; the scene is drawn as three draws it while it does not. */
   enabled = true;
+  /** Whether it drops what is hidden behind others. */
+  occlusion: boolean;
+  /** Culls for this camera instead of the one that draws: to look from elsewhere at what a view keeps. */
+  camera: Camera | undefined;
   readonly stats: SightlineStats = { objects: 0, drawn: 0, hidden: 0, occluders: 0 };
 
   readonly #scene: Scene;
-  readonly #options: Required<SightlineOptions>;
+  readonly #bufferWidth: number;
   readonly #frames: Frame[] = [];
   readonly #own: [PropertyDescriptor | undefined, PropertyDescriptor | undefined];
   readonly #before: BeforeRender;
   readonly #after: AfterRender;
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
+  #drawn: Eye | undefined;
   #rest = 0;
   #told = false;
 
@@ -73,20 +79,34 @@ export class SightlineCuller {
     if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
       refuse(`SightlineCuller: a bufferWidth of ${bufferWidth}, expected an integer from 16 to 4096`);
     this.#scene = scene;
-    this.#options = { occlusion, bufferWidth };
+    this.occlusion = occlusion;
+    this.#bufferWidth = bufferWidth;
     this.#own = [Object.getOwnPropertyDescriptor(scene, 'onBeforeRender'),
       Object.getOwnPropertyDescriptor(scene, 'onAfterRender')];
     this.#before = scene.onBeforeRender as never;
     this.#after = scene.onAfterRender as never;
     scene.onBeforeRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
       this.#before.call(scene, renderer, given, camera, target);
-      this.#begin(renderer, camera);
+      this.#begin(renderer, this.camera ?? camera);
     }) as never;
     scene.onAfterRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
       this.#end();
       this.#after.call(scene, renderer, given, camera, target);
     }) as never;
     ready.then(() => (this.#inside ??= this.#make()), (error: Error) => this.#tell(error));
+  }
+
+  /** The occluders' depth that the last render() drew: 1 / distance along the view at each pixel, -Infinity for none, row by row
+   * from the top. For looking at; undefined where none was drawn. */
+  readDepth(): { width: number; height: number; nearness: Float32Array } | undefined {
+    if (!this.#drawn || !this.#inside) return undefined;
+    const { width, height } = this.#drawn, out = floats(width * height);
+    try {
+      this.#inside.buffer.readNearness(out);
+      return { width, height, nearness: out.array.slice() };
+    } finally {
+      out.dispose();
+    }
   }
 
   /** Takes the culler out of the scene, which is drawn as before. */
@@ -163,14 +183,16 @@ export class SightlineCuller {
   // Slots that some of the cameras may see, ascending.
   #seen(cameras: readonly Camera[], camera: Camera, whole: boolean): Uint32Array {
     const { inventory, culler, buffer } = this.#inside!;
-    const eyes = cameras.map((each) => eyeOf(each, this.#options.bufferWidth));
+    const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
     const { count, ids, masks } = culler.cullSorted(inventory.world, eyes, inventory.slots);
     const slots = new Uint32Array(memory(), ids, count);
     Object.assign(this.stats, { hidden: 0, occluders: 0 });
-    if (!this.#options.occlusion || !whole || eyes.length > 1 || count < 64 || !isRigid(eyes[0]!)) return slots.slice();
+    this.#drawn = undefined;
+    if (!this.occlusion || !whole || eyes.length > 1 || count < 64 || !isRigid(eyes[0]!)) return slots.slice();
     if (this.#rest > 0) return --this.#rest, slots.slice();
     const inView = slots.slice(), override = this.#scene.overrideMaterial as Material | null;
     buffer.begin(eyes[0]!);
+    this.#drawn = eyes[0]!;
     this.stats.occluders = drawOccluders(buffer, inventory, eyes[0]!, camera, override, inView,
       (thing, instance) => this.#isDrawn(thing, instance));
     if (this.stats.occluders === 0) return inView;
@@ -293,23 +315,3 @@ function instancesOf(thing: Thing, main: Pass, shadows: Shadow[]): Uint32Array {
 
 const shadowsOf = ({ shadowMap }: Renderer): boolean =>
   shadowMap !== undefined && shadowMap.enabled && (shadowMap.autoUpdate || shadowMap.needsUpdate);
-
-/** A camera as the library sees it, about its own place. */
-function eyeOf(camera: Camera, width: number): Eye {
-  const m = camera.matrixWorldInverse.elements, world = camera.matrixWorld.elements;
-  const origin = [world[12]!, world[13]!, world[14]!];
-  const worldToEye = Array.from(m);
-  for (let row = 0; row < 3; ++row)
-    worldToEye[12 + row] = m[row]! * origin[0]! + m[4 + row]! * origin[1]! + m[8 + row]! * origin[2]! + m[12 + row]!;
-  const { coordinateSystem, projectionMatrix, reversedDepth } = camera as Camera & { reversedDepth?: boolean };
-  const p = projectionMatrix.elements;
-  const eyeToClip = coordinateSystem === 2001 || reversedDepth ? Array.from(p) : clipZeroToOne(p);
-  const aspect = Math.abs(p[5]! / p[0]!);
-  const height = Math.min(Math.max(Math.round(width / aspect), 1), 4096);
-  return { worldToEye, eyeToClip, origin, width, height, near: (camera as { near?: number }).near ?? 0 };
-}
-
-// Whether a metre in the world is one for the eye, as occlusion takes it to be.
-function isRigid({ worldToEye: m }: Eye): boolean {
-  return [0, 1, 2].every((row) => Math.abs(Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!) - 1) < 1e-5);
-}

@@ -12,7 +12,7 @@ const least = 0.03;
 
 // Surely draws every pixel that its triangles cover, with their depth. What a shader of one's own does is not known; a
 // mark says it: userData.occluder = true, or another geometry that lies inside.
-function isSolid(material: Material): boolean {
+export function isSolid(material: Material): boolean {
   const m = material as Material & { wireframe?: boolean; alphaMap?: unknown; displacementMap?: unknown; transmission?: number;
     isShaderMaterial?: boolean; isNodeMaterial?: boolean };
   return m.visible && !m.transparent && m.alphaTest === 0 && !m.alphaHash && m.depthWrite && m.depthTest && m.colorWrite &&
@@ -144,8 +144,7 @@ function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: num
   return true;
 }
 
-
-function determinantOf(m: ArrayLike<number>): number {
+export function determinantOf(m: ArrayLike<number>): number {
   return m[0]! * (m[5]! * m[10]! - m[9]! * m[6]!) - m[4]! * (m[1]! * m[10]! - m[9]! * m[2]!) +
     m[8]! * (m[1]! * m[6]! - m[5]! * m[2]!);
 }

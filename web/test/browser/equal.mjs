@@ -1,7 +1,7 @@
 // In the page: views with and without the culler, compared to the bit.
 import * as THREE from 'three';
 import { ready, SightlineCuller } from 'sightline-culling/three';
-import { add, look, places, random } from './city.mjs';
+import { add, look, places, random } from '../../scenes/city.mjs';
 
 THREE.ColorManagement.enabled = false;
 const width = 256, height = 144;

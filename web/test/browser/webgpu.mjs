@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { WebGPURenderer } from 'three/webgpu';
 import { ready, SightlineCuller } from 'sightline-culling/three';
-import { add, look, places, random } from './city.mjs';
+import { add, look, places, random } from '../../scenes/city.mjs';
 
 const width = 128, height = 72;
 

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
+#include <sightline/boxes.hpp>
 #include <sightline/rays.hpp>
-#include <sightline/workbench/scene.hpp>
 
 #include "library/rays/bvh.hpp"
 #include "library/rays/ray_hits.hpp"

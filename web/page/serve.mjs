@@ -1,0 +1,27 @@
+// node page/serve.mjs [PORT]: serves build/web/page at a local address, which it prints; port 0, the default, takes a free one.
+import { createReadStream, statSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { extname, join, normalize } from 'node:path';
+
+const root = new URL('../../build/web/page', import.meta.url).pathname;
+const kinds = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8', '.wasm': 'application/wasm' };
+
+/** Serves the page to this machine alone; resolves to its address, and what ends it. */
+export function serve(port = 0) {
+  const server = createServer((request, response) => {
+    const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
+    const file = join(root, path.endsWith('/') ? `${path}index.html` : path);
+    if (!file.startsWith(`${root}/`) || !statSync(file, { throwIfNoEntry: false })?.isFile()) return void response.writeHead(404).end();
+    response.setHeader('Content-Type', kinds[extname(file)] ?? 'application/octet-stream');
+    createReadStream(file).pipe(response);
+  });
+  return new Promise((resolve, reject) => {
+    server.on('error', reject);
+    server.listen(port, '127.0.0.1', () => resolve({ address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() }));
+  });
+}
+
+if (import.meta.filename === process.argv[1]) {
+  const { address } = await serve(Number(process.argv[2] ?? 0));
+  console.log(`\nThe page: ${address}\nControl-C ends it.`);
+}
