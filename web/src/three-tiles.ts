@@ -1,0 +1,197 @@
+// `sightline-culling/three-tiles`: a plug-in for NASA-AMMOS' 3DTilesRendererJS. Tiles behind others are neither refined nor
+// loaded nor drawn.
+//
+//   const plugin = new SightlineTilesPlugin();
+//   tiles.registerPlugin(plugin);
+//
+// What the last update left on the screen is drawn into a depth buffer of the screen's own pixels; a tile whose bounds nobody
+// can see through it is masked, as a region of the renderer's own LoadRegionPlugin would mask it.
+import type { BufferGeometry, Camera, Material, Mesh, Object3D } from 'three';
+import { Box3, Matrix4, Vector3 } from 'three';
+import { refuse } from './errors.js';
+import './index.js';
+import { bytes, type Block } from './memory.js';
+import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
+import { ready, supported } from './runtime.js';
+import { eyeOf, isRigid } from './three/eye.js';
+import { determinantOf, isSolid, type Eye } from './three/occluders.js';
+
+export { ready, supported };
+
+export interface SightlineTilesOptions {
+  /** Triangles drawn as occluders for each camera, nearest tiles first; 60,000. */
+  mostTriangles?: number;
+}
+
+/** What the plug-in needs of a tile and of the renderer (0.4.18 to 0.5.3). */
+interface Tile {
+  engineData: { scene: Object3D | null; boundingVolume: { getAABB(target: Box3): void; distanceToPoint(point: Vector3): number } };
+}
+interface Tiles {
+  group: Object3D & { matrixWorldInverse: Matrix4 };
+  cameras: Camera[];
+  cameraMap: Map<Camera, { width: number; height: number }>;
+  visibleTiles: Set<Tile>;
+  addEventListener(name: string, listener: () => void): void;
+  removeEventListener(name: string, listener: () => void): void;
+}
+interface ViewError { inView: boolean; error: number; distance: number }
+
+/** What hides things for one camera. */
+interface Sight { buffer: OcclusionBuffer; eye: Eye }
+
+export class SightlineTilesPlugin {
+  readonly name = 'SIGHTLINE_TILES_PLUGIN';
+  /** Whether it masks; without it tiles are as the renderer has them. */
+  enabled = true;
+  /** What the last update() did. */
+  readonly stats = { occluders: 0, triangles: 0, tested: 0, hidden: 0 };
+
+  readonly #mostTriangles: number;
+  readonly #meshes = new Map<BufferGeometry, { mesh: OccluderMesh | null; forget: () => void }>();
+  readonly #buffers: OcclusionBuffer[] = [];
+  readonly #box = new Box3();
+  readonly #numbers = new Float64Array(6);
+  #seen: Block<Uint8Array> | undefined;
+  #tiles: Tiles | undefined;
+  #sights: Sight[] = [];
+  #loaded = false;
+  #told = false;
+
+  constructor({ mostTriangles = 60_000 }: SightlineTilesOptions = {}) {
+    if (!Number.isInteger(mostTriangles) || mostTriangles < 1)
+      refuse(`SightlineTilesPlugin: ${mostTriangles} triangles, expected an integer of 1 or more`);
+    this.#mostTriangles = mostTriangles;
+    ready.then(() => (this.#loaded = true), (error: Error) => this.#tell(error));
+  }
+
+  /** Called by TilesRenderer.registerPlugin(). */
+  init(tiles: unknown): void {
+    this.#tiles = tiles as Tiles;
+    this.#tiles.addEventListener('update-before', this.#update);
+  }
+  /** Called by the renderer, too. */
+  dispose(): void {
+    this.#tiles?.removeEventListener('update-before', this.#update);
+    this.#tiles = undefined, (this.#sights = []);
+    for (const { mesh, forget } of [...this.#meshes.values()]) forget(), mesh?.dispose();
+    this.#meshes.clear();
+    for (const buffer of this.#buffers.splice(0)) buffer.dispose();
+    this.#seen?.dispose(), (this.#seen = undefined);
+  }
+
+  /** Called by the renderer for each tile that it comes to: masks those that no camera can see. */
+  calculateTileViewError(tile: unknown, target: ViewError): boolean {
+    if (this.#sights.length === 0) return false;
+    ++this.stats.tested;
+    const { group } = this.#tiles!;
+    (tile as Tile).engineData.boundingVolume.getAABB(this.#box);
+    this.#box.applyMatrix4(group.matrixWorld);
+    if (this.#box.isEmpty() || this.#sights.some((sight) => this.#maySee(sight))) return false;
+    ++this.stats.hidden;
+    target.inView = false;
+    return true;
+  }
+
+  // What cannot be asked is drawn as ever, and said once.
+  #tell(error: Error): void {
+    if (!this.#told) console.warn(`Sightline masks no tiles: ${error.message}`);
+    this.#told = true, (this.#sights = []);
+  }
+
+  #update = (): void => {
+    this.#sights = [];
+    Object.assign(this.stats, { occluders: 0, triangles: 0, tested: 0, hidden: 0 });
+    const tiles = this.#tiles;
+    if (!tiles || !this.enabled || !this.#loaded) return;
+    const sights: Sight[] = [];
+    try {
+      for (const camera of tiles.cameras) {
+        const sight = this.#draw(camera, sights.length);
+        if (!sight) return; // it may see everything
+        sights.push(sight);
+      }
+      this.#sights = sights;
+    } catch (error) {
+      this.#tell(error as Error);
+    }
+  };
+
+  #draw(camera: Camera, index: number): Sight | undefined {
+    const { cameraMap, visibleTiles, group } = this.#tiles!, width = cameraMap.get(camera)?.width ?? 0;
+    if (!(width >= 1)) return undefined;
+    const eye = eyeOf(camera, Math.min(Math.round(width), 8192), 8192);
+    if (!isRigid(eye)) return undefined;
+    const buffer = (this.#buffers[index] ??= new OcclusionBuffer());
+    buffer.begin(eye);
+    const place = new Vector3(...(eye.origin as [number, number, number])).applyMatrix4(group.matrixWorldInverse);
+    const near = [...visibleTiles].filter(({ engineData }) => engineData.scene)
+      .map((tile) => ({ scene: tile.engineData.scene!, distance: tile.engineData.boundingVolume.distanceToPoint(place) }))
+      .sort((a, b) => a.distance - b.distance);
+    let left = this.#mostTriangles;
+    for (const { scene } of near) {
+      scene.traverseVisible((object) => {
+        if (left > 0 && (object as Mesh).isMesh) left -= this.#drawMesh(buffer, eye, object as Mesh);
+      });
+      if (left <= 0) break;
+    }
+    this.stats.triangles += this.#mostTriangles - left;
+    return { buffer, eye };
+  }
+
+  // Returns its triangles, where it was drawn.
+  #drawMesh(buffer: OcclusionBuffer, eye: Eye, object: Mesh): number {
+    const { geometry, material } = object, m = object.matrixWorld.elements;
+    if (Array.isArray(material) || !isSolid(material) || determinantOf(m) <= 0) return 0;
+    const mesh = this.#meshOf(geometry, material);
+    if (!mesh) return 0;
+    const transform = Array.from(m);
+    for (let axis = 0; axis < 3; ++axis) transform[12 + axis]! -= eye.origin[axis]!;
+    buffer.drawMesh(mesh, transform);
+    ++this.stats.occluders;
+    return mesh.triangles;
+  }
+
+  // Made when a geometry is seen first, and given back with it.
+  #meshOf(geometry: BufferGeometry, material: Material): OccluderMesh | null {
+    const known = this.#meshes.get(geometry);
+    if (known) return known.mesh;
+    const forget = (): void => {
+      geometry.removeEventListener('dispose', forget);
+      this.#meshes.get(geometry)?.mesh?.dispose();
+      this.#meshes.delete(geometry);
+    };
+    geometry.addEventListener('dispose', forget);
+    let mesh: OccluderMesh | null = null;
+    const { position } = geometry.attributes, corners = geometry.index?.count ?? position?.count ?? 0;
+    const whole = geometry.drawRange.start === 0 && geometry.drawRange.count >= corners;
+    if (position && whole && corners >= 3 && corners % 3 === 0 && corners <= 3 * this.#mostTriangles && !geometry.morphAttributes.position) {
+      const points = new Float32Array(3 * position.count);
+      for (let i = 0; i < position.count; ++i) points.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
+      const indices = Uint32Array.from({ length: corners }, (_, i) => (geometry.index ? geometry.index.getX(i) : i));
+      try {
+        mesh = new OccluderMesh(points, indices, material.side === 2 ? 'both' : 'front');
+      } catch {
+        mesh = null; // not sound: it hides nothing
+      }
+    }
+    this.#meshes.set(geometry, { mesh, forget });
+    return mesh;
+  }
+
+  // The box grows by a pixel at its depth and a little, so that a surface does not hide the tile that it belongs to.
+  #maySee({ buffer, eye }: Sight): boolean {
+    const { min, max } = this.#box, seen = (this.#seen ??= bytes(1));
+    const flat = eye.eyeToClip[15] === 1, size = max.distanceTo(min);
+    let far = size;
+    for (let axis = 0; axis < 3; ++axis) far += Math.abs(min.getComponent(axis) - eye.origin[axis]!);
+    const grow = 1e-4 * size + (flat ? 1 : far) * (2 / (eye.height * Math.abs(eye.eyeToClip[5]!)));
+    for (let axis = 0; axis < 3; ++axis) {
+      this.#numbers[axis] = min.getComponent(axis) - grow;
+      this.#numbers[3 + axis] = max.getComponent(axis) + grow;
+    }
+    if (!this.#numbers.every(Number.isFinite)) return true;
+    buffer.maySee(this.#numbers, seen);
+    return seen.array[0] !== 0;
+  }
+}
