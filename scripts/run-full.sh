@@ -36,6 +36,7 @@ line ports scripts/check-ports.sh --full
 line web scripts/check-web.sh build/release --full
 line bare scripts/check-bare.sh
 line demo scripts/check-demo.sh
+line demo-web scripts/check-demo-web.sh
 
 cat $results
 exit $failed

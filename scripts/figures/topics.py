@@ -2,11 +2,12 @@
 takes minutes."""
 import dataclasses
 import re
+import tempfile
 import time
 
 from figures.programs import (BUILD, compare, google_benchmark, number, reproduced, run, sightline, table_of,
                               tables)
-from figures.results import Row, Wrong, compare_with, row_of
+from figures.results import ROOT, Row, Wrong, compare_with, read_topic, row_of
 
 LEVEL = "pak1-maps.pk3:maps/{}.bsp"
 
@@ -98,6 +99,8 @@ def rays(quick):
                  for method, cell in line["cells"].items()]
         rows += compare_with(timed, lambda name: name.split("/")[0] + "/boca")
         rows.append(Row(model, "lost-share", "%", number(loss["share"])))
+    ratios = [number(line["ratio"]) for line in table_of(said, "figure 13")]
+    rows.append(row_of("strata-4/figure-13-ratio", "×", ratios))
     for line, by_grid in zip(guided, triangles):
         scene = re.sub(r"^world:|\?model=", lambda m: "-" if m.group() == "?model=" else "", line["scene"])
         scene = re.sub(r".*/(\w+)\.bsp$", r"\1", scene)
@@ -267,6 +270,17 @@ def startup(quick):
     return rows
 
 
+def web(quick):
+    """The npm package in Node and in a browser, beside three.js, its libraries, and the same calls natively; browsers hold their
+    rows together by themselves."""
+    rows = []
+    for program, *arguments in (("bench.mjs",), ("city.mjs", "100000", "5" if quick else "9")):
+        with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+            run("node", ROOT / "web" / "bench" / program, *arguments, "--csv", file.name)
+            rows += read_topic(file.name)
+    return rows
+
+
 TOPICS = {"world": world, "movers": movers, "moving": moving, "frustum": frustum, "occlusion": occlusion, "rays": rays,
           "scenes": scenes, "surfaces": surfaces, "memory": memory, "startup": startup, "large": large, "bake": bake,
-          "draw-calls": draw_calls}
+          "draw-calls": draw_calls, "web": web}

@@ -1,17 +1,24 @@
-// node bench/bench.mjs [COUNT]: how long culling a million boxes takes in Node, of which a tenth is in view, and casting
-// 10,000 rays, beside three.js and its libraries: medians, interleaved, in one process. Answers are compared first.
+// node bench/bench.mjs [COUNT] [--csv FILE]: how long culling a million boxes takes in Node, of which a tenth is in view, and casting
+// 10,000 rays, beside three.js and its libraries, a loop by hand, and the same calls natively with SSE4: medians, interleaved, in
+// one process but for the native ones, which run between the rounds. Built before: web/build.mjs, and the targets
+// sightline_web_simd128 (preset wasm32) and sightline_web_bench (preset release).
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { InstancedMesh2 } from '@three.ez/instanced-mesh';
 import * as THREE from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
-import { BoxBvh, Culler, cullBoxes, floats, integers, ready, World } from 'sightline-culling';
+import { BoxBvh, bytes, Culler, cullBoxes, floats, integers, OcclusionBuffer, ready, World } from 'sightline-culling';
+import { writeRows } from './csv.mjs';
 
 const started = performance.now();
 await ready;
 new Culler().cull(new World(), { worldToEye: new THREE.Matrix4().elements, eyeToClip: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0,
   -0.1, 0], width: 1, height: 1 });
-console.log(`first cull after ${(performance.now() - started).toFixed(1)} ms`);
+const first = performance.now() - started;
 
-const count = Number(process.argv[2] ?? 1e6), side = 4000;
+const count = Number(process.argv.slice(2).find((word) => /^\d+$/.test(word)) ?? 1e6), side = 4000;
 let seed = 1;
 const next = () => ((seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32);
 const boxes = floats(6 * count), columns = floats(6 * count), three = [];
@@ -96,30 +103,69 @@ const castOurs = () => {
   return objects.array.reduce((hits, object) => hits + (object === 0xffffffff ? 0 : 1), 0);
 };
 
+// --- a loop by hand, in a module of its own ---
+const build = new URL('../../build', import.meta.url).pathname;
+const plain = (await WebAssembly.instantiate(readFileSync(join(build, 'wasm32/web/simd128.wasm')), {})).instance.exports;
+const heap = Math.ceil(plain.heap() / 64) * 64, planesAt = heap + 24 * count, idsAt = planesAt + 128;
+plain.memory.grow(Math.ceil((idsAt + 4 * count - plain.memory.buffer.byteLength) / 65536));
+new Float32Array(plain.memory.buffer, heap, 6 * count).set(columns.array);
+frustum.planes.forEach(({ normal, constant }, i) =>
+  new Float32Array(plain.memory.buffer, planesAt + 16 * i, 4).set([normal.x, normal.y, normal.z, constant]));
+const byHand = () => plain.cull(heap, count, planesAt, idsAt);
+
+// --- occluders ---
+const walls = 200, wall = floats(6 * walls), buffer = new OcclusionBuffer(), asked = Math.min(count, 20_000), seen = bytes(asked);
+for (let i = 0; i < walls; ++i) {
+  const x = (next() - 0.5) * 600, z = 700 - 600 * next();
+  wall.array.set([x - 8, 0, z - 8, x + 8, 30 * (0.5 + next()), z + 8], 6 * i);
+}
+const drawWalls = () => (buffer.begin(view), buffer.drawBoxes(wall), walls);
+const askBoxes = () => (buffer.maySee({ data: boxes.array.subarray(0, 6 * asked) }, seen), seen.array.reduce((a, b) => a + b, 0));
+
+// --- the same natively ---
+const native = join(build, 'release/web/sightline_web_bench');
+const folder = mkdtempSync(join(tmpdir(), 'sightline-bench-')), file = join(folder, 'input');
+writeFileSync(file, Buffer.concat([Uint32Array.of(count, walls), Float32Array.from(view.worldToEye), Float32Array.from(view.eyeToClip),
+  boxes.array, columns.array, wall.array].map((array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength))));
+const natively = {};
+function runNative() {
+  for (const line of execFileSync(native, [file], { encoding: 'utf8' }).trim().split('\n')) {
+    const [name, ms, answer] = line.split(',');
+    (natively[name] ??= []).push(Number(ms)), (answers[`native-${name}`] = Number(answer));
+  }
+}
+
 const rows = {
   'World.cull': () => culler.cull(world, view).ids.length,
-  'cullBoxes, columns': () => cullBoxes(view, { data: columns, layout: 'columns' }, out),
-  'three: Frustum.intersectsBox': three_loop,
-  'InstancedMesh2: BVH': theirs,
-  'World: move 1 % and cull': () => (move(), world.move(moved, to), culler.cull(world, view).ids.length),
-  'InstancedMesh2: move 1 % and cull': () => {
+  cullBoxes: () => cullBoxes(view, { data: columns, layout: 'columns' }, out),
+  'by-hand': byHand,
+  'three-intersectsBox': three_loop,
+  'InstancedMesh2-bvh': theirs,
+  'World-move': () => (move(), world.move(moved, to), culler.cull(world, view).ids.length),
+  'InstancedMesh2-move': () => {
     for (let k = 0; k < hundredth; ++k) place(k * 100), mesh.bvh.move(k * 100);
     return theirs();
   },
-  'BoxBvh.cast, 10,000 rays': castOurs,
-  'three-mesh-bvh: raycastFirst, 10,000 rays': castTheirs,
+  'BoxBvh.cast': castOurs,
+  'three-mesh-bvh': castTheirs,
+  occluders: drawWalls,
+  queries: askBoxes,
 };
-const times = Object.fromEntries(Object.keys(rows).map((name) => [name, []]));
-const answers = {};
-for (let round = 0; round < 12; ++round) {
+const times = Object.fromEntries(Object.keys(rows).map((name) => [name, []])), answers = {};
+const rounds = 9, warm = 3;
+for (let round = 0; round < rounds; ++round) {
+  if (existsSync(native) && round >= warm && round % 2 === 0) runNative();
   for (const [name, run] of Object.entries(rows)) {
     const start = performance.now();
     answers[name] = run();
-    if (round >= 3) times[name].push(performance.now() - start);
+    if (round >= warm) times[name].push(performance.now() - start);
   }
 }
-for (const [name, all] of Object.entries(times)) {
-  all.sort((a, b) => a - b);
-  console.log(`${name.padEnd(44)} ${all[Math.floor(all.length / 2)].toFixed(3).padStart(9)} ms ` +
-    `(${all[0].toFixed(3)} to ${all.at(-1).toFixed(3)}), ${answers[name]}`);
-}
+rmSync(folder, { recursive: true });
+
+const beside = { 'World.cull': ['native-World.cull', 'three-intersectsBox', 'InstancedMesh2-bvh'],
+  cullBoxes: ['by-hand', 'native-cullBoxes'], 'World-move': ['InstancedMesh2-move'],
+  'BoxBvh.cast': ['three-mesh-bvh'], occluders: ['native-occluders'], queries: ['native-queries'] };
+for (const [name, all] of Object.entries(natively)) times[`native-${name}`] = all;
+times['first-cull'] = [first];
+writeRows('node', times, beside, answers);

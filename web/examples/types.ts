@@ -1,5 +1,7 @@
 // What a strict TypeScript project sees.
 import { Scene } from 'three';
+import { GpuRays, RaySet, visibleSet, type GpuHits } from 'sightline-culling/webgpu';
+import { SightlineTilesPlugin } from 'sightline-culling/three-tiles';
 import { SightlineCuller, type SightlineStats } from 'sightline-culling/three';
 import { BoxBvh, Culler, integers, OcclusionBuffer, ready, SightlineError, World, type CullView } from 'sightline-culling';
 import { initialise } from 'sightline-culling/wasm';
@@ -24,3 +26,10 @@ export const later: (bytes: ArrayBuffer) => Promise<void> = initialise;
 export const threads: Promise<WorkerWorld> = WorkerWorld.start();
 export const tree: BoxBvh = new BoxBvh();
 export const stats: SightlineStats = new SightlineCuller(new Scene(), { occlusion: true }).stats;
+export async function rays(view: CullView): Promise<Uint32Array> {
+  const set = new RaySet(Float32Array.of(0, 0, 0, 1, 1, 1));
+  set.aim(view, 10, 10);
+  const hits: GpuHits = await (await GpuRays.start()).cast(set, 'saa');
+  return visibleSet(hits, set.size);
+}
+export const plugin: SightlineTilesPlugin = new SightlineTilesPlugin({ mostTriangles: 1000 });

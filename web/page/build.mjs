@@ -27,6 +27,8 @@ function figures() {
       if (!model) continue;
       native[model] ??= {};
       if (row.unit === 'ms') native[model][row.case] = Number(row.median);
+      if (row.case === 'boca') native[model].kept = Number(row.kept);
+      if (row.case === 'figure-13-ratio') native.figure13 = [Number(row.min), Number(row.max)];
       if (row.case === 'lost-share') native[model].lost_share = Number(row.median);
     }
   }

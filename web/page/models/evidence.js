@@ -100,8 +100,8 @@ export class Evidence {
     this.twelve.replaceChildren(...pictures.map((picture, i) => {
       const canvas = element('canvas', { width: picture.width, height: picture.height, role: 'img', ariaLabel: words[i] });
       canvas.getContext('2d').putImageData(picture, 0, 0);
-      return element('figure', {}, canvas, element('figcaption', {}, `Figure ${words[i]}: of model ${part.state.model} ${count(kept)} meshes are kept, in ` +
-        `colour; what is grey is culled${i === 0 ? ' though it shows' : ''}.`));
+      return element('figure', {}, canvas, element('figcaption', {}, `Figure ${words[i]}: of model ${part.state.model} ${count(kept)} meshes are kept` +
+        `${figures.native[part.state.model]?.kept ? ` (natively ${count(figures.native[part.state.model].kept)}, of more triangles or fewer)` : ''}, in colour; what is grey is culled${i === 0 ? ' though it shows' : ''}.`));
     }));
   }
 
