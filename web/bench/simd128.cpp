@@ -28,12 +28,11 @@ __attribute__((export_name("cull"))) std::size_t cull(const float* columns, std:
   std::size_t seen = 0;
   for (std::size_t i = 0; i < count; i += 4) {
     v128_t inside = wasm_i32x4_splat(-1);
-    for (int p = 0; p < 6; ++p) {
+    for (int p = 0; p < 6; ++p) {  // all of them: a branch a plane costs more than it saves
       v128_t d = coefficient[p][3];
       for (int axis = 0; axis < 3; ++axis)
         d = wasm_f32x4_add(d, wasm_f32x4_mul(coefficient[p][axis], wasm_v128_load(corner[p][axis] + i)));
       inside = wasm_v128_and(inside, wasm_f32x4_ge(d, wasm_f32x4_splat(0)));
-      if (!wasm_v128_any_true(inside)) break;
     }
     for (std::uint32_t bits = wasm_i32x4_bitmask(inside); bits != 0; bits &= bits - 1)
       ids[seen++] = static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(bits));

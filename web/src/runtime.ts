@@ -23,12 +23,13 @@ let loading: Promise<void> | undefined;
 
 async function compile(source: Source): Promise<WebAssembly.Module> {
   const given = await source;
+  if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return WebAssembly.compile(given as BufferSource);
   if (given instanceof WebAssembly.Module) return given;
   if (typeof Response !== 'undefined' && given instanceof Response) {
     if (!given.ok) refuse(`sightline: ${given.url} could not be fetched (${given.status})`);
     return WebAssembly.compile(await given.arrayBuffer());
   }
-  return WebAssembly.compile(given as BufferSource);
+  return WebAssembly.compile(given as unknown as BufferSource);
 }
 
 async function start(source: Source): Promise<void> {
@@ -83,8 +84,14 @@ export function offer(rank: number, inflate: () => Promise<BufferSource>): void 
 /** gzip in base64, as the entries carry them. */
 export async function inflate(base64: string): Promise<BufferSource> {
   const packed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return new Response(stream).arrayBuffer();
+  // Without Blob and Response, which Node takes as long to load as all the rest.
+  const { writable, readable } = new DecompressionStream('gzip'), writer = writable.getWriter(), reader = readable.getReader();
+  void writer.write(packed), void writer.close();
+  const parts: Uint8Array[] = [];
+  for (let part = await reader.read(); !part.done; part = await reader.read()) parts.push(part.value as Uint8Array);
+  const whole = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
+  parts.reduce((at, part) => (whole.set(part, at), at + part.length), 0);
+  return whole;
 }
 
 /** The module's functions. */

@@ -1,5 +1,6 @@
 // What users rely on beside right answers: clear refusals, memory that is given back, handles, the worker.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { test } from 'node:test';
 import {
   BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, noObject,
@@ -20,6 +21,16 @@ const refusal = (code, words) => (error) => {
 test('it says so before it is loaded', () => {
   assert.equal(supported, true);
   assert.throws(() => new World(), refusal('not_ready', /await ready/));
+});
+
+test('without SIMD it says so, and never loads', () => {
+  const said = execFileSync(process.execPath, ['--input-type=module', '-e', `
+    WebAssembly.validate = () => false;
+    const { ready, supported, World } = await import('sightline-culling');
+    const code = (error) => error.code + ': ' + error.message;
+    console.log(supported, await ready.catch(code));
+    try { new World(); } catch (error) { console.log(code(error)); }`], { encoding: 'utf8', cwd: new URL('..', import.meta.url).pathname });
+  assert.match(said, /^false unsupported: .*no WebAssembly with SIMD.*draw without culling\nunsupported: .*draw without culling\n$/);
 });
 
 test('objects in view are seen, in all layouts', async () => {

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { bytes } from 'sightline-culling';
 import { cpuMethods, GpuRays, noObject, RaySet, ready, visibleSet } from 'sightline-culling/webgpu';
 import { Models } from '../page/models/models.js';
 import { withPage } from './browser/chromium.mjs';
@@ -10,7 +11,7 @@ import { differing, read, side } from './rays-file.mjs';
 
 const file = new URL('../../build/web/rays.bin', import.meta.url).pathname;
 const triangles = Number(process.env.SIGHTLINE_RAY_TRIANGLES ?? 0);
-const bytes = () => {
+const natively = () => {
   const read = readFileSync(file);
   return read.buffer.slice(read.byteOffset, read.byteOffset + read.byteLength);
 };
@@ -18,7 +19,7 @@ const bytes = () => {
 test('toca, boca and wide-rays meet what they meet natively', async () => {
   await ready;
   let models = 0;
-  for (const { model, boxes, views } of read(bytes())) {
+  for (const { model, boxes, views } of read(natively())) {
     const set = new RaySet(boxes);
     assert.equal(set.nodes.length, 32 * (2 * set.size - 1));
     for (const [v, expected] of views.entries()) {
@@ -37,7 +38,7 @@ test('toca, boca and wide-rays meet what they meet natively', async () => {
 
 test("the page's models are the native ones", async () => {
   const models = await Models.start(readFileSync(new URL('../../build/web/page/strata.wasm', import.meta.url)));
-  for (const { model, boxes } of read(bytes())) {
+  for (const { model, boxes } of read(natively())) {
     const plan = models.plan(model, triangles || undefined);
     for (let piece = 0; piece < plan.count; ++piece) models.make(piece);
     assert.deepEqual(models.centre().boxes, boxes, `model ${model}`);
@@ -63,6 +64,23 @@ test('iwcpa, bvha and saa on the GPU meet what they meet natively', async () => 
     assert.match(said.unknown, /^bad_argument: cast: a method of sah/);
     assert.match(said.none, /^unsupported: sightline: WebGPU has no adapter here/);
   }, { '/rays.bin': file });
+});
+
+test('1,000 rounds of rays leak nothing', async () => {
+  await ready;
+  const boxes = Float32Array.from({ length: 6 * 300 }, (_, i) => (i % 6 < 3 ? 0 : 1) + Math.floor(i / 6) % 17 - 9);
+  const view = { worldToEye: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+    eyeToClip: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.001, -1, 0, 0, -0.1001, 0], width: 64, height: 64 };
+  const round = () => {
+    const set = new RaySet(boxes);
+    set.aim(view, 8, 8), cpuMethods.forEach((method) => set.cast(method)), set.collect();
+    assert.throws(() => set.update(new Float32Array(5)));
+    set.dispose();
+  };
+  for (let i = 0; i < 20; ++i) round();
+  const probe = bytes(1), size = probe.array.buffer.byteLength;
+  for (let i = 0; i < 1000; ++i) round();
+  assert.equal(probe.array.buffer.byteLength, size);
 });
 
 test('rays refuse what is not sound, and Node has no GPU', async () => {

@@ -1,5 +1,5 @@
 // One model's rays by any method: here, or on the GPU where there is one.
-import { cpuMethods, GpuRays, gpuMethods, RaySet, visibleSet } from 'sightline-culling/webgpu';
+import { cpuMethods, GpuRays, gpuMethods, RaySet, ready, visibleSet } from 'sightline-culling/webgpu';
 
 /** In the paper's order, then ours. */
 export const methods = [
@@ -11,8 +11,9 @@ export const isOnGpu = (method) => gpuMethods.includes(method);
 export { cpuMethods };
 
 export class Caster {
-  /** The GPU, if any: `gpu` undefined says, in `why`, what is missing. */
+  /** The GPU, if any: `gpu` undefined says, in `why`, what is missing. Throws where there is no WebAssembly with SIMD. */
   static async start() {
+    await ready;
     const caster = new Caster();
     await caster.restart();
     return caster;

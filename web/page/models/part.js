@@ -80,7 +80,7 @@ export class ModelsPart {
   }
 
   #say(words) {
-    this.said.textContent = `${words} Methods of the GPU are done by boca here, which finds the same set.`.replace('cast on the CPU ', '');
+    this.said.textContent = /WebGPU|GPU's/.test(words) ? `${words.replace(/; [^;]*$/, '')}. Rays are cast by WebAssembly here, which finds the same set.` : words;
     this.said.hidden = false;
   }
   #follow(on) {
@@ -133,15 +133,16 @@ export class ModelsPart {
     if (state.path) Object.assign(place, placeOnPath((this.flown += seconds / 60))), (this.rest = 0);
     if (fit(this.canvas)) this.rest = 0;
     const view = viewOf(place, this.canvas.width, this.canvas.height);
-    this.#cull(view);
+    if (this.rest === 0) this.told = false;
+    const isDue = this.rest > 0.5 && !this.told && !state.path && !state.frozen;
+    if (!isDue && !this.told) this.#cull(view);
+    else if (isDue && !this.casting) this.#settle(view);
     const objects = state.byState && !state.frozen ? renderer.all : this.visible;
     if (state.byState) renderer.tell(this.visible);
     const triangles = renderer.draw(view, objects, { look: this.look, byState: state.byState && !state.frozen });
-    if (this.rest === 0) this.told = false;
     this.frames.push(seconds);
     if (this.frames.length > 20) this.#tell(triangles);
     this.rest += seconds;
-    if (this.rest > 0.5 && !this.told && !state.path) this.#settle(view);
   }
 
   // The set of this view, or of the last one where the GPU is still at it.
@@ -173,9 +174,8 @@ export class ModelsPart {
     return { with_ms: median(casts) + median(some), cast_ms: median(casts), without_ms: median(all), ...loss };
   }
 
-  // Once after the camera came to rest.
+  // Once after the camera came to rest; until it moves the set stays.
   #settle(view) {
-    if (this.state.frozen || this.resting || this.casting) return;
     this.told = true;
     this.resting = this.#atRest(view).catch((error) => this.#say(error.message)).finally(() => (this.resting = undefined));
   }
