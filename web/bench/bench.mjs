@@ -31,7 +31,7 @@ for (let i = 0; i < count; ++i) {
   three.push(new THREE.Box3(new THREE.Vector3(...boxes.array.subarray(6 * i, 6 * i + 3)),
     new THREE.Vector3(...boxes.array.subarray(6 * i + 3, 6 * i + 6))));
 }
-const camera = new THREE.PerspectiveCamera(50, 16 / 9, 0.1, 1600);
+const camera = new THREE.PerspectiveCamera(50, 16 / 9, 0.1, 1390);
 camera.position.set(0, 20, 800), camera.updateMatrixWorld();
 const projection = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
 const frustum = new THREE.Frustum().setFromProjectionMatrix(projection);

@@ -118,7 +118,7 @@ export class DropPart {
     const centre = this.box.getCenter(new THREE.Vector3());
     this.above = new THREE.PerspectiveCamera(35, 1, size / 1000, size * 6);
     this.above.position.copy(centre).add(new THREE.Vector3(0.35 * size, 1.15 * size, 0.7 * size)), this.above.lookAt(centre);
-    this.ghost ??= new THREE.MeshBasicMaterial({ color: '#8b939e', transparent: true, opacity: 0.16, depthWrite: false });
+    this.ghost ??= new THREE.MeshBasicMaterial({ color: '#8b939e', transparent: true, opacity: 0.34, depthWrite: false, depthFunc: THREE.LessDepth });
   }
   #mode() {
     const { mode } = this.state, { culler } = this.stage;
@@ -161,12 +161,12 @@ export class DropPart {
     renderer.setScissorTest(true);
     for (const set of ['setViewport', 'setScissor']) renderer[set](canvas.width - width - margin, margin, width, height);
     scene.background = new THREE.Color(isDark() ? '#0c1015' : '#f8f6f1');
-    culler.camera = undefined, (culler.enabled = false), (scene.overrideMaterial = ghost);
+    culler.camera = stage.frozen ?? stage.camera;
     renderer.render(scene, above);
-    scene.overrideMaterial = null, (culler.enabled = enabled), (culler.camera = stage.frozen ?? stage.camera), (scene.background = null);
-    renderer.autoClear = false;
+    // What was not drawn shows before what was, and beside it.
+    culler.camera = undefined, (culler.enabled = false), (scene.overrideMaterial = ghost), (scene.background = null), (renderer.autoClear = false);
     renderer.render(scene, above);
-    renderer.autoClear = true, (scene.background = background), (culler.camera = undefined);
+    culler.enabled = enabled, (scene.overrideMaterial = null), (renderer.autoClear = true), (scene.background = background);
     renderer.setScissorTest(false), renderer.setViewport(0, 0, canvas.width, canvas.height);
   }
 
