@@ -12,10 +12,10 @@ bring_node
 build_web
 quietly cmake --build "$build" --target sightline_web_worlds sightline_web_rays
 "$build/web/sightline_web_worlds" 1000 build/web/worlds.bin
-# Of as many meshes as the paper's models, with few triangles each; in --full a hundredth of the paper's.
-views=1
+# Of as many meshes as the paper's models, with few triangles and rays; in --full a hundredth of the paper's and all its rays.
+views=1 side=50
 export SIGHTLINE_RAY_TRIANGLES=60000
-[ -z "${SIGHTLINE_FULL:-}" ] || { views=8; SIGHTLINE_RAY_TRIANGLES=0; }
-"$build/web/sightline_web_rays" $views $SIGHTLINE_RAY_TRIANGLES build/web/rays.bin
+[ -z "${SIGHTLINE_FULL:-}" ] || { views=8 side=100; SIGHTLINE_RAY_TRIANGLES=0; }
+"$build/web/sightline_web_rays" $views $side $SIGHTLINE_RAY_TRIANGLES build/web/rays.bin
 cd web
 node --test --test-reporter=spec test/*.test.mjs

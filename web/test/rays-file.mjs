@@ -1,6 +1,4 @@
 // What build/web/rays.bin says that this processor's build answers (web/paper/native_rays.cpp): five models, views, hits.
-export const side = 100;
-
 export function* read(bytes) {
   let at = 0;
   const take = (Kind, count) => {
@@ -8,14 +6,14 @@ export function* read(bytes) {
     at += count * Kind.BYTES_PER_ELEMENT;
     return taken;
   };
-  const [views] = take(Uint32Array, 1);
+  const [views, side] = take(Uint32Array, 2);
   for (let model = 1; model <= 5; ++model) {
     const [count] = take(Uint32Array, 1), boxes = take(Float32Array, 6 * count), all = [];
     for (let v = 0; v < views; ++v) {
       const view = { worldToEye: take(Float32Array, 16), eyeToClip: take(Float32Array, 16), width: 1280, height: 720 };
       all.push({ view, objects: take(Uint32Array, side * side), distances: take(Float32Array, side * side) });
     }
-    yield { model, boxes, views: all };
+    yield { model, boxes, side, views: all };
   }
 }
 

@@ -7,7 +7,7 @@ import { bytes } from 'sightline-culling';
 import { cpuMethods, GpuRays, noObject, RaySet, ready, visibleSet } from 'sightline-culling/webgpu';
 import { Models } from '../page/models/models.js';
 import { withPage } from './browser/chromium.mjs';
-import { differing, read, side } from './rays-file.mjs';
+import { differing, read } from './rays-file.mjs';
 
 const file = new URL('../../build/web/rays.bin', import.meta.url).pathname;
 const triangles = Number(process.env.SIGHTLINE_RAY_TRIANGLES ?? 0);
@@ -19,7 +19,7 @@ const natively = () => {
 test('toca, boca and wide-rays meet what they meet natively', async () => {
   await ready;
   let models = 0;
-  for (const { model, boxes, views } of read(natively())) {
+  for (const { model, boxes, side, views } of read(natively())) {
     const set = new RaySet(boxes);
     assert.equal(set.nodes.length, 32 * (2 * set.size - 1));
     for (const [v, expected] of views.entries()) {
@@ -50,7 +50,7 @@ test('iwcpa, bvha and saa on the GPU meet what they meet natively', async () => 
     await tab.waitForFunction(() => window.compare);
     const result = await tab.evaluate(() => window.compare());
     assert.deepEqual(result.bad, []);
-    assert.ok(result.casts >= 20 && result.hits > 5000, JSON.stringify(result));
+    assert.ok(result.casts >= 20 && result.hits > 1000, JSON.stringify(result));
     const ties = await tab.evaluate(() => window.ties());
     assert.deepEqual(ties.bad, []);
     assert.deepEqual(ties.objects.toSorted((a, b) => a - b), [0, 1, 2, noObject]);

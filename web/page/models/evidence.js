@@ -63,7 +63,7 @@ export class Evidence {
     const { part } = this, before = part.state.model, rows = [];
     for (let model = 1; model <= 5; ++model) {
       await part.use(model);
-      rows.push(await measureTable(part, { rays: part.quick ? 40 : 100, repeats: part.quick ? 1 : 3,
+      rows.push(await measureTable(part, { rays: part.quick ? 24 : 100, repeats: part.quick ? 1 : 3,
         progress: (done) => (this.bar.value = (model - 1 + done) / 5) }));
       this.keep('table6', rows), this.#drawTable();
     }
@@ -94,7 +94,7 @@ export class Evidence {
 
   async draw12() {
     const { part } = this;
-    const { pictures, kept } = await drawFigure12(part, part.quick ? 40 : 100, part.quick ? 480 : 960);
+    const { pictures, kept } = await drawFigure12(part, part.quick ? 24 : 100, part.quick ? 480 : 960);
     this.keep('figure12', { model: part.state.model, kept });
     const words = ['12a: from V, everything drawn', '12b: from above, V beyond the lower edge'];
     this.twelve.replaceChildren(...pictures.map((picture, i) => {
@@ -108,7 +108,7 @@ export class Evidence {
   async measure13() {
     const { part } = this;
     if (part.state.model !== 4) await part.use(4);
-    const points = await measureFigure13(part, { apart: part.quick ? 90 : 30, rise: part.quick ? 40 : 25, rays: part.quick ? 40 : 100,
+    const points = await measureFigure13(part, { apart: part.quick ? 90 : 30, rise: part.quick ? 40 : 25, rays: part.quick ? 24 : 100,
       progress: (done) => (this.bar.value = done) });
     this.keep('figure13', points);
     this.thirteen.replaceChildren(element('figure', {}, dome(points), element('figcaption', {}, sentence(points))));

@@ -1,12 +1,12 @@
 // In the page: the GPU's methods on the five models, and what they say when something is missing.
 import { GpuRays, gpuMethods, RaySet, ready } from 'sightline-culling/webgpu';
-import { differing, read, side } from '../rays-file.mjs';
+import { differing, read } from '../rays-file.mjs';
 
 window.compare = async () => {
   await ready;
   const gpu = await GpuRays.start(), bad = [], bytes = await (await fetch('/rays.bin')).arrayBuffer();
   let casts = 0, hits = 0;
-  for (const { model, boxes, views } of read(bytes)) {
+  for (const { model, boxes, side, views } of read(bytes)) {
     const set = new RaySet(boxes);
     for (const [v, expected] of views.entries()) {
       set.aim(expected.view, side, side);
