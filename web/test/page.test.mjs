@@ -29,6 +29,16 @@ function glb(cubes) {
 
 const text = (page, at) => page.locator(at).innerText();
 
+/** Opens the page, its measurements short, does with it, and holds the console to silence. */
+async function onPage(does, options) {
+  const { address, close } = await serve();
+  try {
+    await withAddress(`${address}?quick`, does, options);
+  } finally {
+    close();
+  }
+}
+
 async function clickModels(page) {
   await page.waitForFunction(() => window.sightline.models.ready);
   for (const method of ['none', 'toca', 'boca', 'iwcpa', 'bvha', 'tuned-iwcpa', 'wide-rays', 'saa']) {
@@ -111,52 +121,37 @@ async function clickDrop(page) {
 }
 
 test('its three parts work', async () => {
-  const { address, close } = await serve();
-  try {
-    await withAddress(`${address}?quick`, async (page) => {
-      await clickModels(page);
-      await measure(page);
-      await clickCity(page);
-      await clickDrop(page);
-    }, { width: 1400, height: 900 });
-  } finally {
-    close();
-  }
+  await onPage(async (page) => {
+    await clickModels(page);
+    await measure(page);
+    await clickCity(page);
+    await clickDrop(page);
+  }, { width: 1400, height: 900 });
 });
 
 test('nothing is cut off, narrow and wide, light and dark', async () => {
-  const { address, close } = await serve();
-  try {
-    await withAddress(`${address}?quick`, async (page) => {
-      const sizes = [[400, 'dark'], [1400, 'light'], [1400, 'dark'], [2000, 'light'], [700, 'light']];
-      for (const [width, scheme] of process.env.SIGHTLINE_FULL ? sizes : sizes.slice(0, 2)) {
-        await page.setViewportSize({ width, height: width < 600 ? 860 : 900 });
-        await page.emulateMedia({ colorScheme: scheme });
-        for (const part of ['models', 'city', 'drop']) {
-          await page.click(`#tab-${part}`);
-          await page.waitForFunction((name) => window.sightline[name].made || window.sightline[name].ready, part);
-          await page.waitForTimeout(900);
-          const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-          assert.ok(wide <= width, `${part} at ${width} pixels is ${wide} wide`);
-          writeFileSync(join(pictures, `${part}-${width}-${scheme}.png`), await page.screenshot({ fullPage: true }));
-        }
+  await onPage(async (page) => {
+    const sizes = [[400, 'dark'], [1400, 'light'], [1400, 'dark'], [2000, 'light'], [700, 'light']];
+    for (const [width, scheme] of process.env.SIGHTLINE_FULL ? sizes : sizes.slice(0, 2)) {
+      await page.setViewportSize({ width, height: width < 600 ? 860 : 900 });
+      await page.emulateMedia({ colorScheme: scheme });
+      for (const part of ['models', 'city', 'drop']) {
+        await page.click(`#tab-${part}`);
+        await page.waitForFunction((name) => window.sightline[name].made || window.sightline[name].ready, part);
+        await page.waitForTimeout(900);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(wide <= width, `${part} at ${width} pixels is ${wide} wide`);
+        writeFileSync(join(pictures, `${part}-${width}-${scheme}.png`), await page.screenshot({ fullPage: true }));
       }
-    });
-  } finally {
-    close();
-  }
+    }
+  });
 });
 
 test('without WebGPU it says so, and casts rays all the same', async () => {
-  const { address, close } = await serve();
-  try {
-    await withAddress(`${address}?quick`, async (page) => {
-      await page.waitForFunction(() => window.sightline.models.rested);
-      assert.match(await text(page, '#models .said'), /no WebGPU/);
-      assert.equal(await page.locator('#models input[value="saa"]').isDisabled(), true);
-      assert.ok((await page.evaluate(() => window.sightline.models.rested.kept)) > 50);
-    }, { before: "Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });" });
-  } finally {
-    close();
-  }
+  await onPage(async (page) => {
+    await page.waitForFunction(() => window.sightline.models.rested);
+    assert.match(await text(page, '#models .said'), /no WebGPU/);
+    assert.equal(await page.locator('#models input[value="saa"]').isDisabled(), true);
+    assert.ok((await page.evaluate(() => window.sightline.models.rested.kept)) > 50);
+  }, { before: "Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });" });
 });

@@ -1,7 +1,7 @@
 // The GPU's part of iwcpa, bvha and saa (Ye et al. 2023). Operation for operation what the C++ library does, so that
 // hits are the same to the bit: no product is added to, which a compiler might fuse.
 
-/** What all of them share: arrays as web/paper/rays.cpp lays them out, the slab test, and the nearest of two hits. */
+/** What all of them share: structs as web/paper/rays.cpp lays them out, the slab test, and the nearest of two hits. */
 const shared = /* wgsl */ `
 struct Ray { origin: vec3f, reach: f32, inverse: vec3f, pad: f32 }
 struct Node { low: vec3f, descendants: u32, high: vec3f, object: u32 }
@@ -41,46 +41,51 @@ fn nearer(best: Hit, distance: f32, object: u32) -> Hit {
 }
 `;
 
+/** What the arrays hold; boxes are six numbers each. */
+const elements = {
+  rays: 'Ray', boxes: 'f32', nodes: 'Node', candidates: 'u32', owners: 'u32', starts: 'u32', distances: 'f32', nearest: 'Hit', hits: 'Hit',
+};
+type Name = keyof typeof elements;
+
 const boxOf = /* wgsl */ `
 fn low(b: u32) -> vec3f { return vec3f(boxes[6u * b], boxes[6u * b + 1u], boxes[6u * b + 2u]); }
-fn high(b: u32) -> vec3f { return vec3f(boxes[6u * b + 3u], boxes[6u * b + 4u], boxes[6u * b + 5u]); }
-`;
+fn high(b: u32) -> vec3f { return vec3f(boxes[6u * b + 3u], boxes[6u * b + 4u], boxes[6u * b + 5u]); }`;
 
-/** A lane a pair of ray and box, which leaves its distance: as printed. */
-export const iwcpaDistances = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> rays: array<Ray>;
-@group(0) @binding(2) var<storage, read> boxes: array<f32>;
-@group(0) @binding(3) var<storage, read_write> distances: array<f32>;
-${boxOf}
-@compute @workgroup_size(16, 16) fn main(@builtin(global_invocation_id) id: vec3u) {
-  let b = call.first + id.y;
-  if (id.x >= call.rays || b >= call.end) { return; }
-  distances[id.y * call.rays + id.x] = meet(rays[id.x], low(b), high(b));
-}`;
+/** A shader's text: bound in this order the call, the arrays that it reads and the one that it writes. */
+function shader(reads: Name[], writes: Name, code: string): string {
+  const bound = [...reads.map((name) => ['read', name] as const), ['read_write', writes] as const].map(([access, name], i) =>
+    `@group(0) @binding(${i + 1}) var<storage, ${access}> ${name}: array<${elements[name]}>;`);
+  return [shared, '@group(0) @binding(0) var<uniform> call: Call;', ...bound, reads.includes('boxes') ? boxOf : '', code].join('\n');
+}
 
-/** The nearest of each ray's distances, and of the boxes of earlier rounds. */
-export const iwcpaNearest = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> distances: array<f32>;
-@group(0) @binding(2) var<storage, read_write> hits: array<Hit>;
+/** A lane a ray, which keeps the nearest of what `loop` goes through, and of the earlier rounds if the call says so. */
+function nearestOfEachRay(reads: Name[], loop: string): string {
+  return shader(reads, 'hits', /* wgsl */ `
 @compute @workgroup_size(256) fn main(@builtin(global_invocation_id) id: vec3u) {
   if (id.x >= call.rays) { return; }
   var best = Hit(nothing, -1.0);
   if (call.more != 0u) { best = hits[id.x]; }
+  ${loop}
+  hits[id.x] = best;
+}`);
+}
+
+/** A lane a pair of ray and box, which leaves its distance: as printed. */
+export const iwcpaDistances = shader(['rays', 'boxes'], 'distances', /* wgsl */ `
+@compute @workgroup_size(16, 16) fn main(@builtin(global_invocation_id) id: vec3u) {
+  let b = call.first + id.y;
+  if (id.x >= call.rays || b >= call.end) { return; }
+  distances[id.y * call.rays + id.x] = meet(rays[id.x], low(b), high(b));
+}`);
+
+/** The nearest of each ray's distances, and of the boxes of earlier rounds. */
+export const iwcpaNearest = nearestOfEachRay(['distances'], /* wgsl */ `
   for (var b = call.first; b < call.end; b++) {
     best = nearer(best, distances[(b - call.first) * call.rays + id.x], b);
-  }
-  hits[id.x] = best;
-}`;
+  }`);
 
 /** The same tuned: a lane takes a ray and every sixteenth box of a strip, and keeps the nearest to itself. */
-export const tunedPairs = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> rays: array<Ray>;
-@group(0) @binding(2) var<storage, read> boxes: array<f32>;
-@group(0) @binding(3) var<storage, read_write> nearest: array<Hit>;
-${boxOf}
+export const tunedPairs = shader(['rays', 'boxes'], 'nearest', /* wgsl */ `
 const strip = 1024u;
 @compute @workgroup_size(16, 16) fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_id) lane: vec3u) {
@@ -91,71 +96,36 @@ const strip = 1024u;
   var best = Hit(nothing, -1.0);
   for (var b = begin + lane.y; b < end; b += 16u) { best = nearer(best, meet(ray, low(b), high(b)), b); }
   nearest[id.y * call.rays + id.x] = best;
-}`;
+}`);
 
 /** The nearest of each ray over all rows of lanes, and over earlier rounds. */
-export const tunedNearest = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> nearest: array<Hit>;
-@group(0) @binding(2) var<storage, read_write> hits: array<Hit>;
-@compute @workgroup_size(256) fn main(@builtin(global_invocation_id) id: vec3u) {
-  if (id.x >= call.rays) { return; }
-  var best = Hit(nothing, -1.0);
-  if (call.more != 0u) { best = hits[id.x]; }
+export const tunedNearest = nearestOfEachRay(['nearest'], /* wgsl */ `
   for (var row = 0u; row < call.end; row++) {
     let hit = nearest[row * call.rays + id.x];
     best = nearer(best, hit.distance, hit.object);
-  }
-  hits[id.x] = best;
-}`;
+  }`);
 
 /** The distances of the candidates that the CPU collected, one a lane. Groups beyond a row of 65,535 lie in the next. */
-export const bvhaDistances = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> rays: array<Ray>;
-@group(0) @binding(2) var<storage, read> boxes: array<f32>;
-@group(0) @binding(3) var<storage, read> candidates: array<u32>;
-@group(0) @binding(4) var<storage, read> owners: array<u32>;
-@group(0) @binding(5) var<storage, read_write> distances: array<f32>;
-${boxOf}
+export const bvhaDistances = shader(['rays', 'boxes', 'candidates', 'owners'], 'distances', /* wgsl */ `
 @compute @workgroup_size(256) fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) lane: u32) {
   let c = (group.y * groups.x + group.x) * 256u + lane;
   if (c >= call.end) { return; }
   let b = candidates[c];
   distances[c] = meet(rays[owners[c]], low(b), high(b));
-}`;
+}`);
 
 /** The nearest of each ray's candidates. */
-export const bvhaNearest = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> candidates: array<u32>;
-@group(0) @binding(2) var<storage, read> first: array<u32>;
-@group(0) @binding(3) var<storage, read> distances: array<f32>;
-@group(0) @binding(4) var<storage, read_write> hits: array<Hit>;
-@compute @workgroup_size(256) fn main(@builtin(global_invocation_id) id: vec3u) {
-  if (id.x >= call.rays) { return; }
-  var best = Hit(nothing, -1.0);
-  for (var c = first[id.x]; c < first[id.x + 1u]; c++) { best = nearer(best, distances[c], candidates[c]); }
-  hits[id.x] = best;
-}`;
+export const bvhaNearest = nearestOfEachRay(['candidates', 'starts', 'distances'], /* wgsl */ `
+  for (var c = starts[id.x]; c < starts[id.x + 1u]; c++) { best = nearer(best, distances[c], candidates[c]); }`);
 
 /** Section 3.4.3: a ray a lane through the nodes depth first; a hit leads to the next node, a miss past its descendants. */
-export const saa = shared + /* wgsl */ `
-@group(0) @binding(0) var<uniform> call: Call;
-@group(0) @binding(1) var<storage, read> rays: array<Ray>;
-@group(0) @binding(2) var<storage, read> nodes: array<Node>;
-@group(0) @binding(3) var<storage, read_write> hits: array<Hit>;
-@compute @workgroup_size(256) fn main(@builtin(global_invocation_id) id: vec3u) {
-  if (id.x >= call.rays) { return; }
+export const saa = nearestOfEachRay(['rays', 'nodes'], /* wgsl */ `
   let ray = rays[id.x];
-  var best = Hit(nothing, -1.0);
   for (var i = 0u; i < call.end;) {
     let node = nodes[i];
     let distance = meet(ray, node.low, node.high);
     if (distance < 0.0) { i += 1u + node.descendants; continue; }
     if (node.object != nothing) { best = nearer(best, distance, node.object); }
     i++;
-  }
-  hits[id.x] = best;
-}`;
+  }`);
