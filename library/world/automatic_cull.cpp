@@ -111,6 +111,7 @@ private:
     if (!purse_.affords(asking)) return false;
     set_occluders(true);
     std::vector<std::uint32_t>& hidden = state_.automatic.hidden;
+    hidden.reserve(state_.entries.capacity() * different_.count);
     hidden.resize(state_.entries.size() * different_.count);
     const ChunkTally tally = find_hidden_chunks(state_.input, state_.entries, hidden.data());
     purse_.pay(nodes + static_cast<double>(tally.asked) * double{costs_.query});
@@ -153,7 +154,7 @@ private:
       purse_.pay(cost);
     }
     AutomaticState& automatic = state_.automatic;
-    if (automatic.seen.size() < count) automatic.seen.resize(count);
+    if (automatic.seen.size() < count) automatic.seen.resize(state_.world->size);
     automatic.asking = count;
     constexpr std::size_t kWorthAJob = 64;
     automatic.parts = static_cast<std::uint32_t>(

@@ -129,6 +129,8 @@ double OccluderPicks::begin_cost(const CullView& view, const CullCosts& costs) n
 
 bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
                          const CullCosts& costs, double most, Purse& purse) {
+  // Room for all, so that a camera that turns allocates nothing.
+  picks_.reserve(world.occluders.carriers.size()), seen_.reserve(world.occluders.carriers.size());
   picks_.clear();
   const double begin = begin_cost(view, costs), had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };

@@ -79,7 +79,7 @@ Status check_solids(const Occluder& occluder, std::span<const Sphere> spheres) {
   if (occluder.solid_triangles > occluder.indices.size() / 3)
     return {StatusCode::bad_argument, "world: an occluder has more solid triangles than triangles"};
   const auto bad_box = std::find_if_not(occluder.boxes.begin(), occluder.boxes.end(),
-                                          [](const Box& box) { return geometry::is_valid(box); });
+                                        [](const Box& box) { return geometry::is_valid(box); });
   if (bad_box != occluder.boxes.end())
     return {StatusCode::bad_box, "world: an occluder's box is not finite or turned inside out",
             static_cast<std::size_t>(bad_box - occluder.boxes.begin())};
