@@ -20,8 +20,9 @@ public:
   }
   void close_frame(double cost, double frustum_cost) noexcept {
     credit_ += 1.01998 * frustum_cost - cost;
-    // Frames that do not pay become rarer: at the worst one in 32.
-    if (cost > frustum_cost) pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
+    // Tries that do not pay become rarer: at the worst one frame in 32. To look and find that nothing is
+    // affordable is none.
+    if (cost > 1.001 * frustum_cost) pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
     if (cost < frustum_cost) pause_ = waits_ = 0;
   }
   /// Whether a frame may try at all; counts the frames that may not.

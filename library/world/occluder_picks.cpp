@@ -137,14 +137,14 @@ bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::spa
   if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
   const Sight sight(world, view, costs);
   find(sight, in_view, purse);
-  if (picks_.empty() || begin > left() || !buffer_.begin(view.view)) return false;
-  purse.pay(begin);
-  purse.pay(choose(left(), sight));
+  const double drawing = choose(left() - begin);
+  if (picks_.empty() || !buffer_.begin(view.view)) return false;
+  purse.pay(begin + drawing);
   std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
   });
   for (const Pick& pick : picks_) draw_one(sight, world.occluders.carriers[pick.carrier]);
-  return !picks_.empty();
+  return true;
 }
 
 // Those that were seen the last time; all that are in view where most of these are no longer. What comes into
@@ -182,7 +182,7 @@ bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
 }
 
 // Keeps those that cover most for what they cost, and returns what they cost together.
-double OccluderPicks::choose(double budget, const Sight&) {
+double OccluderPicks::choose(double budget) {
   const auto better = [](const Pick& a, const Pick& b) {
     return a.score != b.score ? a.score > b.score : a.carrier < b.carrier;
   };

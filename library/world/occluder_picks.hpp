@@ -37,7 +37,7 @@ private:
 
   void find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse);
   bool look_at(const Sight& sight, std::uint32_t carrier);
-  double choose(double budget, const Sight& sight);
+  double choose(double budget);
   void draw_one(const Sight& sight, const Carrier& carrier);
   void draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement);
   void draw_spheres(const OccluderShape& shape, const Mat4& transform);
