@@ -13,20 +13,6 @@ namespace {
 
 using SharedTriangles = Guarded<OccludeeTriangles>;
 
-// "both", "front", or a truth a triangle: whether only its front occludes.
-std::vector<Sides> sides_of(const py::object& given) {
-  if (py::isinstance<py::str>(given)) {
-    const auto name = given.cast<std::string>();
-    if (name == "both") return {Sides::both};
-    if (name == "front") return {Sides::front};
-    refuse("sides: expected 'both', 'front' or bool (m,)");
-  }
-  std::vector<Sides> out;
-  for (const bool front : truths_of(given, "sides: expected 'both', 'front' or bool (m,)"))
-    out.push_back(front ? Sides::front : Sides::both);
-  return out;
-}
-
 OccluderMesh make_mesh(const py::object& positions, const py::object& indices, const py::object& sides) {
   const std::vector<Vec3> points = points_of(positions, "positions");
   const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");

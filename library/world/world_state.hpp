@@ -10,6 +10,7 @@
 #include <sightline/world.hpp>
 
 #include "library/world/chunk_map.hpp"
+#include "library/world/world_occluders.hpp"
 
 namespace sightline::world {
 
@@ -50,6 +51,7 @@ struct WorldState {
   std::vector<ObjectId> free_ids;
   /// One an id, or empty as long as nobody has set any.
   std::vector<std::uint32_t> layers, values;
+  WorldOccluders occluders;
   std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
   std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
@@ -75,6 +77,11 @@ struct WorldState {
   /// Lets some of the awake sectors' maps rest.
   void let_rest();
 };
+
+/// Whether all handles name objects of the world.
+Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept;
+/// The object's box as stored.
+WorldBox stored_box(const WorldState& state, ObjectId id) noexcept;
 
 /// The sector that holds a box's centre.
 SectorCell sector_cell(const WorldBox& box) noexcept;
