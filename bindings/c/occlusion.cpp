@@ -161,6 +161,14 @@ sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion, const
   return keep(occlusion->buffer.begin(view_of(*view)));
 }
 
+sightline_status sightline_occlusion_begin_with(sightline_occlusion* occlusion, const sightline_view* view,
+                                                uint32_t coverage, uint32_t scale) {
+  if (!occlusion || !view) return refuse("occlusion: the occlusion or the view is NULL");
+  if (coverage > SIGHTLINE_COVERAGE_AREA)
+    return refuse("occlusion: the coverage is none, expected centres or area");
+  return keep(occlusion->buffer.begin(view_of(*view), {static_cast<Coverage>(coverage), scale}));
+}
+
 sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion, sightline_view* view) {
   if (!occlusion || !view) return refuse("occlusion: the occlusion or the view is NULL");
   if (!occlusion->buffer.begun())

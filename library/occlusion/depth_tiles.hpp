@@ -29,6 +29,8 @@ struct MeshScratch {
   std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
   /// Which way a triangle turns, in groups whose `known` says `turn`.
   geometry::AlignedVector<float> facing;
+  /// Beside it, where a pixel's margin counts: how much its nearness changes over a pixel at most.
+  geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
@@ -42,10 +44,14 @@ struct TilePlane {
 
 struct DepthTiles {
   WorldView view{{{}, {}, 1, 1}, {}};
+  OcclusionOptions options;
   bool begun = false;
   EyeProjection projection;
   PixelRays rays;
-  std::uint32_t width = 0, height = 0;
+  std::uint32_t width = 0, height = 0;  ///< in pixels of the buffer
+  std::uint32_t scale = 1;              ///< pixels of the view along a side of one of the buffer's
+  /// How far from a pixel's centre, along x and y, an occluder must cover all and what is asked for counts.
+  float margin = 0;
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.

@@ -52,7 +52,7 @@ SectorView sector_view(const CullView& culled, const Sector& sector) {
   }
   if (culled.occlusion) {
     out.occluders = &OcclusionAccess::tiles(*culled.occlusion);
-    out.projection = occlusion::eye_projection(view, sector.origin);
+    out.projection = occlusion::eye_projection(view, sector.origin, out.occluders->scale);
   }
   return out;
 }
