@@ -123,8 +123,9 @@ struct OccluderPicks::Sight {
 };
 
 double OccluderPicks::begin_cost(const CullView& view, const CullCosts& costs) noexcept {
-  const auto tiles = [](std::uint32_t pixels) { return static_cast<double>((pixels + 7) / 8); };
-  return tiles(view.view.view.width) * tiles(view.view.view.height) * double{costs.tile};
+  const auto tiles = [](std::uint32_t pixels) { return std::uint64_t{pixels + 7} / 8; };
+  const std::uint64_t all = tiles(view.view.view.width) * tiles(view.view.view.height);
+  return static_cast<double>(all) * double{costs.tile};
 }
 
 bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
