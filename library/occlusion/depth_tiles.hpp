@@ -42,6 +42,8 @@ struct TilePlane {
   std::uint32_t covers;      ///< 0 where DepthTiles::nearness has the tile; undefined where nothing was drawn
 };
 
+struct BoxQuestions;
+
 struct DepthTiles {
   WorldView view{{{}, {}, 1, 1}, {}};
   OcclusionOptions options;
@@ -67,6 +69,10 @@ struct DepthTiles {
   geometry::AlignedVector<float> untouched;
 
   MeshScratch mesh;
+
+  /// A cull's way to what answers for boxes; set where the buffer is begun, so that programs that never begin
+  /// one need not link it.
+  const BoxQuestions* ask = nullptr;
 };
 
 /// The plane's nearness at a pixel of its tile, to the bit as vectors of pixels have it.
@@ -97,6 +103,10 @@ void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
+struct BoxQuestions {
+  decltype(&eye_projection) projection;
+  decltype(&query_boxes) boxes;
+};
 void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
                    std::uint8_t* visible) noexcept;
 /// Three corners a triangle.

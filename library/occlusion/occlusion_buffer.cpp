@@ -65,6 +65,8 @@ bool is_affine(const Mat4& m) noexcept {
   return m.m[3] == 0 && m.m[7] == 0 && m.m[11] == 0 && m.m[15] == 1;
 }
 
+constexpr occlusion::BoxQuestions kBoxQuestions{occlusion::eye_projection, occlusion::query_boxes};
+
 // Asks in blocks, laid out where the caller's arrays are not so already.
 template <class Block, class Ask>
 void ask_blocks(std::size_t count, std::uint8_t* visible, const Ask& ask) {
@@ -97,6 +99,7 @@ Status OcclusionBuffer::begin(const WorldView& view, const OcclusionOptions& opt
     return {StatusCode::bad_view, "occlusion: the view is too large, expected at most 8192 pixels a side"};
   state_->view = view;
   state_->begun = true;
+  state_->ask = &kBoxQuestions;
   state_->options = options;
   state_->scale = scale;
   // Of a pixel of scale x scale the centres lie up to that far from its own centre; all of it half a side.

@@ -1,45 +1,50 @@
 #include "library/world/automatic_cull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <vector>
+
+#include <sightline/occlusion.hpp>
 
 #include "library/geometry/mutant.h"
+#include "library/world/occluder_picks.hpp"
 
 namespace sightline::world {
 
 namespace {
 
+// What is remembered from frame to frame.
+struct Memory {
+  std::array<OccluderPicks, kMaxViews> picks;  // by the place of the caller's view
+  std::vector<std::uint32_t> hidden;           // of PassInput
+  std::vector<std::uint8_t> seen;              // what the triangles of each object left of its mask
+  std::size_t asking = 0;                      // how many objects' triangles are asked, of the first
+  std::uint32_t parts = 0;                     // in so many jobs
+};
+
 // One frame's try: look for occluders, draw them, ask for chunks, for objects, for their triangles. Each step
 // is begun only where the purse affords all of it.
 class Try {
 public:
-  Try(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
-      const CullOptions& options, CullResult& result)
+  Try(CullerState& state, Memory& memory, std::span<const CullView> views, const DifferentViews& different,
+      const JobSystem& jobs, const CullCosts& costs, CullResult& result)
       : state_(state),
+        memory_(memory),
         views_(views),
         different_(different),
-        jobs_(options.jobs),
-        costs_(options.costs),
+        jobs_(jobs),
+        costs_(costs),
         result_(result),
-        masks_(state.masks == state.scratch_masks.data() ? nullptr : state.masks) {
-    if (costs_.object == 0)
-      costs_.object = static_cast<float>(state.automatic.object_cost.value(double{kObjectCost}));
-    before_ = drawn();
-    result.frustum_cost = result.cost = static_cast<double>(result.nodes_visited) * double{costs_.node} +
-                                        static_cast<double>(result.tested) * double{costs_.test} +
-                                        static_cast<double>(before_) * double{costs_.object};
-  }
+        masks_(masks_of_caller(state)),
+        before_(count_drawn(state, result.count)),
+        purse_(state.account.allowance(result.frustum_cost)) {}
 
   void run() {
-    Account& account = state_.automatic.account;
-    if (state_.world->occluders.any() && result_.count > 0 && account.begins_try()) {
-      purse_ = Purse(account.allowance(result_.frustum_cost));
-      hide();
-      const std::uint64_t gone = before_ - drawn();
-      result_.culled_occlusion = gone;
-      result_.cost += purse_.spent() - static_cast<double>(gone) * double{costs_.object};
-    }
-    account.close_frame(result_.cost, result_.frustum_cost);
+    hide();
+    const std::uint64_t gone = before_ - drawn();
+    result_.culled_occlusion = gone;
+    result_.cost += purse_.spent() - static_cast<double>(gone) * double{costs_.object};
   }
 
 private:
@@ -50,14 +55,7 @@ private:
     remember();
   }
 
-  // How many objects the caller draws: once in each view, where masks tell.
-  [[nodiscard]] std::uint64_t drawn() const {
-    if (!masks_) return result_.count;
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < result_.count; ++i)
-      sum += static_cast<std::uint64_t>(std::popcount(masks_[i]));
-    return sum;
-  }
+  [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
 
   [[nodiscard]] bool draw_occluders() {
     std::uint64_t objects = 0;
@@ -78,9 +76,8 @@ private:
     for (std::size_t d = 0; d < different_.count; ++d) {
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
-      drawn_[d] =
-          share > 0 && state_.automatic.picks[place].draw(*state_.world, views_[place],
-                                                          {state_.out, result_.count}, costs_, share, purse_);
+      drawn_[d] = share > 0 && memory_.picks[place].draw(*state_.world, views_[place],
+                                                         {state_.out, result_.count}, costs_, share, purse_);
       any = any || drawn_[d];
     }
     return any;
@@ -92,8 +89,9 @@ private:
         if (!drawn_[d]) continue;
         SectorView& view = state_.views[s * different_.count + d];
         const std::size_t place = different_.first[d];
-        view.occluders = ask ? &OcclusionAccess::tiles(state_.automatic.picks[place].buffer()) : nullptr;
-        if (ask) view.projection = occlusion::eye_projection(views_[place].view, state_.origins[s]);
+        const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
+        view.occluders = ask ? &tiles : nullptr;
+        if (ask) view.projection = occlusion::eye_projection(tiles.view, state_.origins[s], tiles.scale);
       }
     }
   }
@@ -110,7 +108,7 @@ private:
     const double asking = nodes + static_cast<double>(chunks_ * different_.count) * double{costs_.query};
     if (!purse_.affords(asking)) return false;
     set_occluders(true);
-    std::vector<std::uint32_t>& hidden = state_.automatic.hidden;
+    std::vector<std::uint32_t>& hidden = memory_.hidden;
     hidden.reserve(state_.entries.capacity() * different_.count);
     hidden.resize(state_.entries.size() * different_.count);
     const ChunkTally tally = find_hidden_chunks(state_.input, state_.entries, hidden.data());
@@ -136,13 +134,13 @@ private:
   // --- triangles ---
 
   [[nodiscard]] std::uint64_t triangles_of(ObjectId id) const {
-    const WorldOccluders& o = state_.world->occluders;
+    const WorldOccluders& o = *state_.world->occluders;
     const std::uint32_t set = o.triangle_set(id);
     return set == kNothing ? 0 : o.triangles[set].count;
   }
 
   void ask_triangles() {
-    const WorldOccluders& o = state_.world->occluders;
+    const WorldOccluders& o = *state_.world->occluders;
     const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
     if (o.triangles.size() == o.free_triangles.size() || !purse_.affords(looking)) return;
     purse_.pay(looking);
@@ -153,14 +151,13 @@ private:
       if (!purse_.affords(cost)) break;
       purse_.pay(cost);
     }
-    AutomaticState& automatic = state_.automatic;
-    if (automatic.seen.size() < count) automatic.seen.resize(state_.world->size);
-    automatic.asking = count;
+    if (memory_.seen.size() < count) memory_.seen.resize(state_.world->size);
+    memory_.asking = count;
     constexpr std::size_t kWorthAJob = 64;
-    automatic.parts = static_cast<std::uint32_t>(
+    memory_.parts = static_cast<std::uint32_t>(
         std::clamp<std::size_t>(count / kWorthAJob, 1, jobs_.run ? jobs_.threads : 1));
-    if (automatic.parts > 1) {
-      jobs_.run(jobs_.user, automatic.parts, ask_part, this);
+    if (memory_.parts > 1) {
+      jobs_.run(jobs_.user, memory_.parts, ask_part, this);
     } else {
       ask_part(this, 0);
     }
@@ -169,17 +166,17 @@ private:
 
   static void ask_part(void* data, std::uint32_t part) {
     const auto& self = *static_cast<const Try*>(data);
-    AutomaticState& automatic = self.state_.automatic;
-    const std::size_t count = automatic.asking, first = count * part / automatic.parts,
-                      end = count * (part + 1) / automatic.parts;
-    for (std::size_t i = first; i < end; ++i) automatic.seen[i] = self.views_that_see(i);
+    Memory& memory = self.memory_;
+    const std::size_t count = memory.asking, first = count * part / memory.parts,
+                      end = count * (part + 1) / memory.parts;
+    for (std::size_t i = first; i < end; ++i) memory.seen[i] = self.views_that_see(i);
   }
 
   // Bits of the mask of the i-th object that its triangles leave; without masks, any or none.
   [[nodiscard]] std::uint8_t views_that_see(std::size_t i) const {
     const std::uint8_t before = masks_ ? masks_[i] : std::uint8_t{0xff};
     const ObjectId id = state_.out[i];
-    const WorldOccluders& o = state_.world->occluders;
+    const WorldOccluders& o = *state_.world->occluders;
     const std::uint32_t at = o.triangle_set(id);
     if (at == kNothing || !stands_in(o.triangles[at].bounds, stored_box(*state_.world, id))) return before;
     const ObjectTriangles& set = o.triangles[at];
@@ -189,7 +186,7 @@ private:
       const std::size_t place = different_.first[d];
       if ((before & different_.bits[d]) == 0 || !drawn_[d] || !(set.origin == views_[place].view.origin))
         continue;
-      const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(state_.automatic.picks[place].buffer());
+      const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
       if (!occlusion::query_triangles(tiles, set.blocks, set.count))
         seen &= static_cast<std::uint8_t>(~different_.bits[d]);
     }
@@ -197,13 +194,12 @@ private:
   }
 
   void keep_seen() {
-    const AutomaticState& automatic = state_.automatic;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < result_.count; ++i) {
       state_.out[kept] = state_.out[i];
-      const bool asked = i < automatic.asking;
-      if (masks_) masks_[kept] = asked ? automatic.seen[i] : masks_[i];
-      kept += !asked || automatic.seen[i] != 0;
+      const bool asked = i < memory_.asking;
+      if (masks_) masks_[kept] = asked ? memory_.seen[i] : masks_[i];
+      kept += !asked || memory_.seen[i] != 0;
     }
     result_.count = kept;
   }
@@ -214,10 +210,10 @@ private:
     const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
     if (!purse_.affords(looking)) return;
     purse_.pay(looking);
-    auto& picks = state_.automatic.picks;
+    auto& picks = memory_.picks;
     for (std::size_t d = 0; d < different_.count; ++d) picks[different_.first[d]].begin_seen();
     for (std::size_t i = 0; i < result_.count; ++i) {
-      const std::uint32_t carrier = state_.world->occluders.carrier(state_.out[i]);
+      const std::uint32_t carrier = state_.world->occluders->carrier(state_.out[i]);
       if (carrier == kNothing) continue;
       for (std::size_t d = 0; d < different_.count; ++d)
         if (!masks_ || (masks_[i] & different_.bits[d]) != 0) picks[different_.first[d]].saw(carrier);
@@ -225,22 +221,33 @@ private:
   }
 
   CullerState& state_;
+  Memory& memory_;
   std::span<const CullView> views_;
   const DifferentViews& different_;
   const JobSystem& jobs_;
-  CullCosts costs_;
+  const CullCosts& costs_;
   CullResult& result_;
   std::uint8_t* masks_;  // the caller's
-  std::uint64_t before_ = 0, chunks_ = 0;
+  std::uint64_t before_, chunks_ = 0;
   std::array<bool, kMaxViews> drawn_{};
-  Purse purse_{0};
+  Purse purse_;
+};
+
+class Automatic final : public Hiding {
+public:
+  void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+            const CullOptions& options, const CullCosts& costs, CullResult& result) override {
+    Try(state, memory_, views, different, options.jobs, costs, result).run();
+  }
+
+private:
+  Memory memory_;
 };
 
 }  // namespace
 
-void hide_automatically(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
-                        const CullOptions& options, CullResult& result) {
-  Try(state, views, different, options, result).run();
+std::unique_ptr<Hiding> make_hiding() {
+  return std::make_unique<Automatic>();
 }
 
 }  // namespace sightline::world

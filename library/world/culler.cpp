@@ -13,7 +13,6 @@
 #include <sightline/projection.hpp>
 
 #include "library/geometry/linear.hpp"
-#include "library/world/automatic_cull.hpp"
 #include "library/world/culler_state.hpp"
 
 namespace sightline {
@@ -52,7 +51,7 @@ SectorView sector_view(const CullView& culled, const Sector& sector) {
   }
   if (culled.occlusion) {
     out.occluders = &OcclusionAccess::tiles(*culled.occlusion);
-    out.projection = occlusion::eye_projection(view, sector.origin, out.occluders->scale);
+    out.projection = out.occluders->ask->projection(view, sector.origin, out.occluders->scale);
   }
   return out;
 }
@@ -316,7 +315,32 @@ void write_values(const std::vector<std::uint32_t>& values, std::span<ObjectId> 
   for (ObjectId& id : ids) id = id < values.size() ? values[id] : id;
 }
 
+// What the passes cost, and what else the world's occluders hide.
+void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+          const CullOptions& options, CullResult& result) {
+  CullCosts costs = options.costs;
+  if (costs.object == 0) costs.object = static_cast<float>(state.object_cost.value(double{kObjectCost}));
+  result.frustum_cost = result.cost =
+      static_cast<double>(result.nodes_visited) * double{costs.node} +
+      static_cast<double>(result.tested) * double{costs.test} +
+      static_cast<double>(count_drawn(state, result.count)) * double{costs.object};
+  const WorldOccluders* occluders = state.world->occluders.get();
+  if (occluders && occluders->any() && result.count > 0 && state.account.begins_try()) {
+    if (!state.hiding) state.hiding = occluders->make_hiding();
+    state.hiding->hide(state, views, different, options, costs, result);
+  }
+  state.account.close_frame(result.cost, result.frustum_cost);
+}
+
 }  // namespace
+
+std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept {
+  const std::uint8_t* masks = masks_of_caller(state);
+  if (!masks) return count;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += static_cast<std::uint64_t>(std::popcount(masks[i]));
+  return sum;
+}
 
 void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result) {
   const std::uint32_t count = split_work(state, jobs.run ? jobs.threads : 1);
@@ -361,9 +385,8 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
   state.masks = output.masks.empty() ? nullptr : output.masks.data();
   world::prepare_layers(state, views, output.ids.size());
   world::run_passes(state, options.jobs, result);
-  if (options.occlusion == Occlusion::automatic)
-    world::hide_automatically(state, views, different, options, result);
-  state.automatic.object_cost.drew(result.count);
+  if (options.occlusion == Occlusion::automatic) world::hide(state, views, different, options, result);
+  state.object_cost.drew(result.count);
   if (options.values_for_ids) world::write_values(state.world->values, output.ids.first(result.count));
   return result;
 }
@@ -371,7 +394,7 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
 Status Culler::report_frame_time(double nanoseconds) noexcept {
   if (!(nanoseconds >= 0) || !std::isfinite(nanoseconds))
     return {StatusCode::bad_argument, "cull: a frame's time is negative or not finite"};
-  state_->automatic.object_cost.took(nanoseconds);
+  state_->object_cost.took(nanoseconds);
   return {};
 }
 

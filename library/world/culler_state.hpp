@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
-#include <sightline/occlusion.hpp>
 #include <sightline/world.hpp>
 
 #include "library/world/account.hpp"
-#include "library/world/occluder_picks.hpp"
 #include "library/world/sector_test.hpp"
 #include "library/world/world_cull.hpp"
 #include "library/world/world_state.hpp"
@@ -29,15 +29,17 @@ struct DifferentViews {
   std::array<std::uint8_t, kMaxViews> bits{};   ///< of all that are the same
 };
 
-/// What automatic occlusion remembers from frame to frame.
-struct AutomaticState {
-  Account account;
-  ObjectCost object_cost;
-  std::array<OccluderPicks, kMaxViews> picks;  ///< by the place of the caller's view
-  std::vector<std::uint32_t> hidden;           ///< of PassInput
-  std::vector<std::uint8_t> seen;              ///< what the triangles of each object left of its mask
-  std::size_t asking = 0;                      ///< how many objects' triangles are asked, of the first
-  std::uint32_t parts = 0;                     ///< in so many jobs
+struct CullerState;
+
+/// What a culler does after its passes by frustum, whose ids and masks stand in the state's output, and
+/// `result` is theirs: hides what the world's occluders hide, and adds to the result's cost, no more than the
+/// account allows. A world hands it to its cullers once it has an occluder, so that who has none need not
+/// link it.
+class Hiding {
+public:
+  virtual ~Hiding() = default;
+  virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+                    const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
 };
 
 struct CullerState {
@@ -60,8 +62,18 @@ struct CullerState {
   std::array<std::uint32_t, kMaxViews> layers{};  ///< of the caller's views
   bool filters_layers = false;
 
-  AutomaticState automatic;
+  Account account;
+  ObjectCost object_cost;
+  std::unique_ptr<Hiding> hiding;
 };
+
+/// The masks that the caller gets, or null.
+inline std::uint8_t* masks_of_caller(CullerState& state) noexcept {
+  return state.masks == state.scratch_masks.data() ? nullptr : state.masks;
+}
+
+/// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
+std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
 
 /// Writes what the input's views see of the entries, in as many jobs as there are, and adds to the result.
 void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result);

@@ -52,7 +52,7 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
 using ChunkAnswers = std::array<std::uint8_t, kGroup>;
 HWY_INLINE void ask_chunks(const ChunkMap::Group& group, const SectorView& view, ChunkAnswers& visible) {
   const auto& b = group.bounds;
-  occlusion::query_boxes(
+  view.occluders->ask->boxes(
       *view.occluders, view.projection,
       {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
       visible.data());
@@ -123,7 +123,7 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
   std::uint64_t dropped = 0;
   if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
-  occlusion::query_boxes(
+  view.occluders->ask->boxes(
       *view.occluders, view.projection,
       {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
       visible.data());

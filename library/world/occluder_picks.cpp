@@ -131,7 +131,7 @@ double OccluderPicks::begin_cost(const CullView& view, const CullCosts& costs) n
 bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
                          const CullCosts& costs, double most, Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
-  picks_.reserve(world.occluders.carriers.size()), seen_.reserve(world.occluders.carriers.size());
+  picks_.reserve(world.occluders->carriers.size()), seen_.reserve(world.occluders->carriers.size());
   picks_.clear();
   const double begin = begin_cost(view, costs), had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
@@ -144,14 +144,14 @@ bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::spa
   std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
   });
-  for (const Pick& pick : picks_) draw_one(sight, world.occluders.carriers[pick.carrier]);
+  for (const Pick& pick : picks_) draw_one(sight, world.occluders->carriers[pick.carrier]);
   return true;
 }
 
 // Those that were seen the last time; all that are in view where most of these are no longer. What comes into
 // view is seen, and so one of them the next time.
 void OccluderPicks::find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse) {
-  const WorldOccluders& o = sight.world.occluders;
+  const WorldOccluders& o = *sight.world.occluders;
   const double candidate = double{sight.costs.candidate};
   std::size_t still = 0;
   for (const std::uint32_t carrier : seen_) still += carrier < o.briefs.size() && look_at(sight, carrier);
@@ -166,7 +166,7 @@ void OccluderPicks::find(const Sight& sight, std::span<const ObjectId> in_view, 
 
 // Returns whether the view sees it at all.
 bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
-  const CarrierBrief& brief = sight.world.occluders.briefs[carrier];
+  const CarrierBrief& brief = sight.world.occluders->briefs[carrier];
   if (brief.occluder == kNoOccluder) return false;
   const Sphere sphere = sight.sphere(brief);
   if (!overlaps(sight.frustum, sphere)) return false;
@@ -175,7 +175,7 @@ bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
   const Vec3& e = sight.projector.eye;
   const Vec3 to{sphere.centre.x - e.x, sphere.centre.y - e.y, sphere.centre.z - e.z};
   const double cost =
-      shape_cost(sight.world.occluders.shapes[brief.occluder], brief.along_axes, sight.costs) +
+      shape_cost(sight.world.occluders->shapes[brief.occluder], brief.along_axes, sight.costs) +
       double{sight.costs.tile} * double{area / kTileArea};
   picks_.push_back({area / static_cast<float>(cost), to.x * to.x + to.y * to.y + to.z * to.z,
                     static_cast<float>(cost), carrier});
@@ -206,7 +206,7 @@ void OccluderPicks::draw_one(const Sight& sight, const Carrier& carrier) {
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
   const bool here = stands_in(carrier.bounds, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
   if (!here || !sight.large(box)) return;
-  const OccluderShape& shape = sight.world.occluders.shapes[carrier.placement.occluder];
+  const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
   const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
   // What lies inside an object would still show a front to a pixel that looks from inside it.
   const bool cut = sight.cuts(box);

@@ -252,7 +252,7 @@ Status World::remove(Strided<const Handle> handles) {
     s.touch(object.sector);
     s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
-    s.occluders.forget(id);
+    if (s.occluders) s.occluders->forget(id);
     s.free_ids.push_back(id);
   }
   s.size -= handles.size();

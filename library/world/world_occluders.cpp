@@ -7,6 +7,7 @@
 #include "library/geometry/box_math.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/geometry/linear.hpp"
+#include "library/world/automatic_cull.hpp"
 #include "library/world/free_list.hpp"
 #include "library/world/world_state.hpp"
 
@@ -145,6 +146,22 @@ bool stands_in(const WorldBox& inner, const WorldBox& outer) noexcept {
          within(inner.min.z, inner.max.z, outer.min.z, outer.max.z);
 }
 
+WorldOccluders& WorldState::own_occluders() {
+  if (!occluders) occluders = std::make_unique<WorldOccluders>();
+  return *occluders;
+}
+
+WorldOccluders::~WorldOccluders() = default;
+
+void WorldOccluders::forget(ObjectId id) noexcept {
+  take_away(id);
+  take_triangles(id);
+}
+
+std::unique_ptr<Hiding> WorldOccluders::make_hiding() const {
+  return world::make_hiding();
+}
+
 void WorldOccluders::place(ObjectId id, const OccluderPlacement& placement, std::size_t ids) {
   if (placement.occluder == kNoOccluder) return take_away(id);
   if (carrier_of.size() < ids) carrier_of.resize(ids, kNothing);
@@ -210,14 +227,14 @@ Result<OccluderId> World::add_occluder(const Occluder& occluder, std::span<const
   shape.spheres.assign(spheres.begin(), spheres.end());
   world::include(shape.bounds, occluder, spheres);
   shape.used = true;
-  WorldOccluders& o = state_->occluders;
+  WorldOccluders& o = state_->own_occluders();
   const OccluderId id = world::take_element(o.shapes, o.free_shapes);
   o.shapes[id] = std::move(shape);
   return id;
 }
 
 Status World::remove_occluder(OccluderId occluder) {
-  WorldOccluders& o = state_->occluders;
+  WorldOccluders& o = state_->own_occluders();
   if (!world::names_one(o, occluder))
     return {StatusCode::bad_argument, "world: there is no occluder of this name", occluder};
   if (o.shapes[occluder].carriers > 0)
@@ -231,7 +248,7 @@ Status World::set_occluders(Strided<const Handle> handles, Strided<const Occlude
   if (const Status stand = world::check_handles(*this, handles); !stand) return stand;
   if (!placements.sound() || placements.size() != handles.size())
     return {StatusCode::bad_argument, "world: expected one occluder's placement a handle"};
-  WorldOccluders& o = state_->occluders;
+  WorldOccluders& o = state_->own_occluders();
   for (std::size_t i = 0; i < placements.size(); ++i) {
     const OccluderPlacement placement = placements[i];
     if (placement.occluder == kNoOccluder) continue;
@@ -253,7 +270,7 @@ Status World::set_occluding(Strided<const Handle> handles, Strided<const std::ui
     return {StatusCode::bad_argument, "world: expected one switch, 0 or 1, a handle"};
   for (std::size_t i = 0; i < on.size(); ++i)
     if (on[i] > 1) return {StatusCode::bad_argument, "world: a switch is neither 0 nor 1", i};
-  WorldOccluders& o = state_->occluders;
+  WorldOccluders& o = state_->own_occluders();
   for (std::size_t i = 0; i < on.size(); ++i) {
     const std::uint32_t at = o.carrier(handles[i].index);
     if (at != kNothing) o.briefs[at].occluder = on[i] ? o.carriers[at].placement.occluder : kNoOccluder;
@@ -269,7 +286,7 @@ Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const 
     return {StatusCode::too_many, "world: an object cannot have more than 2^30 triangles"};
   if (!world::in_reach(origin))
     return {StatusCode::bad_argument, "world: the triangles' origin is not finite or out of reach"};
-  state_->occluders.set_triangles(handle.index, corners, origin, state_->objects.size());
+  state_->own_occluders().set_triangles(handle.index, corners, origin, state_->objects.size());
   return {};
 }
 

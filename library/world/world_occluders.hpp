@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,10 @@ struct ObjectTriangles {
   WorldBox bounds;
 };
 
+class Hiding;
+
+/// A world has none before its first occluder or triangles. What a culler and a world without any call is
+/// virtual, so that programs that never have any need not link it.
 struct WorldOccluders {
   std::vector<OccluderShape> shapes;
   std::vector<std::uint32_t> free_shapes;
@@ -67,6 +72,12 @@ struct WorldOccluders {
   [[nodiscard]] std::uint32_t triangle_set(ObjectId id) const noexcept {
     return id < triangles_of.size() ? triangles_of[id] : kNothing;
   }
+  virtual ~WorldOccluders();
+  /// To be called of every object that is removed.
+  virtual void forget(ObjectId id) noexcept;
+  /// What a culler hides by what stands here.
+  [[nodiscard]] virtual std::unique_ptr<Hiding> make_hiding() const;
+
   /// Whether some object carries an occluder.
   [[nodiscard]] bool any() const noexcept { return carriers.size() > free_carriers.size(); }
 
@@ -74,11 +85,6 @@ struct WorldOccluders {
   void take_away(ObjectId id) noexcept;
   void set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin, std::size_t ids);
   void take_triangles(ObjectId id) noexcept;
-  /// To be called of every object that is removed.
-  void forget(ObjectId id) noexcept {
-    take_away(id);
-    take_triangles(id);
-  }
 };
 
 /// Whether `inner` lies within `outer`, but for a millimetre and what rounding may have done.

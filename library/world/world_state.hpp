@@ -51,9 +51,9 @@ struct WorldState {
   std::vector<ObjectId> free_ids;
   /// One an id, or empty as long as nobody has set any.
   std::vector<std::uint32_t> layers, values;
-  WorldOccluders occluders;
-  std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
-  std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
+  std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
+  std::vector<std::uint32_t> touched;         ///< sectors that changed since tidy(), each once
+  std::uint64_t tidied = 0;                   ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
 
   /// Whether anybody has culled since the last frame began: then the next change begins another.
@@ -64,6 +64,8 @@ struct WorldState {
   std::size_t awake_hand = 0;        ///< where let_rest() goes on
   static constexpr std::uint32_t kFewestAtRest = 64;
 
+  /// Made if there are none.
+  WorldOccluders& own_occluders();
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose map changes.
   void touch(std::uint32_t sector);

@@ -37,7 +37,7 @@ std::vector<glm::dvec2> places_in(Random& random, const View& view, std::size_t 
   for (const double x : {1e-4, 1 - 1e-4}) {
     for (const double y : {1e-4, 1 - 1e-4}) out.push_back(at + glm::dvec2(x, y));
   }
-  for (int k = 0; k < 4; ++k) out.push_back(at + glm::dvec2(random.between(0, 1), random.between(0, 1)));
+  for (int k = 0; k < 4; ++k) out.push_back(at + glm::dvec2{random.between(0, 1), random.between(0, 1)});
   return out;
 }
 
@@ -63,7 +63,15 @@ void hold_pixels(Random& random, const OcclusionBuffer& buffer, const Truth& tru
 }
 
 TEST(Coverage, OfBoxesAndSpheresIsSafeAtAnyPlace) {
-  for (const OcclusionOptions& options : {kArea, kHalf, kQuarter, kHalfCentres}) {
+  // How much is drawn at least of the pixels that lie whole in a box, or in a sphere: a tenth below what was
+  // measured.
+  struct Case {
+    OcclusionOptions options;
+    double boxes, spheres;
+  };
+  for (const auto& [options, least, least_of_spheres] :
+       {Case{kArea, 0.56, 0.68}, Case{kHalf, 0.52, 0.6}, Case{kQuarter, 0.46, 0.48},
+        Case{kHalfCentres, 0.54, 0.55}}) {
     Random random(31);
     Held boxes_counted, spheres_counted;
     for (int round = 0; round < 30; ++round) {
@@ -91,7 +99,6 @@ TEST(Coverage, OfBoxesAndSpheresIsSafeAtAnyPlace) {
       hold_pixels(
           random, buffer, [&](double x, double y) { return nearest(spheres, x, y); }, spheres_counted);
     }
-    const double least = options.scale == 4 ? 0.4 : 0.6, least_of_spheres = options.scale == 4 ? 0.05 : 0.2;
     EXPECT_GT(static_cast<double>(boxes_counted.drawn), least * static_cast<double>(boxes_counted.whole));
     EXPECT_GT(static_cast<double>(spheres_counted.drawn),
               least_of_spheres * static_cast<double>(spheres_counted.whole));
