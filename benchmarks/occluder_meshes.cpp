@@ -61,13 +61,11 @@ public:
 
 class Ours : public Contestant {
 public:
-  Ours(const Occluders& occluders, Sides sides)
-      : mesh_(
-            or_throw(OccluderMesh::make(occluders.positions, occluders.indices, sides, TJunctions::closed))) {
-  }
-  std::string name() const override { return "sightline"; }
+  Ours(const OccluderMesh& mesh, std::string name, const OcclusionOptions& options)
+      : mesh_(mesh), name_(std::move(name)), options_(options) {}
+  std::string name() const override { return name_; }
   void draw(const Camera&, const View& view) override {
-    or_throw(buffer_.begin({view, {}}));
+    or_throw(buffer_.begin({view, {}}, options_));
     or_throw(buffer_.draw_mesh(mesh_));
   }
   void query(std::span<const Box> boxes, std::span<std::uint8_t> visible) override {
@@ -85,7 +83,9 @@ public:
   }
 
 private:
-  OccluderMesh mesh_;
+  const OccluderMesh& mesh_;
+  std::string name_;
+  OcclusionOptions options_;
   OcclusionBuffer buffer_;
 };
 
@@ -245,9 +245,16 @@ void run(const Options& options) {
   std::vector<View> views;
   for (const Camera& camera : cameras) views.push_back(or_throw(make_view(camera, width, height)));
   std::vector<std::unique_ptr<Contestant>> contestants;
-  auto owned = std::make_unique<Ours>(occluders, options.two_sided ? Sides::both : Sides::front);
+  const OccluderMesh mesh =
+      or_throw(OccluderMesh::make(occluders.positions, occluders.indices,
+                                  options.two_sided ? Sides::both : Sides::front, TJunctions::closed));
+  auto owned = std::make_unique<Ours>(mesh, "sightline", OcclusionOptions{});
   const Ours& ours = *owned;
   contestants.push_back(std::move(owned));
+  contestants.push_back(
+      std::make_unique<Ours>(mesh, "sightline, any place", OcclusionOptions{Coverage::area}));
+  contestants.push_back(
+      std::make_unique<Ours>(mesh, "sightline, half resolution", OcclusionOptions{Coverage::centres, 2}));
   for (const std::string& file : options.peers)
     contestants.push_back(std::make_unique<Peer>(file, occluders, options.two_sided, width, height));
   Judged judged;

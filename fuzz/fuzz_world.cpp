@@ -145,7 +145,7 @@ public:
   explicit Play(Bytes& in) : in_(in) {}
 
   void step() {
-    const std::uint8_t operation = in_.byte() % 12;
+    const std::uint8_t operation = in_.byte() % 15;
     count_ = in_.byte() % (kMost + 1);
     for (Thing& t : things_) {
       t.handle = {};
@@ -154,8 +154,9 @@ public:
     }
     if (operation < 7) fill(in_, things_, count_);
     constexpr void (Play::*operations[])() = {
-        &Play::insert,  &Play::insert, &Play::move,  &Play::draw_boxes, &Play::ask,          &Play::rays,
-        &Play::columns, &Play::remove, &Play::begin, &Play::draw_mesh,  &Play::draw_spheres, &Play::cull};
+        &Play::insert,       &Play::insert,  &Play::move,          &Play::draw_boxes, &Play::ask,
+        &Play::rays,         &Play::columns, &Play::remove,        &Play::begin,      &Play::draw_mesh,
+        &Play::draw_spheres, &Play::cull,    &Play::add_occluders, &Play::carry,      &Play::cull};
     (this->*operations[operation])();
     require(sightline_world_size(world_.get()) == standing_);
   }
@@ -263,6 +264,55 @@ private:
     for (std::size_t i = 0; i < parts.index_count; ++i) require(parts.indices[i] < parts.position_count);
   }
 
+  void add_occluders() {
+    std::vector<float> numbers(6 * kMost);
+    for (float& f : numbers) f = in_.single(1);
+    const std::size_t boxes = in_.rarely() ? kTooMuch : count_ / 2;
+    for (std::size_t b = 0; b < count_ / 2; ++b) {
+      for (std::size_t a = 0; a < 3 && !in_.rarely(); ++a)
+        numbers[6 * b + 3 + a] = numbers[6 * b + a] + static_cast<float>(in_.byte());
+    }
+    std::uint32_t name = 0;
+    if (done(sightline_world_add_solids(world_.get(), numbers.data(), boxes, numbers.data(),
+                                        in_.rarely() ? kTooMuch : in_.byte() % 8u, &name)))
+      names_.push_back(name);
+    std::vector<std::uint32_t> indices(3 * (in_.byte() % 20) + (in_.rarely() ? 1 : 0));
+    for (std::uint32_t& i : indices) i = in_.byte() % (in_.rarely() ? 90u : 80u);
+    const std::uint8_t side = in_.rarely() ? in_.byte() : in_.byte() & 1;
+    if (done(sightline_world_add_surface(world_.get(), numbers.data(), 80, indices.data(), indices.size(),
+                                         &side, in_.byte() & 1, in_.rarely() ? nullptr : &name)))
+      names_.push_back(name);
+    if (!in_.rarely()) return;
+    (void)done(sightline_world_remove_occluder(world_.get(), in_.rarely() ? in_.byte() : some_occluder()));
+  }
+
+  std::uint32_t some_occluder() {
+    return names_.empty() || in_.rarely() ? SIGHTLINE_NO_OCCLUDER : names_[in_.byte() % names_.size()];
+  }
+
+  void carry() {
+    const sightline_handles handles = handles_of(in_, things_, count_);
+    std::vector<sightline_occluder_placement> placements(count_);
+    for (sightline_occluder_placement& p : placements) {
+      p = sightline_occluder_placement_of(in_.rarely() ? in_.byte() : some_occluder(), nullptr);
+      for (int i = 12; i < 15; ++i) p.transform[i] = in_.single(1);
+      if (in_.byte() & 1) p.transform[in_.byte() % 12] = in_.single(0.01);
+      if (in_.byte() < 32) p.origin[in_.byte() % 3] = in_.number(1);
+    }
+    (void)done(sightline_world_set_occluders(world_.get(), &handles, placements.data(),
+                                             in_.rarely() ? kTooMuch : count_));
+    std::vector<std::uint8_t> on(count_);
+    for (std::uint8_t& s : on) s = in_.rarely() ? 2 : in_.byte() & 1;
+    (void)done(sightline_world_set_occluding(world_.get(), &handles, on.data(), count_));
+    if (count_ == 0) return;
+    std::vector<float> corners(9 * (in_.byte() % 40));
+    for (float& f : corners) f = in_.single(1);
+    const double origin[3] = {in_.number(1), in_.number(1), in_.number(1)};
+    (void)done(sightline_world_set_triangles(world_.get(), things_[0].handle, corners.data(),
+                                             in_.rarely() ? corners.size() : corners.size() / 3,
+                                             in_.byte() & 1 ? origin : nullptr));
+  }
+
   void ask() {
     std::array<std::uint8_t, kMost> seen;
     seen.fill(9);
@@ -310,10 +360,11 @@ private:
 
   void cull() {
     std::vector<sightline_cull_view> views(in_.byte() % 10);
+    const bool automatic = in_.byte() & 1;
     for (sightline_cull_view& view : views) {
       const sightline_view camera = in_.byte() & 1 ? last_view_ : view_of(in_);
       view = sightline_cull_view_of(&camera);
-      if (in_.byte() & 1) view.occlusion = occlusion_.get();
+      if (automatic ? in_.rarely() : in_.byte() & 1) view.occlusion = occlusion_.get();
       if (in_.byte() & 1) view.layers = in_.byte();
       if (in_.byte() & 1) view.min_area = in_.single(1);
       if (in_.rarely()) view.struct_size = in_.byte();
@@ -321,6 +372,10 @@ private:
     sightline_cull_options options = sightline_cull_options_default();
     options.jobs = {run_here, nullptr, in_.byte() % 70u, 0};
     options.values_for_ids = in_.rarely() ? 1 : 0;
+    if (automatic)
+      options.occlusion = in_.rarely() ? in_.byte() : std::uint32_t{SIGHTLINE_OCCLUSION_AUTOMATIC};
+    options.costs.object = in_.byte() & 1 ? 1e6f : in_.single(1000);
+    (void)done(sightline_report_frame_time(culler_.get(), in_.number(1)));
     if (in_.rarely()) options.struct_size = in_.byte();
     const std::size_t needed = sightline_cull_capacity(world_.get(), &options);
     const std::size_t room = needed > 0 && in_.rarely() ? needed - 1 : needed;
@@ -334,6 +389,7 @@ private:
                              &result)))
       return;
     require(result.count <= standing_);
+    require(options.occlusion == SIGHTLINE_OCCLUSION_NONE || result.cost <= 1.05 * result.frustum_cost);
     for (std::size_t i = 0; i < result.count && options.values_for_ids == 0; ++i)
       require(ids[i] < sightline_world_id_limit(world_.get()) && (!output.masks || masks[i] != 0));
   }
@@ -345,6 +401,7 @@ private:
   Owned<sightline_bvh, sightline_bvh_destroy> bvh_{sightline_bvh_create()};
   sightline_view last_view_{};
   std::vector<sightline_handle> handles_;
+  std::vector<std::uint32_t> names_;  // of occluders
   std::size_t standing_ = 0, count_ = 0;
   Things things_{};
 };

@@ -19,7 +19,7 @@ says() {
 consume() {
   local root=$1 python=$2 example pc
   rm -rf "$scratch/build"
-  for example in frustum world my_structs shadows_and_stereo own_jobs c c_occluder method; do
+  for example in frustum world my_structs shadows_and_stereo own_jobs c c_occluder c_automatic method; do
     { cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_PREFIX_PATH="$root" && cmake --build "$scratch/build/$example"; } >"$scratch/log" 2>&1 ||
       { cat "$scratch/log"; echo "examples/$example does not build by find_package"; exit 1; }
@@ -31,6 +31,7 @@ consume() {
   says "3 jobs: draw [0-9]* of 100000 boxes" "$scratch/build/own_jobs/own_jobs"
   says "of 100000 things" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c/my_structs"
   says "20000 triangles: [1-9][0-9]* occlude" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c_occluder/occluder"
+  says "the gate is shut: draw 1 of 4000" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c_automatic/automatic"
   says "of 30000 trees in [0-9]* calls" "$scratch/build/method/method"
 
   pc=$(dirname "$(find "$root" -name sightline.pc)")
@@ -49,6 +50,7 @@ consume() {
   says "frame 2: draw [0-9]* of 100000 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/my_structs.py
   says "500 m" env PYTHONPATH="$python" /usr/bin/python3 examples/python/flight.py
   says "its occluder [3-9][0-9]" env PYTHONPATH="$python" /usr/bin/python3 examples/python/occluder.py
+  says "frame 1: draw [0-9]* of 4225 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/automatic.py
   says "object-frustum" "$root/bin/sightline" methods
 }
 

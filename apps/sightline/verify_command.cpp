@@ -26,6 +26,7 @@ namespace {
 struct VerifyOptions {
   std::string scene, methods, size = "160x120", device = "cpu", pvs, replay, replays = ".";
   std::size_t views = 100;
+  std::uint32_t samples = 0;
   std::uint64_t seed = 1;
   double moving = 0;
   RasterState faces = RasterState::materials;
@@ -52,7 +53,7 @@ void write_replays(const measure::Verification& result, const VerifyOptions& opt
     const std::string file = (std::filesystem::path(options.replays) / name).string();
     try {
       measure::save_replay(file, {options.scene, options.pvs, m.method, options.device, options.faces,
-                                  options.moving, m.examples.front()});
+                                  options.moving, options.samples, m.examples.front()});
       fmt::print("\nThis view again: sightline verify --replay {}\n", file);
     } catch (const Error& error) {
       fmt::print(stderr, "sightline: {}\n", error.what());  // what was found counts all the same
@@ -70,7 +71,7 @@ int run_replay(const VerifyOptions& options) {
   });
   const auto device = open_device_or_cpu(replay.device);
   const std::array methods{replay.method};
-  measure::Bench bench(scene, methods, device.get());
+  measure::Bench bench(scene, methods, device.get(), replay.samples);
   const measure::MethodVerdict now = measure::look_again(bench, replay);
   expect_silence(device.get());
   if (now.examples.empty() && now.holds()) {
@@ -94,7 +95,7 @@ int run_verify(const VerifyOptions& options) {
   measure::Bench bench(scene,
                        options.methods.empty() ? measure::promising_methods(scene, device != nullptr)
                                                : split("--methods", options.methods),
-                       device.get());
+                       device.get(), options.samples);
   const std::vector<Camera> cameras = camera::random_cameras(scene, options.views, options.seed);
   const measure::Verification result =
       measure::verify(bench, cameras, width, height, options.moving, progress("verify"));
@@ -103,6 +104,7 @@ int run_verify(const VerifyOptions& options) {
   fmt::print("{}: {} random views of {}x{}, seed {}", scene.name, result.views, width, height, options.seed);
   if (device) fmt::print(", each as a camera cut and once more");
   if (options.moving > 0) fmt::print(", {:g} of the objects moving", options.moving);
+  if (options.samples > 0) fmt::print(", {} random places of each pixel", options.samples);
   if (device) fmt::print(", on {}", result.device);
   fmt::print("; {}\n\n{}", report::sides_drawn(scene.raster_state),
              report::render(report::verification_table(result)));
@@ -148,6 +150,12 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("--seed", options->seed, "of the random views")
       ->check(whole_number())
       ->capture_default_str();
+  command
+      .add_option("--samples", options->samples,
+                  "random places of each pixel that are judged in place of its centre: for methods that "
+                  "promise all of the image, as masked?coverage=area does")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N");
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();

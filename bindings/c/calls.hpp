@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include <sightline/box_view.hpp>
 #include <sightline/jobs.hpp>
@@ -19,6 +20,9 @@
 
 struct sightline_world {
   sightline::World world;
+};
+struct sightline_occluder {
+  sightline::Occluder occluder;
 };
 struct sightline_occlusion {
   sightline::OcclusionBuffer buffer;
@@ -65,6 +69,11 @@ Status take(const sightline_sphere_view& given, SphereView& spheres) noexcept;
 Status take(const sightline_jobs& given, JobSystem& jobs) noexcept;
 /// The same of a view, which must be sound.
 Status take(const sightline_view& given, WorldView& view) noexcept;
+
+/// Whether the pointers hold a mesh, and its sides.
+Status take_mesh(const float* positions, std::size_t position_count, const std::uint32_t* indices,
+                 std::size_t index_count, const std::uint8_t* sides, std::size_t side_count,
+                 std::vector<Sides>& drawn);
 
 WorldView view_of(const sightline_view& view) noexcept;
 sightline_view view_of(const WorldView& view) noexcept;

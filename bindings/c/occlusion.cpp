@@ -11,9 +11,6 @@
 struct sightline_occluder_mesh {
   sightline::OccluderMesh mesh;
 };
-struct sightline_occluder {
-  sightline::Occluder occluder;
-};
 struct sightline_occludees {
   sightline::OccludeeTriangles triangles;
 };
@@ -43,9 +40,11 @@ sightline_status may_see(const sightline_occlusion* occlusion, const Given* volu
   return keep(occlusion->buffer.may_see(view, {visible, capacity}));
 }
 
-// Whether the pointers hold a mesh, and its sides.
-Status take_mesh(const float* positions, size_t position_count, const uint32_t* indices, size_t index_count,
-                 const uint8_t* sides, size_t side_count, std::vector<Sides>& drawn) {
+}  // namespace
+
+Status c_api::take_mesh(const float* positions, size_t position_count, const uint32_t* indices,
+                        size_t index_count, const uint8_t* sides, size_t side_count,
+                        std::vector<Sides>& drawn) {
   if (!can_hold(points_of(positions, position_count).data(), position_count) ||
       !can_hold(indices, index_count) || !can_hold(sides, side_count))
     return {StatusCode::bad_argument,
@@ -58,8 +57,6 @@ Status take_mesh(const float* positions, size_t position_count, const uint32_t* 
   }
   return {};
 }
-
-}  // namespace
 
 extern "C" {
 
@@ -162,6 +159,14 @@ void sightline_occlusion_destroy(sightline_occlusion* occlusion) {
 sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion, const sightline_view* view) {
   if (!occlusion || !view) return refuse("occlusion: the occlusion or the view is NULL");
   return keep(occlusion->buffer.begin(view_of(*view)));
+}
+
+sightline_status sightline_occlusion_begin_with(sightline_occlusion* occlusion, const sightline_view* view,
+                                                uint32_t coverage, uint32_t scale) {
+  if (!occlusion || !view) return refuse("occlusion: the occlusion or the view is NULL");
+  if (coverage > SIGHTLINE_COVERAGE_AREA)
+    return refuse("occlusion: the coverage is none, expected centres or area");
+  return keep(occlusion->buffer.begin(view_of(*view), {static_cast<Coverage>(coverage), scale}));
 }
 
 sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion, sightline_view* view) {

@@ -2,6 +2,7 @@
 #include <sightline/world.hpp>
 
 #include <array>
+#include <vector>
 
 #include "bindings/c/calls.hpp"
 
@@ -17,7 +18,10 @@ namespace {
 static_assert(sizeof(sightline_handle) == sizeof(Handle) &&
               offsetof(sightline_handle, generation) == offsetof(Handle, generation));
 static_assert(SIGHTLINE_NO_OBJECT == kNoObject && SIGHTLINE_ALL_LAYERS == kAllLayers &&
-              SIGHTLINE_MAX_VIEWS == kMaxViews);
+              SIGHTLINE_MAX_VIEWS == kMaxViews && SIGHTLINE_NO_OCCLUDER == kNoOccluder);
+static_assert(sizeof(sightline_occluder_placement) == sizeof(OccluderPlacement) &&
+              offsetof(sightline_occluder_placement, transform) == offsetof(OccluderPlacement, transform) &&
+              offsetof(sightline_occluder_placement, origin) == offsetof(OccluderPlacement, origin));
 
 Strided<const Handle> read(const sightline_handles& handles) {
   return {handles.first, handles.count, handles.stride};
@@ -42,12 +46,16 @@ Status take(const sightline_object_columns& given, ObjectColumns& columns) {
 Status take(const sightline_cull_options* given, CullOptions& options) {
   sightline_cull_options o = sightline_cull_options_default();
   if (given &&
-      (!take_struct(given, SIGHTLINE_FIRST_SIZE(sightline_cull_options, jobs), o) || o.values_for_ids > 1)) {
+      (!take_struct(given, SIGHTLINE_FIRST_SIZE(sightline_cull_options, jobs), o) || o.values_for_ids > 1 ||
+       o.occlusion > SIGHTLINE_OCCLUSION_AUTOMATIC || o.reserved != 0 || o.costs.reserved != 0)) {
     return {StatusCode::bad_argument,
-            "cull: struct_size or values_for_ids of the options are unknown, "
+            "cull: struct_size, values_for_ids or occlusion of the options are unknown, "
             "expected those of sightline_cull_options_default"};
   }
   options.values_for_ids = o.values_for_ids == 1;
+  options.occlusion = static_cast<Occlusion>(o.occlusion);
+  const sightline_cull_costs& c = o.costs;
+  options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
   return c_api::take(o.jobs, options.jobs);
 }
 
@@ -90,6 +98,17 @@ Status take(const sightline_cull_view* given, std::size_t count, Views& views) {
 
 Status stale() {
   return {StatusCode::stale_handle, "world: the handle names no object that stands"};
+}
+
+constexpr std::size_t kMostFloats = static_cast<std::size_t>(-1) / 64;
+
+sightline_status add(sightline_world& world, const Occluder& occluder, std::span<const Sphere> spheres,
+                     uint32_t* name) {
+  if (!name) return refuse("world: what to write the occluder's name to is NULL");
+  const Result<OccluderId> added = world.world.add_occluder(occluder, spheres);
+  if (!added) return keep(added.error());
+  *name = *added;
+  return SIGHTLINE_OK;
 }
 
 // Calls write(world, handle) where both are there and the handle's object stands.
@@ -154,6 +173,69 @@ sightline_status sightline_world_set_values(sightline_world* world, const sightl
   return keep(world->world.set_values(read(*handles), read(*values)));
 }
 
+sightline_status sightline_world_add_occluder(sightline_world* world, const sightline_occluder* occluder,
+                                              uint32_t* name) {
+  if (!world || !occluder) return refuse("add_occluder: the world or the occluder is NULL");
+  return add(*world, occluder->occluder, {}, name);
+}
+
+sightline_status sightline_world_add_solids(sightline_world* world, const float* boxes, size_t box_count,
+                                            const float* spheres, size_t sphere_count, uint32_t* name) {
+  if (!world || !can_hold(boxes, box_count) || box_count > kMostFloats || !can_hold(spheres, sphere_count) ||
+      sphere_count > kMostFloats)
+    return refuse("add_solids: a pointer is NULL, or a count more than memory holds");
+  Occluder occluder;
+  std::vector<Sphere> balls;
+  for (std::size_t i = 0; i < box_count; ++i) occluder.boxes.push_back(box_of(boxes + 6 * i));
+  for (std::size_t i = 0; i < sphere_count; ++i) balls.push_back(sphere_of(spheres + 4 * i));
+  return add(*world, occluder, balls, name);
+}
+
+sightline_status sightline_world_add_surface(sightline_world* world, const float* positions,
+                                             size_t position_count, const uint32_t* indices,
+                                             size_t index_count, const uint8_t* sides, size_t side_count,
+                                             uint32_t* name) {
+  if (!world) return refuse("add_surface: the world is NULL");
+  Occluder occluder;
+  if (const Status ok =
+          take_mesh(positions, position_count, indices, index_count, sides, side_count, occluder.sides);
+      !ok)
+    return keep(ok);
+  const auto points = points_of(positions, position_count);
+  occluder.positions.assign(points.begin(), points.end());
+  occluder.indices.assign(indices, indices + index_count);
+  return add(*world, occluder, {}, name);
+}
+
+sightline_status sightline_world_remove_occluder(sightline_world* world, uint32_t name) {
+  if (!world) return refuse("remove_occluder: the world is NULL");
+  return keep(world->world.remove_occluder(name));
+}
+
+sightline_status sightline_world_set_occluders(sightline_world* world, const sightline_handles* handles,
+                                               const sightline_occluder_placement* placements, size_t count) {
+  if (!world || !handles || !can_hold(placements, count))
+    return refuse("set_occluders: a pointer is NULL, or a count more than memory holds");
+  return keep(world->world.set_occluders(read(*handles), {placements, count, sizeof *placements}));
+}
+
+sightline_status sightline_world_set_occluding(sightline_world* world, const sightline_handles* handles,
+                                               const uint8_t* on, size_t count) {
+  if (!world || !handles || !can_hold(on, count))
+    return refuse("set_occluding: a pointer is NULL, or a count more than memory holds");
+  return keep(world->world.set_occluding(read(*handles), std::span(on, count)));
+}
+
+sightline_status sightline_world_set_triangles(sightline_world* world, sightline_handle handle,
+                                               const float* corners, size_t corner_count,
+                                               const double* origin) {
+  const auto points = points_of(corners, corner_count);
+  if (!world || !can_hold(points.data(), corner_count))
+    return refuse("set_triangles: a pointer is NULL, or a count more than memory holds");
+  const WorldPoint about = origin ? WorldPoint{origin[0], origin[1], origin[2]} : WorldPoint{};
+  return keep(world->world.set_triangles(handle_of(handle), points, about));
+}
+
 size_t sightline_world_size(const sightline_world* world) {
   return world ? world->world.size() : 0;
 }
@@ -213,8 +295,15 @@ sightline_status sightline_cull(sightline_culler* culler, const sightline_world*
   if (const Status ok = take(*output, out); !ok) return keep(ok);
   const Result<CullResult> done = culler->culler.cull(world->world, {given.data(), view_count}, how, out);
   if (!done) return keep(done.error());
-  *result = {done->count, done->tested, done->nodes_visited, done->culled_occlusion, {}};
+  *result = {
+      done->count, done->tested, done->nodes_visited, done->culled_occlusion, done->cost, done->frustum_cost,
+      {}};
   return SIGHTLINE_OK;
+}
+
+sightline_status sightline_report_frame_time(sightline_culler* culler, double nanoseconds) {
+  if (!culler) return refuse("report_frame_time: the culler is NULL");
+  return keep(culler->culler.report_frame_time(nanoseconds));
 }
 
 }  // extern "C"

@@ -208,6 +208,33 @@ Mat4 matrix_of(const py::object& given, const char* name) {
   return matrix;
 }
 
+std::vector<Mat4> matrices_of(const py::object& given, const char* name) {
+  const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!array) refuse(std::string(name) + ": expected (4, 4) or (n, 4, 4) numbers");
+  if (array.ndim() == 2) return {matrix_of(given, name)};
+  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
+    refuse(std::string(name) + ": expected (4, 4) or (n, 4, 4) numbers");
+  std::vector<Mat4> out(static_cast<std::size_t>(array.shape(0)));
+  const float* at = array.data();
+  for (Mat4& matrix : out) {
+    for (std::size_t i = 0; i < 16; ++i) matrix.m[4 * (i % 4) + i / 4] = *at++;
+  }
+  return out;
+}
+
+std::vector<Sides> sides_of(const py::object& given) {
+  if (py::isinstance<py::str>(given)) {
+    const auto name = given.cast<std::string>();
+    if (name == "both") return {Sides::both};
+    if (name == "front") return {Sides::front};
+    refuse("sides: expected 'both', 'front' or bool (m,)");
+  }
+  std::vector<Sides> out;
+  for (const bool front : truths_of(given, "sides: expected 'both', 'front' or bool (m,)"))
+    out.push_back(front ? Sides::front : Sides::both);
+  return out;
+}
+
 py::array_t<float> array_of(const Mat4& matrix) {
   py::array_t<float> array({4, 4});
   for (std::size_t i = 0; i < 16; ++i) {

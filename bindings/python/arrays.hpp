@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <sightline/box_view.hpp>
+#include <sightline/occluder.hpp>
 #include <sightline/status.hpp>
 #include <sightline/view.hpp>
 #include <sightline/world.hpp>
@@ -63,6 +64,10 @@ std::pair<float, float> two_numbers_of(const py::object& given, const char* name
 Box box_of(const py::object& given, const char* name);
 /// (4, 4) numbers, [row, column].
 Mat4 matrix_of(const py::object& given, const char* name);
+/// The same, or (n, 4, 4).
+std::vector<Mat4> matrices_of(const py::object& given, const char* name);
+/// "both", "front", or a truth a triangle: whether only its front occludes.
+std::vector<Sides> sides_of(const py::object& given);
 py::array_t<float> array_of(const Mat4& matrix);
 py::array_t<float> array_of(const Box& box);
 

@@ -54,6 +54,7 @@ auto looking_unlocked(const Guarded<T>& object, const Call& call) {
 // Each adds its classes and functions.
 void add_views(pybind11::module_& m);
 void add_world(pybind11::module_& m);
+void add_world_occluders(pybind11::class_<Guarded<World>>& world);
 void add_occlusion(pybind11::module_& m);
 void add_frustum(pybind11::module_& m);
 void add_rays(pybind11::module_& m);

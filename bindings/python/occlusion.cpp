@@ -13,20 +13,6 @@ namespace {
 
 using SharedTriangles = Guarded<OccludeeTriangles>;
 
-// "both", "front", or a truth a triangle: whether only its front occludes.
-std::vector<Sides> sides_of(const py::object& given) {
-  if (py::isinstance<py::str>(given)) {
-    const auto name = given.cast<std::string>();
-    if (name == "both") return {Sides::both};
-    if (name == "front") return {Sides::front};
-    refuse("sides: expected 'both', 'front' or bool (m,)");
-  }
-  std::vector<Sides> out;
-  for (const bool front : truths_of(given, "sides: expected 'both', 'front' or bool (m,)"))
-    out.push_back(front ? Sides::front : Sides::both);
-  return out;
-}
-
 OccluderMesh make_mesh(const py::object& positions, const py::object& indices, const py::object& sides) {
   const std::vector<Vec3> points = points_of(positions, "positions");
   const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");
@@ -68,8 +54,10 @@ void set(SharedTriangles& triangles, std::uint32_t object, const py::object& cor
   expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.set(object, points); }));
 }
 
-void begin(Occlusion& occlusion, const WorldView& view) {
-  expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.begin(view); }));
+void begin(Occlusion& occlusion, const WorldView& view, const std::string& coverage, std::uint32_t scale) {
+  if (coverage != "centres" && coverage != "area") refuse("coverage: expected 'centres' or 'area'");
+  const OcclusionOptions options{coverage == "area" ? Coverage::area : Coverage::centres, scale};
+  expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.begin(view, options); }));
 }
 
 // Drawing checks the caller's arrays and then relies on them, so it keeps the interpreter's lock.
@@ -231,7 +219,11 @@ void add_occlusion(py::module_& m) {
       "are as World has them; spheres a SphereView or float32 (n, 4). Spheres, meshes and triangles are in\n"
       "metres about the view's origin. Refused: drawing and reading before begin().")
       .def(py::init<>())
-      .def("begin", &begin, "Empties it and takes the view, of at most 8192 pixels a side.", py::arg("view"))
+      .def("begin", &begin,
+           "Empties it and takes the view, of at most 8192 pixels a side. It answers for pixel 'centres', or "
+           "for\n"
+           "any place on the image ('area'), in pixels 1, 2 or 4 times as wide as the view's.",
+           py::arg("view"), py::arg("coverage") = "centres", py::arg("scale") = 1)
       .def_property_readonly("view", &begun_view, "The view it was begun with, or None.")
       .def("draw_boxes", &draw_boxes,
            "Draws solid boxes: every point inside one must be solid. Those that are not valid are left out.",

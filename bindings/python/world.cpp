@@ -154,13 +154,21 @@ struct Output {
   }
 };
 
+// "none" or "automatic".
+sightline::Occlusion occlusion_of(const std::string& name) {
+  if (name == "automatic") return sightline::Occlusion::automatic;
+  if (name != "none") refuse("occlusion: expected 'none' or 'automatic'");
+  return sightline::Occlusion::none;
+}
+
 py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object& views, bool masks,
-                bool values) {
+                bool values, const std::string& occlusion, float object_cost) {
   const std::vector<ViewOfWorld> given = views_of(views);
   std::vector<CullView> seen;
   for (const ViewOfWorld& v : given)
     seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area});
-  const CullOptions options{{}, values};
+  CullOptions options{{}, values};
+  options.occlusion = occlusion_of(occlusion), options.costs.object = object_cost;
   for (;;) {
     Output output(world, options, masks);
     const CullOutput out{span_of(output.ids), span_of(output.masks)};
@@ -183,20 +191,21 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
 void add_world(py::module_& m) {
   m.attr("ALL_LAYERS") = kAllLayers;
   m.attr("NO_OBJECT") = kNoObject;
+  m.attr("NO_OCCLUDER") = kNoOccluder;
   m.attr("MAX_VIEWS") = kMaxViews;
   const auto uint32 = py::dtype::of<std::uint32_t>();
   m.attr("handle_dtype") =
       py::dtype(py::list(py::make_tuple("index", "generation")), py::list(py::make_tuple(uint32, uint32)),
                 py::list(py::make_tuple(0, 4)), sizeof(Handle));
 
-  py::class_<SharedWorld>(
+  py::class_<SharedWorld> world_class(
       m, "World",
       "Boxes that come, move and go within 1e11 m of 0, by stable handle. Handles are uint32 (n, 2), index "
       "and\n"
       "generation, or (n,) of two uint32 fields (handle_dtype); the index is the id that cull() returns.\n"
       "Boxes are a BoxView or an array (n, 2, 3) of minimum and maximum, float32 or float64, in metres.\n"
-      "Refused, changing nothing: lengths that differ, boxes that are not min <= max, stale handles.")
-      .def(py::init<>())
+      "Refused, changing nothing: lengths that differ, boxes that are not min <= max, stale handles.");
+  world_class.def(py::init<>())
       .def("insert", &insert,
            "Puts n boxes in and returns their handles: `handles` where it is given, into which they are\n"
            "written, or a new array (n, 2). layers: uint32 (n,), a bit a layer, all unless given; values:\n"
@@ -218,6 +227,7 @@ void add_world(py::module_& m) {
            py::arg("ids"))
       .def("__len__", &size_of)
       .def_property_readonly("id_limit", &id_limit_of);
+  add_world_occluders(world_class);
 
   py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
       .def(
@@ -242,8 +252,20 @@ void add_world(py::module_& m) {
           "depends on the world's history alone; with masks=True also which views see each, uint8 (k,), bit\n"
           "v for view v; with values=True the objects' values instead of their ids. views: a View, a\n"
           "CullView, or a sequence of them. Refused: no or too many views, one that is no camera, an\n"
-          "occlusion that was not begun with its view.",
-          py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false);
+          "occlusion that was not begun with its view.\n"
+          "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides "
+          "left\n"
+          "out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that drawing an\n"
+          "object costs; 0: what report_frame_time() taught.",
+          py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
+          py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f)
+      .def(
+          "report_frame_time",
+          [](LockedCuller& culler, double seconds) {
+            expect(changing(culler, [&](Culler& c) { return c.report_frame_time(1e9 * seconds); }));
+          },
+          "Teaches what an object costs: how long the frame took that drew what the last cull left.",
+          py::arg("seconds"));
 }
 
 }  // namespace sightline::python

@@ -48,7 +48,7 @@ public:
   /// three corners are left out. Errors: bad_mesh for indices that are not a multiple of three or out of
   /// range (index(): which index), for positions that are not finite (index(): which position) and for
   /// another number of sides; too_many beyond 2³⁰ triangles or 2³² - 2 positions. Cost: n log n, some 2 µs a
-  /// triangle: build once. Allocates: about 300 bytes a triangle.
+  /// triangle: build once. Allocates: about 500 bytes a triangle.
   static Result<OccluderMesh> make(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
                                    std::span<const Sides> sides = {},
                                    TJunctions junctions = TJunctions::open);

@@ -2,7 +2,8 @@
 // boxes are tested against it. After masked software occlusion culling (Hasselgren, Andersson &
 // Akenine-Möller 2016), but with a depth a pixel, and conservative: an occluder counts at a pixel only where
 // it surely covers the pixel's centre, with a depth that surely is not nearer than its own; a box is hidden
-// only where its nearest depth lies behind every pixel centre of its outward-rounded rectangle.
+// only where its nearest depth lies behind every pixel centre of its outward-rounded rectangle. Where all of
+// the image is asked for, the same is said of whole pixels in place of centres.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,26 @@
 #include <sightline/view.hpp>
 
 namespace sightline {
+
+/// Which places on the image an OcclusionBuffer answers for.
+enum class Coverage : std::uint8_t {
+  centres,  ///< pixel centres, where rasterisers and rays take their one sample by default
+  /// Any place on the image: multisampling, jitter, upscaling, another renderer's pixels. An occluder counts
+  /// only in pixels that it covers whole. Triangles of a mesh that share an edge cover a pixel together, but
+  /// those that are less than half a pixel wide or cut by the near plane count as missing. Meshes cost two to
+  /// three times as much to draw.
+  area,
+};
+
+/// How fine and for which places an OcclusionBuffer answers.
+struct OcclusionOptions {
+  Coverage coverage = Coverage::centres;  ///< which places are answered for
+  /// Pixels of the view along a side of one of the buffer's: 1, 2 (half resolution) or 4. Coarser has fewer
+  /// tiles and hides less, and meshes are slower to draw; what is promised stays the same.
+  std::uint32_t scale = 1;
+  /// Whether both say the same.
+  bool operator==(const OcclusionOptions&) const noexcept = default;
+};
 
 /// The triangles of many objects, laid out to be asked for frame after frame: what their boxes and spheres
 /// leave, OcclusionBuffer::may_see(const OccludeeTriangles&, …) tests triangle by triangle. Objects are
@@ -52,8 +73,10 @@ private:
   State* state_;
 };
 
-/// One view's depth of occluders. Begin it with a view, draw occluders, ask. It answers for that view alone:
-/// Culler refuses it beside any other. Before the first begin() nothing can be drawn and all may be seen.
+/// One view's depth of occluders. Begin it with a view, draw occluders, ask. What is said of pixel centres
+/// holds for any place on the image where it was begun for that (Coverage::area). It answers for that view
+/// alone: Culler refuses it beside any other. Before the first begin() nothing can be drawn and all may be
+/// seen.
 ///
 /// A BoxView says itself where its boxes stand: doubles, or floats about its own origin, which is fastest
 /// where it is the view's. All else is in metres about the view's origin.
@@ -69,12 +92,14 @@ public:
   OcclusionBuffer& operator=(OcclusionBuffer&&) noexcept;
 
   /// Empties the buffer and takes the view. After a refusal it is as before.
-  /// Errors: bad_view for a view that culling refuses, and one of more than 8192 pixels a side. Cost: grows
-  /// with the image's tiles of 8 × 8 pixels. Allocates: 4 bytes a pixel and 8 a tile, where the view is
-  /// larger than any before.
-  Status begin(const WorldView& view);
+  /// Errors: bad_view for a view that culling refuses, and one of more than 8192 pixels a side; bad_argument
+  /// for options that are none. Cost: grows with the image's tiles of 8 × 8 pixels. Allocates: 4 bytes a
+  /// pixel and 24 a tile, where the image is larger than any before.
+  Status begin(const WorldView& view, const OcclusionOptions& options = {});
   /// The view it was begun with; 1 × 1 pixels wide before.
   [[nodiscard]] const WorldView& view() const noexcept;
+  /// What it was begun with.
+  [[nodiscard]] const OcclusionOptions& options() const noexcept;
   /// Whether begin() has succeeded.
   [[nodiscard]] bool begun() const noexcept;
 

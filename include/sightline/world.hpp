@@ -15,6 +15,7 @@
 
 #include <sightline/box_view.hpp>
 #include <sightline/jobs.hpp>
+#include <sightline/occluder.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
@@ -40,6 +41,18 @@ struct ObjectColumns {
   Strided<const std::uint32_t> layers = {};
   /// Numbers of the caller's own, that cull() writes instead of ids where it is asked to. Without: the id.
   Strided<const std::uint32_t> values = {};
+};
+
+/// Names an occluder that a world keeps for its objects to carry.
+using OccluderId = std::uint32_t;
+/// The name of none.
+inline constexpr OccluderId kNoOccluder = 0xffffffffu;
+
+/// Which occluder an object carries, and where it is.
+struct OccluderPlacement {
+  OccluderId occluder = kNoOccluder;  ///< kNoOccluder takes away what the object carried
+  Mat4 transform = {};                ///< affine, from the occluder's space to metres about `origin`
+  WorldPoint origin = {};             ///< metres
 };
 
 /// Boxes in sectors of 3,200 m, each with a double-precision origin, so that a box keeps its place to half a
@@ -80,6 +93,32 @@ public:
   /// Gives each object a new value; see ObjectColumns. Errors, Cost, Allocates: as set_layers.
   Status set_values(Strided<const Handle> handles, Strided<const std::uint32_t> values);
 
+  /// Keeps an occluder for objects to carry, as many as like: what make_occluder made, or triangles and boxes
+  /// put there by hand, and solid spheres. Its boxes are drawn where it has no triangles. All but triangles
+  /// behind the first `solid_triangles` must lie inside what the objects show; those others are part of it.
+  /// Errors: as OccluderMesh::make; bad_box; bad_argument for more solid triangles than triangles. Cost: as
+  /// OccluderMesh::make. Allocates: a copy.
+  Result<OccluderId> add_occluder(const Occluder& occluder, std::span<const Sphere> spheres = {});
+  /// Forgets an occluder; its name may be used again. Errors: bad_argument where there is none of the name,
+  /// or an object carries it.
+  Status remove_occluder(OccluderId occluder);
+  /// Gives each object an occluder, switched on, which hides from culls with Occlusion::automatic what lies
+  /// behind it. Call it again when the object has moved: an occluder that reaches out of its object's box is
+  /// not drawn. A view about the placement's origin draws it exactly where the transform says; for others the
+  /// translation is rounded once. Errors: bad_argument (lengths, an unknown occluder, a transform that is not
+  /// finite or not affine, an origin beyond kWorldReach), stale_handle. Cost: linear. Allocates: some 200
+  /// bytes an object that carries one, 4 an id.
+  Status set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements);
+  /// Switches what the objects carry on (1) or off (0), as doors do; those that carry nothing stay so.
+  /// Errors: bad_argument, stale_handle. Cost: linear.
+  Status set_occluding(Strided<const Handle> handles, Strided<const std::uint8_t> on);
+  /// Gives an object its triangles, three points each in metres about `origin`: all that it shows. Culls with
+  /// Occlusion::automatic whose view has the same origin ask for them where the box may be seen. Call it
+  /// again when the object has moved: triangles that reach out of its box are not asked. None takes them
+  /// away. Errors: bad_mesh where the points are no multiple of three; too_many beyond 2³⁰ triangles;
+  /// stale_handle. Cost: a copy. Allocates: 576 bytes for every 16 triangles begun, 4 an id.
+  Status set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin = {});
+
   /// Whether the handle names an object of this world.
   [[nodiscard]] bool contains(Handle handle) const noexcept;
   /// The box as stored, in metres; {} for a stale handle.
@@ -116,10 +155,34 @@ struct CullView {
   float min_area = 0;
 };
 
+/// Whether a cull draws occluders by itself.
+enum class Occlusion : std::uint8_t {
+  none,       ///< it does not; a view may still bring a buffer
+  automatic,  ///< it draws those that the objects carry, as far as that pays
+};
+
+/// What counted work costs, in any one unit: the defaults are nanoseconds on a processor of 2023. Automatic
+/// occlusion weighs by them what it does against what it saves.
+struct CullCosts {
+  float object = 0;     ///< an object that is left, for who draws it; 0: what report_frame_time() taught
+  float node = 10;      ///< a region, group or chunk looked at
+  float test = 1;       ///< an object tested against planes
+  float candidate = 8;  ///< an object looked at for what it carries
+  float tile = 2;       ///< 8 × 8 pixels emptied or drawn
+  float shape = 30;     ///< a box or a sphere drawn
+  float triangle = 15;  ///< a triangle drawn
+  float query = 12;     ///< a box asked
+  float occludee = 10;  ///< a triangle asked
+};
+/// An object's cost as long as nobody has said or taught another.
+inline constexpr float kObjectCost = 1000;
+
 /// How a call culls; the same for all its views.
 struct CullOptions {
-  JobSystem jobs = {};          ///< the caller's threads; without them, the calling one
-  bool values_for_ids = false;  ///< writes the objects' values instead of their ids
+  JobSystem jobs = {};                    ///< the caller's threads; without them, the calling one
+  bool values_for_ids = false;            ///< writes the objects' values instead of their ids
+  Occlusion occlusion = Occlusion::none;  ///< automatic: no view brings a buffer
+  CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
 };
 
 /// Where a cull writes; both have cull_capacity() elements, but `masks` may be empty. What stands behind the
@@ -135,6 +198,9 @@ struct CullResult {
   std::uint64_t tested = 0;            ///< objects tested one by one
   std::uint64_t nodes_visited = 0;     ///< regions, groups and chunks looked at
   std::uint64_t culled_occlusion = 0;  ///< objects that only occlusion dropped, summed over the views
+  /// With automatic occlusion, in the unit of CullCosts: the work of this cull and of drawing what it left,
+  /// each object once for every bit of its mask; and that of culling by frustum alone.
+  double cost = 0, frustum_cost = 0;
 };
 
 /// Elements that the spans of a CullOutput need: all objects, and what SIMD and jobs write beyond.
@@ -163,10 +229,23 @@ public:
   /// nothing once it has grown to the world's size.
   Result<CullResult> cull(const World& world, std::span<const CullView> views, const CullOptions& options,
                           const CullOutput& output) noexcept;
-  /// The same for one view. Errors, Cost, Threads, Allocates: the same.
+  ///
+  /// With Occlusion::automatic what the world's objects carry is drawn, as far as that pays, and what lies
+  /// behind it is left out, too. This is never slower, in counted work × options.costs: no frame costs more
+  /// than 1.05 × frustum culling alone, and all of this culler's frames together no more than 1.02 ×. What
+  /// was seen the last time, and so is worth drawing, is kept for each place in `views`: a culler should see
+  /// the same cameras at the same places. Errors, too: bad_argument for costs out of range, or where a view
+  /// brings a buffer. Allocates, too: until it has drawn its largest image and mesh.
+  ///
+  /// The same for one view, without options. Errors, Cost, Threads, Allocates: the same.
   Result<CullResult> cull(const World& world, const CullView& view, std::span<std::uint32_t> ids) noexcept {
     return cull(world, {&view, 1}, {}, {ids, {}});
   }
+
+  /// Teaches what an object costs, where CullCosts::object is 0: how many nanoseconds the frame took that
+  /// drew what the last cull left. What each further object adds is learned, once frames differ in how many
+  /// they draw. Errors: bad_argument for a time that is not finite or negative.
+  Status report_frame_time(double nanoseconds) noexcept;
 
 private:
   struct State;

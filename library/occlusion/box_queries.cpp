@@ -58,7 +58,7 @@ HWY_INLINE Terms terms_of(const Vec4& row, const BoxCorners& box) {
 }
 
 // The rectangles of boxes on the image, and their nearest depths.
-HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box) {
+HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box, float margin) {
   const F f;
   const Terms tx = terms_of(e.x, box), ty = terms_of(e.y, box), tw = terms_of(e.w, box);
   Rectangles on_image = no_rectangles();
@@ -76,7 +76,7 @@ HWY_INLINE Question question_of(const EyeProjection& e, const BoxCorners& box) {
   // The second term covers the pixel mapping's own rounding and a rasteriser's 8-bit subpixel grid.
   const VF slack = hn::Add(
       hn::Mul(hn::Add(hn::Max(tx.error, ty.error), hn::Mul(widest_of(on_image), tw.error)), over_least),
-      hn::Set(f, kSubpixelSlack));
+      hn::Set(f, kSubpixelSlack + margin));
   VF nearest = hn::Mul(over_least, hn::Set(f, 1 + kReciprocalRounding));
   if (e.orthographic) {
     const Terms tn = terms_of(e.nearness, box);
@@ -91,7 +91,7 @@ void query_all_boxes(const DepthTiles& tiles, const EyeProjection& e, const BoxS
   const std::array<const float*, 6> arrays{boxes.min_x, boxes.min_y, boxes.min_z,
                                            boxes.max_x, boxes.max_y, boxes.max_z};
   answer_all(tiles, arrays, boxes.count, visible,
-             [&](const auto& from) HWY_ATTR { return question_of(e, corners_of(e, from)); });
+             [&](const auto& from) HWY_ATTR { return question_of(e, corners_of(e, from), tiles.margin); });
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -62,7 +62,7 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
     const VF across = hn::Mul(hn::Set(f, rays.across[a]), scale),
              along = hn::Mul(hn::Set(f, rays.down[a]), scale);
     const VF start = orthographic ? hn::Sub(hn::Set(f, rays.at[a]), at) : hn::Set(f, rays.at[a]);
-    const VF moved = moved_back(hn::Mul(start, scale), across, along, nearest);
+    const VF moved = moved_back(tiles, hn::Mul(start, scale), across, along, nearest);
     // A plane that does not look at the eye is in front of all others.
     hn::Store(hn::IfThenElseZero(sure, across), f, out.across[a].data());
     hn::Store(hn::IfThenElseZero(sure, along), f, out.down[a].data());
@@ -200,7 +200,7 @@ HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::si
   std::array<VPoints, 2> at;
   const std::uint32_t some = load_sides(tiles.projection, boxes, count, at, out);
   const BoxImages image = project_corners(tiles, at, out);
-  const VF widest = widest_of(image.outline), inset = inset_of(widest);
+  const VF widest = widest_of(image.outline), inset = inset_of(tiles, widest);
   std::uint32_t grazing = 0;
   const Facing facing = find_faces(tiles, image.nearest, grazing, out);
   const std::uint32_t bounded = find_edges(facing, tiles.rays.turns_right, inset, out);

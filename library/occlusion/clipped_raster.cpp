@@ -93,7 +93,7 @@ bool set_plane(const DepthTiles& tiles, const WidePlane& plane, const Outline& o
   out.down = static_cast<float>(along(rays.down) / scale);
   out.at = static_cast<float>((orthographic ? along(rays.at) - plane.at : along(rays.at)) / scale);
   out.at -= kNearnessRounding * std::fabs(outline.nearest) +
-            (std::fabs(out.across) + std::fabs(out.down)) * kPixelPlay;
+            (std::fabs(out.across) + std::fabs(out.down)) * (kPixelPlay + tiles.margin);
   return true;
 }
 
@@ -152,7 +152,8 @@ void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, fl
   if (way * area < 0) return;
   Convex out;
   if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return;
-  const float inset = kInset + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
+  const float inset =
+      kInset + tiles.margin + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
   out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
   for (std::size_t i = 0; i < outline.count; ++i) {
     const std::uint8_t edge = polygon.edge[i];

@@ -15,4 +15,13 @@ struct Convex {
   float at = 0, across = 0, down = 0;
 };
 
+/// Edges on the image and what lies up to `reach` beside them along x and y: pixels that a polygon leaves
+/// out.
+struct Bands {
+  static constexpr std::size_t kMost = 16;
+  std::size_t count = 0;
+  std::array<float, kMost> at, slope, half;  // x = at + slope·y ± half
+  std::array<float, kMost> left, right, top, bottom;
+};
+
 }  // namespace sightline::occlusion

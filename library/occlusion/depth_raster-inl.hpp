@@ -158,6 +158,34 @@ HWY_INLINE void draw_polygon(DepthTiles& tiles, const Convex& polygon, const Til
   });
 }
 
+// The same without the pixels of some bands.
+HWY_INLINE void draw_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                             const Bands& without) {
+  if (without.count == 0) return draw_polygon(tiles, polygon, range);
+  if (polygon.left_edges == 0 || polygon.right_edges == 0) return;
+  const auto width = static_cast<float>(tiles.width);
+  const PlaneTile<1> of = tile_of<1>({{polygon.at}, {polygon.across}, {polygon.down}});
+  std::array<Spans, Bands::kMost> left_out;
+  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
+    const float first_y = static_cast<float>(ty * kTile) + 0.5f;
+    const Spans spans = spans_of(polygon, first_y, width);
+    std::size_t bands = 0;
+    for (std::size_t i = 0; i < without.count; ++i) {
+      if (without.top[i] <= first_y + 7 && without.bottom[i] >= first_y)
+        left_out[bands++] = spans_of(without, i, first_y, width);
+    }
+    const std::uint32_t end_x = std::min(range.end_x, (end_column(spans, 0) + kTile - 1) / kTile);
+    for (std::uint32_t tx = std::max(range.begin_x, first_column(spans, 0) / kTile); tx < end_x; ++tx) {
+      std::uint64_t pixels = pixels_of(spans, 0, tx * kTile);
+      for (std::size_t i = 0; i < bands; ++i) pixels &= ~pixels_of(left_out[i], 0, tx * kTile);
+      if (pixels == ~std::uint64_t{0})
+        cover_tiles(tiles, of, tx, tx + 1, ty);
+      else
+        draw_tile(tiles, of, tx, ty, pixels);
+    }
+  }
+}
+
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.
 HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, float nearness) {
   const F f;
@@ -173,20 +201,20 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, fl
 }
 
 // Planes moved away by what rounding can have brought them nearer: of the numbers, and of the pixel's place
-// on a surface seen edge on.
-HWY_INLINE VF moved_back(VF at, VF across, VF down, VF nearest) {
+// on a surface seen edge on; and to where they are farthest as far from a pixel's centre as it counts.
+HWY_INLINE VF moved_back(const DepthTiles& tiles, VF at, VF across, VF down, VF nearest) {
   const F f;
-  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay));
+  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay + tiles.margin));
   if (SIGHTLINE_MUTANT(occluders_a_step_too_near))
     return hn::Add(at, hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)));
   return hn::Sub(at, hn::Add(hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)), slant));
 }
 
 // How far inside its outline an occluder must hold a pixel centre whose outline reaches `widest` pixels far.
-HWY_INLINE VF inset_of(VF widest) {
+HWY_INLINE VF inset_of(const DepthTiles& tiles, VF widest) {
   const F f;
   if (SIGHTLINE_MUTANT(outlines_not_inset)) return hn::Zero(f);
-  return hn::Add(hn::Set(f, kInset), hn::Mul(hn::Set(f, kInsetGrowth), widest));
+  return hn::Add(hn::Set(f, kInset + tiles.margin), hn::Mul(hn::Set(f, kInsetGrowth), widest));
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -29,6 +29,8 @@ struct MeshScratch {
   std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
   /// Which way a triangle turns, in groups whose `known` says `turn`.
   geometry::AlignedVector<float> facing;
+  /// Beside it, where a pixel's margin counts: how much its nearness changes over a pixel at most.
+  geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
@@ -40,12 +42,18 @@ struct TilePlane {
   std::uint32_t covers;      ///< 0 where DepthTiles::nearness has the tile; undefined where nothing was drawn
 };
 
+struct BoxQuestions;
+
 struct DepthTiles {
   WorldView view{{{}, {}, 1, 1}, {}};
+  OcclusionOptions options;
   bool begun = false;
   EyeProjection projection;
   PixelRays rays;
-  std::uint32_t width = 0, height = 0;
+  std::uint32_t width = 0, height = 0;  ///< in pixels of the buffer
+  std::uint32_t scale = 1;              ///< pixels of the view along a side of one of the buffer's
+  /// How far from a pixel's centre, along x and y, an occluder must cover all and what is asked for counts.
+  float margin = 0;
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
@@ -61,6 +69,10 @@ struct DepthTiles {
   geometry::AlignedVector<float> untouched;
 
   MeshScratch mesh;
+
+  /// A cull's way to what answers for boxes; set where the buffer is begun, so that programs that never begin
+  /// one need not link it.
+  const BoxQuestions* ask = nullptr;
 };
 
 /// The plane's nearness at a pixel of its tile, to the bit as vectors of pixels have it.
@@ -91,6 +103,10 @@ void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
+struct BoxQuestions {
+  decltype(&eye_projection) projection;
+  decltype(&query_boxes) boxes;
+};
 void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, const SphereSpan& spheres,
                    std::uint8_t* visible) noexcept;
 /// Three corners a triangle.

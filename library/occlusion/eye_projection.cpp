@@ -24,13 +24,13 @@ struct Rows {
   bool orthographic = false;
 };
 
-Rows rows_of(const View& view) {
+Rows rows_of(const View& view, double scale) {
   const glm::dmat4 clip = to_double(view.eye_to_clip) * to_double(view.world_to_eye);
   const glm::dmat4 rows = glm::transpose(clip);
   Rows out;
   out.orthographic = is_orthographic(view);
   out.forward = glm::normalize(-glm::dvec3(glm::inverse(to_double(view.world_to_eye))[2]));
-  const double half_width = 0.5 * view.width, half_height = 0.5 * view.height;
+  const double half_width = 0.5 * view.width / scale, half_height = 0.5 * view.height / scale;
   const glm::dvec4 x = (rows[0] + rows[3]) * half_width, y = (rows[3] - rows[1]) * half_height, w = rows[3];
   out.x = glm::dvec3(x), out.y = glm::dvec3(y), out.w = glm::dvec3(w);
   if (out.orthographic) {
@@ -47,8 +47,8 @@ Rows rows_of(const View& view) {
 
 }  // namespace
 
-EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept {
-  const Rows rows = rows_of(view.view);
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin, std::uint32_t scale) noexcept {
+  const Rows rows = rows_of(view.view, scale);
   const glm::dvec3 eye =
       rows.eye + glm::dvec3(view.origin.x - origin.x, view.origin.y - origin.y, view.origin.z - origin.z);
   EyeProjection out;
@@ -62,8 +62,8 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) no
   return out;
 }
 
-PixelRays pixel_rays(const View& view) noexcept {
-  const Rows rows = rows_of(view);
+PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
+  const Rows rows = rows_of(view, pixel);
   PixelRays out;
   const glm::dvec3 last = rows.orthographic ? rows.forward : rows.w;
   const glm::dmat3 inverse = glm::inverse(glm::transpose(glm::dmat3(rows.x, rows.y, last)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include <sightline/boxes.hpp>
 #include <sightline/types.hpp>
@@ -29,8 +30,9 @@ struct PixelRays {
   bool turns_right = false;
 };
 
-/// Of the same view about another origin.
-EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin) noexcept;
-PixelRays pixel_rays(const View& view) noexcept;
+/// Of the same view about another origin, in pixels `scale` times as wide as the view's.
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin,
+                             std::uint32_t scale = 1) noexcept;
+PixelRays pixel_rays(const View& view, std::uint32_t scale = 1) noexcept;
 
 }  // namespace sightline::occlusion

@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "library/occlusion/mesh_groups-inl.hpp"
+#include "library/occlusion/mesh_rim-inl.hpp"
 #include "library/occlusion/mesh_setup-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,15 +48,78 @@ HWY_INLINE void add_edges(const ReadyTriangles& ready, int i, std::size_t count,
   }
 }
 
-HWY_INLINE void draw_one_of(DepthTiles& tiles, const ReadyTriangles& ready, int i) {
-  const TileRange range = tiles_of(tiles, ready.left[i], ready.right[i], ready.top[i], ready.bottom[i]);
-  if (hidden_tiles(tiles, range, ready.nearest[i])) return;
+// Of a group of triangles, those that are drawn as one: a triangle, or a quad's halves. Of a quad each adds
+// two edges.
+struct Piece {
+  std::size_t first, count;
+};
+
+// Moves the edges of a piece inwards that are drawn tight, as if nothing went on there.
+HWY_INLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, Convex tight) {
+  const auto first = static_cast<int>(piece.first);
+  const float inset =
+      piece.count == 2 ? std::max(ready.inset[first], ready.inset[first + 1]) : ready.inset[first];
+  tight.left += inset, tight.right -= inset, tight.top += inset, tight.bottom -= inset;
+  tight.left_edges = tight.right_edges = 0;
+  for (int i = first; i < first + static_cast<int>(piece.count); ++i) {
+    const std::size_t edges = piece.count == 2 ? 2 : 3;
+    for (std::size_t k = 0; k < edges; ++k) {
+      if (!(ready.steep[k] >> i & 1)) continue;
+      const float inwards = ready.seam[k] >> i & 1 ? inset * (1 + std::fabs(ready.slope[k][i])) : 0;
+      if (ready.on_right[k] >> i & 1) {
+        tight.right_at[tight.right_edges] = ready.edge_at[k][i] - inwards;
+        tight.right_slope[tight.right_edges++] = ready.slope[k][i];
+      } else {
+        tight.left_at[tight.left_edges] = ready.edge_at[k][i] + inwards;
+        tight.left_slope[tight.left_edges++] = ready.slope[k][i];
+      }
+    }
+  }
+  return tight;
+}
+
+// Of the nearness: what is lowered by no more for its neighbours' sake is not drawn again on its own plane.
+constexpr float kLeastDeeper = 1e-3f;
+
+// Where a pixel's margin counts. First the pixels that the piece shares with others, as deep as the deepest
+// of them may be there; then those that are its own.
+HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const OccluderTopology& mesh,
+                                   const RowTransform& transform, std::size_t group,
+                                   const ReadyTriangles& ready, const Piece& piece, Convex tight,
+                                   const TileRange& range) {
+  const std::size_t end = piece.first + piece.count;
+  Rim rim;
+  for (std::size_t i = piece.first; i < end; ++i)
+    add_rim(tiles, mesh, transform, group * kGroup + i, tight, rim);
+  const float own = std::fabs(tight.across) + std::fabs(tight.down),
+              deeper = tiles.margin * std::max(0.0f, rim.slant - own);
+  const Convex middle = inset_piece(ready, piece, tight);
+  if (rim.known) {
+    tight.at -= deeper;
+    draw_polygon(tiles, tight, range, rim.bands);
+  }
+  if (!rim.known || deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]))
+    draw_polygon(tiles, middle, range);
+}
+
+HWY_INLINE void draw_piece(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                           std::size_t group, const ReadyTriangles& ready, const Piece& piece,
+                           const Convex& polygon, float nearest) {
+  const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
+  if (hidden_tiles(tiles, range, nearest)) return;
+  if (tiles.margin > 0)
+    draw_with_margin(tiles, mesh, transform, group, ready, piece, polygon, range);
+  else
+    draw_polygon(tiles, polygon, range);
+}
+
+HWY_INLINE Convex triangle_of(const ReadyTriangles& ready, int i) {
   Convex out;
   out.left = ready.left[i], out.right = ready.right[i];
   out.top = ready.top[i], out.bottom = ready.bottom[i];
   out.at = ready.at[i], out.across = ready.across[i], out.down = ready.down[i];
   add_edges(ready, i, 3, out);
-  draw_polygon(tiles, out, range);
+  return out;
 }
 
 // How far apart a quad's halves may lie, of their nearness, before they are drawn one by one.
@@ -64,14 +128,12 @@ constexpr float kMostApart = 4e-5f;
 // Triangles i and i + 1 as one quad on the first one's plane, moved behind the second's wherever the image
 // may hold the quad; false where their planes differ by more than rounding. Whether the answer is true does
 // not depend on what is drawn already, for widths of vectors see that at different times.
-HWY_INLINE bool draw_quad(DepthTiles& tiles, const ReadyTriangles& ready, int i) {
-  Convex out;
+HWY_INLINE bool make_quad(const DepthTiles& tiles, const ReadyTriangles& ready, int i, Convex& out) {
   out.left = std::min(ready.left[i], ready.left[i + 1]);
   out.right = std::max(ready.right[i], ready.right[i + 1]);
   out.top = std::min(ready.top[i], ready.top[i + 1]);
   out.bottom = std::max(ready.bottom[i], ready.bottom[i + 1]);
   out.across = ready.across[i], out.down = ready.down[i];
-  const float nearest = std::max(ready.nearest[i], ready.nearest[i + 1]);
   const float across = out.across - ready.across[i + 1], down = out.down - ready.down[i + 1];
   const float x0 = std::max(out.left, 0.0f), x1 = std::min(out.right, static_cast<float>(tiles.width)),
               y0 = std::max(out.top, 0.0f), y1 = std::min(out.bottom, static_cast<float>(tiles.height));
@@ -84,11 +146,8 @@ HWY_INLINE bool draw_quad(DepthTiles& tiles, const ReadyTriangles& ready, int i)
   const float most = kMostApart * std::min(std::fabs(ready.nearest[i]), std::fabs(ready.nearest[i + 1]));
   if (!(back + std::max(behind, 0.0f) <= most)) return false;
   out.at = ready.at[i] - back;
-  const TileRange range = tiles_of(tiles, out.left, out.right, out.top, out.bottom);
-  if (hidden_tiles(tiles, range, nearest)) return true;
   add_edges(ready, i, 2, out);
   add_edges(ready, i + 1, 2, out);
-  draw_polygon(tiles, out, range);
   return true;
 }
 
@@ -111,18 +170,28 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
     set_up(tiles, mesh, transform, group, lane, ready);
   const std::uint32_t alike = ready.sound & ready.sound >> 1 & ~(ready.to_right ^ ready.to_right >> 1) &
                               ~(ready.flat | ready.flat >> 1);
+  const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest) HWY_ATTR {
+    draw_piece(tiles, mesh, transform, group, ready, piece, polygon, nearest);
+  };
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t halves = mesh.groups[group].first_half & alike & (rest | rest >> 1); halves != 0;
        halves &= halves - 1) {
     const int i = std::countr_zero(halves);
-    if (draw_quad(tiles, ready, i)) rest &= ~(3u << i);
+    Convex quad;
+    if (!make_quad(tiles, ready, i, quad)) continue;
+    draw({static_cast<std::size_t>(i), 2}, quad, std::max(ready.nearest[i], ready.nearest[i + 1]));
+    rest &= ~(3u << i);
   }
-  for (; rest != 0; rest &= rest - 1) draw_one_of(tiles, ready, std::countr_zero(rest));
+  for (; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    draw({static_cast<std::size_t>(i), 1}, triangle_of(ready, i), ready.nearest[i]);
+  }
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     const bool one_sided = mesh.groups[group].one_sided >> i & 1;
     draw_clipped_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i),
-                          one_sided ? tiles.mesh.front : 0, seams_of(ready, i));
+                          one_sided ? tiles.mesh.front : 0,
+                          tiles.margin > 0 ? std::array<SeamLine, 3>{} : seams_of(ready, i));
   }
 }
 
@@ -184,6 +253,7 @@ void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransfo
     for (auto& side : s.box) side.resize(groups);
     s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
     s.facing.resize(groups * OccluderTopology::kGroup);
+    s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
   s.front = tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;

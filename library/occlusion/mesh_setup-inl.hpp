@@ -54,6 +54,20 @@ HWY_INLINE hn::Mask<F> before_near(const DepthTiles& tiles, const VPoints& corne
   return hn::Ge(dot_row(tiles.rays.near_plane, corner), hn::Zero(F()));
 }
 
+// Where a pixel's margin counts, a triangle counts that no pixel can reach across, whichever edge it enters
+// by: then what a pixel touches of a mesh beside one of its triangles shares a corner with that triangle.
+HWY_INLINE hn::Mask<F> wide_enough(const DepthTiles& tiles, const OnImage& image, VF area) {
+  const F f;
+  VF longest = hn::Zero(f), farthest = longest;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    longest = hn::Max(longest, hn::Add(hn::Abs(hn::Sub(image.x[next], image.x[k])),
+                                       hn::Abs(hn::Sub(image.y[next], image.y[k]))));
+    farthest = hn::Max(farthest, hn::Max(hn::Abs(image.x[k]), hn::Abs(image.y[k])));
+  }
+  return hn::Ge(hn::Abs(area), hn::Mul(inset_of(tiles, farthest), longest));
+}
+
 HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image,
                         std::uint32_t one_sided) {
   const F f;
@@ -61,6 +75,7 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
   VF facing = hn::IfThenElse(hn::Gt(area, least), one,
                              hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
+  if (tiles.margin > 0) facing = hn::IfThenElseZero(wide_enough(tiles, image, area), facing);
   const auto a = before_near(tiles, corners[0]), b = before_near(tiles, corners[1]),
              c = before_near(tiles, corners[2]);
   const auto whole = hn::And(hn::And(a, b), c), cut = hn::AndNot(whole, hn::Or(hn::Or(a, b), c));
@@ -72,29 +87,13 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
   return hn::IfThenZeroElse(from_behind, facing);
 }
 
-// Found when first asked for.
-void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                 std::size_t group) {
-  const F f;
-  MeshScratch& s = tiles.mesh;
-  if (s.known[group] == s.turn) return;
-  s.known[group] = s.turn;
-  for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
-    const auto corners = corners_about_eye(tiles.projection, mesh, transform, group, lane);
-    hn::Store(
-        facing_of(tiles, corners, on_image(tiles.projection, corners), mesh.groups[group].one_sided >> lane),
-        f, &s.facing[group * kGroup + lane]);
-  }
-}
-
 // A group of triangles, ready to be drawn.
 struct ReadyTriangles {
-  alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
+  alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down, inset;
   alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
   std::array<std::uint32_t, 3> on_right{}, steep{};  // a bit a triangle: the edge bounds it to the right
   std::uint32_t drawn = 0, cut = 0;
-  // Of cut ones: the edge is a seam; both its ends lie before the near plane.
-  std::array<std::uint32_t, 3> seam{}, whole{};
+  std::array<std::uint32_t, 3> seam{}, whole{};  // drawn tight; of cut ones, before the near plane end to end
   // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
   std::uint32_t sound = 0, to_right = 0, flat = 0;
 };
@@ -119,7 +118,7 @@ HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& m
   c.corners = corners_about_eye(e, mesh, transform, group, lane);
   c.image = on_image(e, c.corners);
   c.facing = facing_of(tiles, c.corners, c.image, mesh.groups[group].one_sided >> lane);
-  if (hn::Lanes(f) == kGroup) {
+  if (hn::Lanes(f) == kGroup && tiles.margin == 0) {
     hn::Store(c.facing, f, &tiles.mesh.facing[group * kGroup]);
     tiles.mesh.known[group] = tiles.mesh.turn;
   }
@@ -130,6 +129,12 @@ HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& m
   return c;
 }
 
+HWY_INLINE void find_nearness(const EyeProjection& e, Candidates& c) {
+  for (std::size_t k = 0; k < 3; ++k)
+    c.nearness[k] = e.orthographic ? dot_row(e.nearness, c.corners[k]) : c.image.over_w[k];
+  c.nearest = hn::Max(hn::Max(c.nearness[0], c.nearness[1]), c.nearness[2]);
+}
+
 // Leaves those with no pixel centre between their sides within the image, and those behind the tiles of their
 // corners where those are all. False where none remains.
 HWY_INLINE bool keep_those_that_show(const DepthTiles& tiles, Candidates& c) {
@@ -137,10 +142,7 @@ HWY_INLINE bool keep_those_that_show(const DepthTiles& tiles, Candidates& c) {
   const PixelBounds bounds = pixel_bounds(tiles, c.outline);
   c.drawn = hn::And(c.drawn, bounds.some);
   if (hn::AllFalse(f, c.drawn)) return false;
-  const EyeProjection& e = tiles.projection;
-  for (std::size_t k = 0; k < 3; ++k)
-    c.nearness[k] = e.orthographic ? dot_row(e.nearness, c.corners[k]) : c.image.over_w[k];
-  c.nearest = hn::Max(hn::Max(c.nearness[0], c.nearness[1]), c.nearness[2]);
+  find_nearness(tiles.projection, c);
   const PixelRanges ranges = pixel_ranges(bounds, c.drawn);
   const auto before = hn::Lt(least_at_corners(tiles, tiles.farthest, ranges), c.nearest);
   c.drawn = hn::And(c.drawn, hn::Or(hn::RebindMask(f, ranges.many), before));
@@ -156,11 +158,18 @@ HWY_INLINE VPoints nearest_of(const Candidates& c) {
   return {choose(p.x, q.x, r.x), choose(p.y, q.y, r.y), choose(p.z, q.z, r.z)};
 }
 
-// Nearness of the triangles' planes, never more than it is; those seen too much edge on are not drawn.
-HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {
+// Nearness of the triangles' planes: at + x·across + y·down, less the doubt; of those seen too much edge on,
+// which are not sound, nothing is said.
+struct TrianglePlanes {
+  VF at, across, down, doubt;
+  hn::Mask<F> sound;
+};
+
+HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c) {
   const F f;
   const PixelRays& rays = tiles.rays;
   const bool orthographic = tiles.projection.orthographic;
+  TrianglePlanes out;
   const auto& [p, q, r] = c.corners;
   const VPoints pq = minus(q, p), pr = minus(r, p), normal = cross(pq, pr);
   const VF length = hn::Sqrt(dot(normal, normal));
@@ -171,19 +180,46 @@ HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangle
   const VF least = orthographic ? hn::Set(f, static_cast<float>(kEdgeOnSine))
                                 : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
                                           hn::Set(f, static_cast<float>(kEdgeOnDistance)));
-  const auto sound = hn::And(hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f)),
-                             hn::And(hn::Gt(length, hn::Zero(f)), hn::Gt(hn::Abs(scale), least)));
-  c.drawn = hn::And(c.drawn, sound);
-  out.sound |= bits_of(f, sound) << c.lane;
-  const VF across = hn::Div(dot(unit, rays.across), scale), down = hn::Div(dot(unit, rays.down), scale);
+  out.sound = hn::And(hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f)),
+                      hn::And(hn::Gt(length, hn::Zero(f)), hn::Gt(hn::Abs(scale), least)));
+  out.across = hn::Div(dot(unit, rays.across), scale), out.down = hn::Div(dot(unit, rays.down), scale);
   const VF ray_at = dot(unit, rays.at);
-  const VF start = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
+  out.at = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
   // The normal is as uncertain as the corners are far and the triangle is thin.
   const VF sides = hn::Add(largest(pq), largest(pr));
-  VF doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
-                     hn::Mul(length, hn::Abs(scale)));
-  if (orthographic) doubt = hn::Mul(doubt, hn::Add(sides, sides));
-  hn::Store(hn::Sub(moved_back(start, across, down, c.nearest), doubt), f, &out.at[c.lane]);
+  out.doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
+                      hn::Mul(length, hn::Abs(scale)));
+  if (orthographic) out.doubt = hn::Mul(out.doubt, hn::Add(sides, sides));
+  return out;
+}
+
+// Found when first asked for. Where a pixel's margin counts, those that the near plane cuts and those seen
+// edge on are as if they were not there: the mesh ends at them.
+void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                 std::size_t group) {
+  const F f;
+  MeshScratch& s = tiles.mesh;
+  if (s.known[group] == s.turn) return;
+  s.known[group] = s.turn;
+  for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
+    Candidates c = candidates_of(tiles, mesh, transform, group, lane);
+    if (tiles.margin > 0) {
+      find_nearness(tiles.projection, c);
+      const TrianglePlanes planes = planes_of(tiles, c);
+      c.facing = hn::IfThenElseZero(planes.sound, c.facing);
+      const VF slant = hn::Add(hn::Abs(planes.across), hn::Abs(planes.down));
+      hn::Store(hn::IfThenElseZero(planes.sound, slant), f, &s.slant[group * kGroup + lane]);
+    }
+    hn::Store(c.facing, f, &s.facing[group * kGroup + lane]);
+  }
+}
+
+HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {
+  const F f;
+  const auto [at, across, down, doubt, sound] = planes_of(tiles, c);
+  c.drawn = hn::And(c.drawn, sound);
+  out.sound |= bits_of(f, sound) << c.lane;
+  hn::Store(hn::Sub(moved_back(tiles, at, across, down, c.nearest), doubt), f, &out.at[c.lane]);
   hn::Store(across, f, &out.across[c.lane]);
   hn::Store(down, f, &out.down[c.lane]);
   hn::Store(c.nearest, f, &out.nearest[c.lane]);
@@ -236,6 +272,7 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
   out.steep[k] |= bits_of(f, steep) << c.lane;
   out.on_right[k] |= bits_of(f, on_right) << c.lane;
   hn::Store(slope, f, &out.slope[k][c.lane]);
+  hn::Store(inset, f, &out.inset[c.lane]);
   hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), hn::Add(at, inwards)), f, &out.edge_at[k][c.lane]);
   // A flat edge that is no seam bounds the rows.
   const auto bounds = hn::AndNot(seam, hn::Not(steep));
@@ -256,25 +293,38 @@ HWY_INLINE void set_whole_edges(const DepthTiles& tiles, const Candidates& c, Re
     out.whole[k] |= bits_of(f, hn::And(before[k], before[(k + 1) % 3])) << c.lane;
 }
 
-// Of a group's edges that have more than one other or a row of them, those where others go on all along; a
-// bit a triangle and edge. Facings are known.
+// Whether others go on all along an edge that has more than one or a row of them. Facings are known.
+inline bool goes_on_along(const DepthTiles& tiles, const OccluderTopology& mesh,
+                          const OccluderTopology::SharedEdge& edge) {
+  const float* facing = tiles.mesh.facing.data();
+  const float turns = facing[edge.triangle];
+  bool all = true, piece = false;
+  for (std::uint32_t o = edge.first; o < edge.end && all; ++o) {
+    const std::uint32_t other = mesh.others[o];
+    const float turn = turns * facing[other / 4];
+    piece = piece || (other & 2 ? turn < 0 : turn > 0);
+    if (other & 1) all = piece, piece = false;
+  }
+  return all;
+}
+
+// Of a group's edges of that kind, those where others go on all along; a bit a triangle and edge.
 inline std::array<std::uint32_t, 3> shared_seams(const DepthTiles& tiles, const OccluderTopology& mesh,
                                                  std::size_t group) {
   std::array<std::uint32_t, 3> out{};
-  const float* facing = tiles.mesh.facing.data();
   for (std::uint32_t i = mesh.groups[group].first_shared; i < mesh.groups[group].end_shared; ++i) {
     const OccluderTopology::SharedEdge& edge = mesh.shared[i];
-    const float turns = facing[edge.triangle];
-    bool all = true, piece = false;
-    for (std::uint32_t o = edge.first; o < edge.end && all; ++o) {
-      const std::uint32_t other = mesh.others[o];
-      const float turn = turns * facing[other / 4];
-      piece = piece || (other & 2 ? turn < 0 : turn > 0);
-      if (other & 1) all = piece, piece = false;
-    }
-    out[edge.edge] |= std::uint32_t{all} << edge.triangle % kGroup;
+    out[edge.edge] |= std::uint32_t{goes_on_along(tiles, mesh, edge)} << edge.triangle % kGroup;
   }
   return out;
+}
+
+// The groups whose facings tell where the mesh goes on: at the group's edges, or within a margin of it.
+inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, const OccluderTopology& mesh,
+                                                   std::size_t group) {
+  const OccluderTopology::Group& its = mesh.groups[group];
+  if (tiles.margin > 0) return std::span(mesh.rings).subspan(its.first_ring, its.end_ring - its.first_ring);
+  return std::span(mesh.beside).subspan(its.first_beside, its.end_beside - its.first_beside);
 }
 
 // Triangles 16·group + lane … of the mesh.
@@ -291,10 +341,9 @@ HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Ro
   if (some) set_planes(tiles, c, out);
   out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << lane;
   know_facing(tiles, mesh, transform, group);
-  const OccluderTopology::Group& its = mesh.groups[group];
-  for (std::uint32_t i = its.first_beside; i < its.end_beside; ++i)
-    know_facing(tiles, mesh, transform, mesh.beside[i]);
-  const VF inset = inset_of(widest_of(c.outline));
+  for (const std::uint32_t other : around_group(tiles, mesh, group))
+    know_facing(tiles, mesh, transform, other);
+  const VF inset = inset_of(tiles, widest_of(c.outline));
   Rectangles outline = c.outline;
   const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
   for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> lane, outline, out);

@@ -29,6 +29,21 @@ struct OccluderTopology {
   std::vector<SharedEdge> shared;  ///< by triangle
   /// Triangle · 4, + 2 where it is wound the other way, + 1 for the last of a piece.
   std::vector<std::uint32_t> others;
+  /// An edge that ends at a corner of some triangle but is none of its own, or at a corner that lies on one
+  /// of its edges: where the mesh ends at such an edge, pixels that it touches are not the triangle's.
+  struct CornerEdge {
+    std::uint32_t a = 0, b = 0;  ///< in `positions`
+    std::uint32_t triangle = 0;
+    std::uint32_t other = 0;  ///< its neighbour there, kNone, or kShared + a place in `shared`
+    bool operator==(const CornerEdge&) const noexcept = default;
+  };
+  static constexpr std::uint32_t kShared = 0x80000000u;
+  /// Those of triangle t: first_around[t] … first_around[t + 1]. None where there would be more than
+  /// kMostAround; `alone` says so.
+  static constexpr std::size_t kMostAround = 96;
+  std::vector<CornerEdge> around;
+  std::vector<std::uint32_t> first_around;
+  std::vector<std::uint8_t> alone;
   /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
   /// diagonal.
   std::vector<std::uint8_t> first_half;
@@ -42,9 +57,11 @@ struct OccluderTopology {
     std::uint32_t one_sided = 0;                     ///< the same
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
     std::uint32_t first_shared = 0, end_shared = 0;  ///< in `shared`
+    std::uint32_t first_ring = 0, end_ring = 0;      ///< in `rings`
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …
   std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
+  std::vector<std::uint32_t> rings;   ///< and those that hold what `around` names, itself left out
   /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
   geometry::AlignedVector<float> box;
   /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last
@@ -60,6 +77,8 @@ void sort_along_curve(OccluderTopology& mesh);
 /// Finds `shared`, T-junctions only where they are to be closed. Neighbours are known, and triangles numbered
 /// for good.
 void find_shared_edges(OccluderTopology& mesh, bool close_junctions);
+/// Finds `around`. Shared edges are known.
+void find_corner_edges(OccluderTopology& mesh);
 /// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
 /// places.
 void pair_up(OccluderTopology& mesh);

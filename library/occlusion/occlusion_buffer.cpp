@@ -65,6 +65,8 @@ bool is_affine(const Mat4& m) noexcept {
   return m.m[3] == 0 && m.m[7] == 0 && m.m[11] == 0 && m.m[15] == 1;
 }
 
+constexpr occlusion::BoxQuestions kBoxQuestions{occlusion::eye_projection, occlusion::query_boxes};
+
 // Asks in blocks, laid out where the caller's arrays are not so already.
 template <class Block, class Ask>
 void ask_blocks(std::size_t count, std::uint8_t* visible, const Ask& ask) {
@@ -86,20 +88,33 @@ OcclusionBuffer& OcclusionBuffer::operator=(OcclusionBuffer&& other) noexcept {
   return *this;
 }
 
-Status OcclusionBuffer::begin(const WorldView& view) {
+Status OcclusionBuffer::begin(const WorldView& view, const OcclusionOptions& options) {
   if (const Status sound = check(view); !sound) return sound;
+  const std::uint32_t scale = options.scale;
+  if (scale != 1 && scale != 2 && scale != 4)
+    return {StatusCode::bad_argument, "occlusion: the scale is none, expected 1, 2 or 4"};
+  if (options.coverage != Coverage::centres && options.coverage != Coverage::area)
+    return {StatusCode::bad_argument, "occlusion: the coverage is none, expected centres or area"};
   if (view.view.width > kMaxSide || view.view.height > kMaxSide)
     return {StatusCode::bad_view, "occlusion: the view is too large, expected at most 8192 pixels a side"};
   state_->view = view;
   state_->begun = true;
-  state_->projection = occlusion::eye_projection(view, view.origin);
-  state_->rays = occlusion::pixel_rays(view.view);
-  set_size(*state_, view.view.width, view.view.height);
+  state_->ask = &kBoxQuestions;
+  state_->options = options;
+  state_->scale = scale;
+  // Of a pixel of scale x scale the centres lie up to that far from its own centre; all of it half a side.
+  state_->margin = options.coverage == Coverage::area ? 0.5f : 0.5f - 0.5f / static_cast<float>(scale);
+  state_->projection = occlusion::eye_projection(view, view.origin, scale);
+  state_->rays = occlusion::pixel_rays(view.view, scale);
+  set_size(*state_, (view.view.width + scale - 1) / scale, (view.view.height + scale - 1) / scale);
   return {};
 }
 
 const WorldView& OcclusionBuffer::view() const noexcept {
   return state_->view;
+}
+const OcclusionOptions& OcclusionBuffer::options() const noexcept {
+  return state_->options;
 }
 bool OcclusionBuffer::begun() const noexcept {
   return state_->begun;
@@ -174,7 +189,7 @@ Status OcclusionBuffer::may_see(const BoxView& boxes, std::span<std::uint8_t> vi
   if (BoxReader::lies_in_arrays(boxes, boxes.origin(), arrays)) {
     const bool near = boxes.origin() == state_->view.origin;
     const auto& projection =
-        near ? state_->projection : occlusion::eye_projection(state_->view, boxes.origin());
+        near ? state_->projection : occlusion::eye_projection(state_->view, boxes.origin(), state_->scale);
     occlusion::query_boxes(*state_, projection, arrays, visible.data());
     return {};
   }
@@ -215,11 +230,12 @@ bool OcclusionBuffer::may_see(std::span<const Vec3> triangles) const noexcept {
 Status OcclusionBuffer::read_nearness(std::span<float> pixels) const noexcept {
   if (const Status begun = check_begun(*state_); !begun) return begun;
   const DepthTiles& t = *state_;
-  if (pixels.size() < std::size_t{t.width} * t.height)
+  const std::uint32_t width = t.view.view.width, height = t.view.view.height;
+  if (pixels.size() < std::size_t{width} * height)
     return {StatusCode::buffer_too_small, "occlusion: expected room for width x height pixels"};
-  for (std::uint32_t y = 0; y < t.height; ++y) {
-    for (std::uint32_t x = 0; x < t.width; ++x) {
-      pixels[std::size_t{y} * t.width + x] = nearness_at(t, x, y);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      pixels[std::size_t{y} * width + x] = nearness_at(t, x / t.scale, y / t.scale);
     }
   }
   return {};

@@ -76,6 +76,22 @@ HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   return out;
 }
 
+// The same of a band.
+HWY_INLINE Spans spans_of(const Bands& bands, std::size_t i, float first_y, float width) {
+  const F f;
+  Spans out;
+  const VF at = hn::Set(f, bands.at[i]), slope = hn::Set(f, bands.slope[i]), half = hn::Set(f, bands.half[i]);
+  for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
+    const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
+    const VF middle = hn::Add(at, hn::Mul(slope, y));
+    store_spans(hn::Max(hn::Set(f, bands.left[i]), hn::Sub(middle, half)),
+                hn::Min(hn::Set(f, bands.right[i]), hn::Add(middle, half)),
+                hn::And(hn::Ge(y, hn::Set(f, bands.top[i])), hn::Le(y, hn::Set(f, bands.bottom[i]))), width,
+                line, out);
+  }
+  return out;
+}
+
 // The same of outline i among many, a lane each, whose every edge bounds it on either side.
 template <std::size_t kEdges, class Outlines>
 HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, float width) {

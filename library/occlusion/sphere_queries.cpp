@@ -62,7 +62,7 @@ HWY_INLINE void image_of(const Vec4& row, const Vec4& w, const WideSpheres& s, b
   low = hn::Mul(hn::Sub(middle, spread), over), high = hn::Mul(hn::Add(middle, spread), over);
 }
 
-HWY_INLINE Question question_of(const EyeProjection& e, const WideSpheres& s) {
+HWY_INLINE Question question_of(const EyeProjection& e, const WideSpheres& s, float margin) {
   const F f;
   Question q;
   Rectangles on_image;
@@ -80,8 +80,8 @@ HWY_INLINE Question question_of(const EyeProjection& e, const WideSpheres& s) {
     q.sure = hn::Gt(least, hn::Mul(depth, hn::Set(f, kLeastClearance)));
     q.nearest = hn::Mul(hn::Div(hn::Set(f, 1.0f), least), hn::Set(f, 1 + kReciprocalRounding));
   }
-  const VF slack =
-      hn::Add(hn::Set(f, kSphereSlack), hn::Mul(widest_of(on_image), hn::Set(f, kSphereSlackGrowth)));
+  const VF slack = hn::Add(hn::Set(f, kSphereSlack + margin),
+                           hn::Mul(widest_of(on_image), hn::Set(f, kSphereSlackGrowth)));
   q.within = grown(on_image, slack);
   return q;
 }
@@ -90,7 +90,7 @@ void query_all_spheres(const DepthTiles& tiles, const EyeProjection& e, const Sp
                        std::uint8_t* visible) {
   const std::array<const float*, 4> arrays{spheres.x, spheres.y, spheres.z, spheres.radius};
   answer_all(tiles, arrays, spheres.count, visible,
-             [&](const auto& from) HWY_ATTR { return question_of(e, spheres_of(e, from)); });
+             [&](const auto& from) HWY_ATTR { return question_of(e, spheres_of(e, from), tiles.margin); });
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -126,7 +126,7 @@ HWY_INLINE void find_discs(const DepthTiles& tiles, const DrawnSpheres& s, const
   const VF nearness = e.orthographic ? dot_row(e.nearness, q) : over_w;
   const VF reach = hn::Add(hn::Abs(q.x), hn::Add(hn::Abs(q.y), hn::Abs(q.z)));
   // The radius along y, less what rounding asks along either axis.
-  const VF inset = inset_of(hn::Max(hn::Abs(x), hn::Abs(y)));
+  const VF inset = inset_of(tiles, hn::Max(hn::Abs(x), hn::Abs(y)));
   const VF radius = hn::Sub(hn::Mul(hn::Mul(r, hn::Set(f, scales.y)), over_w),
                             hn::Mul(inset, hn::Set(f, 1 + 1 / scales.aspect())));
   // The whole sphere in front of the near plane: of one that it cuts, the inside is seen.

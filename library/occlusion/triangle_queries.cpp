@@ -53,7 +53,7 @@ HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach,
   const VF doubt = hn::Div(hn::Mul(edges, reach), hn::Abs(scale));
   const VF slack = hn::Mul(
       nearest, hn::Add(hn::Set(f, kNearnessRounding), hn::Mul(hn::Set(f, kAskedNormalRounding), doubt)));
-  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay));
+  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay + tiles.margin));
   const VF at = hn::Add(start, hn::Add(slack, slant));
   // Not for what is no number, either; orthographic views do without.
   const auto sure = hn::And(hn::And(hn::Lt(doubt, hn::Set(f, kMostDoubt)), hn::Gt(length, hn::Zero(f))),
@@ -65,8 +65,9 @@ HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach,
   hn::Store(flat ? none : hn::IfThenElseZero(sure, down), f, out.down.data());
 }
 
-// The sides of triangles on the image, moved outwards by `slack`.
-HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF slack, GrownTriangles& out) {
+// The sides of triangles on the image, moved outwards by `slack` of rounding and the margin.
+HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF slack, float margin,
+                           GrownTriangles& out) {
   const F f;
   const VF zero = hn::Zero(f), infinity = hn::Set(f, kInfinity);
   const VF *x = image.x, *y = image.y;
@@ -79,7 +80,8 @@ HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF sl
     const std::size_t next = (k + 1) % 3;
     const VF rise = hn::Sub(y[next], y[k]), slope = hn::Div(hn::Sub(x[next], x[k]), rise),
              at = hn::Sub(x[k], hn::Mul(y[k], slope));
-    const VF outwards = hn::Mul(slack, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
+    const VF outwards =
+        hn::Mul(hn::Add(slack, hn::Set(f, margin)), hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
     const auto steep = hn::And(thick, hn::Ge(hn::Abs(rise), hn::Set(f, kAskedFlatEdge)));
     const auto on_right = hn::Not(hn::Xor(hn::Gt(rise, zero), to_right));
     hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[k].data());
@@ -128,7 +130,7 @@ struct Projected {
   OnImage image;
   RowErrors error;
   VF slack;           // pixels
-  Rectangles bounds;  // grown by the slack
+  Rectangles bounds;  // grown by the slack and the margin
   VF nearest;         // nothing lies nearer
   hn::Mask<F> before,
       placed;          // surely before the eye; and not too far beside the image to have a place on it
@@ -136,8 +138,9 @@ struct Projected {
 };
 
 // Of parts of triangles whose coordinates reach as far as `reach`.
-HWY_INLINE Projected project(const EyeProjection& e, const Corners& q, VF reach) {
+HWY_INLINE Projected project(const DepthTiles& tiles, const Corners& q, VF reach) {
   const F f;
+  const EyeProjection& e = tiles.projection;
   Projected out;
   out.image = on_image(e, q);
   out.error = {error_of(e.x, reach), error_of(e.y, reach), error_of(e.w, reach)};
@@ -159,7 +162,7 @@ HWY_INLINE Projected project(const EyeProjection& e, const Corners& q, VF reach)
       hn::Mul(hn::Add(hn::Max(out.error.x, out.error.y), hn::Mul(widest, error_w)), over_least);
   out.slack =
       hn::Add(of_rows, hn::Add(hn::Set(f, kSubpixelSlack), hn::Mul(hn::Set(f, kInsetGrowth), widest)));
-  out.bounds = grown(bounds, out.slack);
+  out.bounds = grown(bounds, hn::Add(out.slack, hn::Set(f, tiles.margin)));
   out.placed = hn::And(out.before, hn::Lt(widest, hn::Set(f, kFarthestPlace)));
   return out;
 }
@@ -172,7 +175,7 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corne
                           std::size_t count) {
   const F f;
   const VF reach = reach_of(whole);
-  const Projected p = project(tiles.projection, q, reach);
+  const Projected p = project(tiles, q, reach);
   std::array<std::uint8_t, 16> visible;
   answer(tiles, {p.bounds, p.nearest, p.before}, count, visible.data());
   std::uint32_t rest = 0;
@@ -187,7 +190,7 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corne
   }
 
   GrownTriangles t;
-  find_sides(p.image, p.bounds, p.slack, t);
+  find_sides(p.image, p.bounds, p.slack, tiles.margin, t);
   find_planes(tiles, whole, reach, p.nearest, t);
   store(p.bounds, t, 0);
   hn::Store(p.nearest, f, t.nearest.data());

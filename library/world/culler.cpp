@@ -13,41 +13,13 @@
 #include <sightline/projection.hpp>
 
 #include "library/geometry/linear.hpp"
-#include "library/world/sector_test.hpp"
-#include "library/world/world_cull.hpp"
-#include "library/world/world_state.hpp"
+#include "library/world/culler_state.hpp"
 
 namespace sightline {
 
 namespace world {
 
 using namespace geometry;
-
-struct Job {
-  std::size_t first_entry = 0, entries = 0;
-  std::size_t first_output = 0;
-  PassCounts counts;
-};
-
-struct CullerState {
-  std::vector<const ChunkMap*> maps;  // of the sectors that some view may see
-  std::vector<SectorView> views;      // of these
-  std::vector<GroupEntry> entries;
-  std::array<Job, kMaxJobs> jobs;
-  /// The plane that failed last, one a view and region: the next frame tries it first.
-  std::vector<std::vector<std::uint8_t>> failed;  // by the world's sector
-  std::array<SectorTest, kMaxViews> tests;
-
-  PassInput input;
-  ObjectId* out = nullptr;
-  std::uint8_t* masks = nullptr;
-  /// Of several views that layers tell apart, where the caller wants no masks.
-  std::vector<std::uint8_t> scratch_masks;
-
-  const WorldState* world = nullptr;
-  std::array<std::uint32_t, kMaxViews> layers{};  // of the caller's views
-  bool filters_layers = false;
-};
 
 namespace {
 
@@ -79,7 +51,7 @@ SectorView sector_view(const CullView& culled, const Sector& sector) {
   }
   if (culled.occlusion) {
     out.occluders = &OcclusionAccess::tiles(*culled.occlusion);
-    out.projection = occlusion::eye_projection(view, sector.origin);
+    out.projection = out.occluders->ask->projection(view, sector.origin, out.occluders->scale);
   }
   return out;
 }
@@ -179,9 +151,12 @@ void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
+  PassInput input = state.input;
+  if (!input.hidden.empty())
+    input.hidden = input.hidden.subspan(job.first_entry * input.view_count, job.entries * input.view_count);
   ObjectId* ids = state.out + job.first_output;
   std::uint8_t* masks = state.masks ? state.masks + job.first_output : nullptr;
-  job.counts = cull_groups(state.input, entries, ids, masks);
+  job.counts = cull_groups(input, entries, ids, masks);
   if (state.filters_layers) job.counts.written = keep_layers(state, job.counts.written, ids, masks);
 }
 
@@ -206,12 +181,6 @@ std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
 }
 
 // Views that are the same are culled once.
-struct DifferentViews {
-  std::size_t count = 0;
-  std::array<std::uint8_t, kMaxViews> first{};  // which of the caller's views
-  std::array<std::uint8_t, kMaxViews> bits{};   // of all that are the same
-};
-
 DifferentViews different_views(std::span<const CullView> views) noexcept {
   DifferentViews out;
   const auto same = [&](const CullView& a, const CullView& b) {
@@ -237,10 +206,11 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
                            const DifferentViews& different) {
   const auto& sectors = state.world->sectors;
   const auto of_different = std::span(different.first).first(different.count);
-  state.maps.clear(), state.views.clear(), state.entries.clear();
+  state.maps.clear(), state.views.clear(), state.entries.clear(), state.origins.clear();
   for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]].view);
   // Room for all sectors, so that a camera that turns allocates nothing.
   state.maps.reserve(sectors.size());
+  state.origins.reserve(sectors.size());
   state.views.reserve(sectors.size() * different.count);
   for (std::size_t s = state.failed.size(); s < sectors.size(); ++s) {
     state.failed.emplace_back();
@@ -259,6 +229,7 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
     }
     const auto kept = static_cast<std::uint32_t>(state.maps.size());
     state.maps.push_back(sector.map.get());
+    state.origins.push_back(sector.origin);
     for (const std::uint8_t v : of_different) state.views.push_back(sector_view(views[v], sector));
     state.failed[s].resize(nodes_of(sector) * kMaxViews, 0);
     visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
@@ -266,7 +237,7 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
   return visited;
 }
 
-// Moves what the jobs wrote together, and adds their counts to the result.
+// Moves what the jobs wrote together, behind the result's, and adds their counts to it.
 void join_outputs(const CullerState& state, std::uint32_t jobs, CullResult& result) {
   for (const Job& job : std::span(state.jobs).first(jobs)) {
     if (job.first_output != result.count) {
@@ -295,6 +266,19 @@ Status check_view(const CullView& view, std::size_t index) noexcept {
   return {};
 }
 
+Status check_automatic(std::span<const CullView> views, const CullCosts& costs) noexcept {
+  for (const float cost : {costs.object, costs.node, costs.test, costs.candidate, costs.tile, costs.shape,
+                           costs.triangle, costs.query, costs.occludee}) {
+    if (!(cost >= 0) || !std::isfinite(cost))
+      return {StatusCode::bad_argument, "cull: a cost is negative or not finite"};
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (views[v].occlusion)
+      return {StatusCode::bad_argument, "cull: a view brings a buffer, though occlusion is automatic", v};
+  }
+  return {};
+}
+
 Status check_call(const World& world, std::span<const CullView> views, const CullOptions& options,
                   const CullOutput& output) noexcept {
   if (views.empty() || views.size() > kMaxViews)
@@ -309,7 +293,10 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (const Status sound = check_view(views[v], v); !sound) return sound;
   }
-  return {};
+  if (options.occlusion == Occlusion::none) return {};
+  if (options.occlusion != Occlusion::automatic)
+    return {StatusCode::bad_argument, "cull: the options' occlusion is neither none nor automatic"};
+  return check_automatic(views, options.costs);
 }
 
 // Whether layers drop anything, and what that takes.
@@ -328,7 +315,43 @@ void write_values(const std::vector<std::uint32_t>& values, std::span<ObjectId> 
   for (ObjectId& id : ids) id = id < values.size() ? values[id] : id;
 }
 
+// What the passes cost, and what else the world's occluders hide.
+void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+          const CullOptions& options, CullResult& result) {
+  CullCosts costs = options.costs;
+  if (costs.object == 0) costs.object = static_cast<float>(state.object_cost.value(double{kObjectCost}));
+  result.frustum_cost = result.cost =
+      static_cast<double>(result.nodes_visited) * double{costs.node} +
+      static_cast<double>(result.tested) * double{costs.test} +
+      static_cast<double>(count_drawn(state, result.count)) * double{costs.object};
+  const WorldOccluders* occluders = state.world->occluders.get();
+  if (occluders && occluders->any() && result.count > 0 && state.account.begins_try()) {
+    if (!state.hiding) state.hiding = occluders->make_hiding();
+    state.hiding->hide(state, views, different, options, costs, result);
+  }
+  state.account.close_frame(result.cost, result.frustum_cost);
+}
+
 }  // namespace
+
+std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept {
+  const std::uint8_t* masks = masks_of_caller(state);
+  if (!masks) return count;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += static_cast<std::uint64_t>(std::popcount(masks[i]));
+  return sum;
+}
+
+void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result) {
+  const std::uint32_t count = split_work(state, jobs.run ? jobs.threads : 1);
+  if (count > 1) {
+    jobs.run(jobs.user, count, run_job, &state);
+  } else if (count == 1) {
+    run_job(&state, 0);
+  }
+  join_outputs(state, count, result);
+}
+
 }  // namespace world
 
 struct Culler::State : world::CullerState {};
@@ -357,20 +380,22 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
   const world::DifferentViews different = world::different_views(views);
   CullResult result;
   result.nodes_visited = world::find_entries(state, views, different);
-  state.input = {state.maps, state.views, different.count, different.bits};
+  state.input = {state.maps, state.views, different.count, different.bits, {}};
   state.out = output.ids.data();
   state.masks = output.masks.empty() ? nullptr : output.masks.data();
   world::prepare_layers(state, views, output.ids.size());
-  const std::uint32_t threads = options.jobs.run ? options.jobs.threads : 1;
-  const std::uint32_t jobs = world::split_work(state, threads);
-  if (jobs > 1) {
-    options.jobs.run(options.jobs.user, jobs, world::run_job, &state);
-  } else if (jobs == 1) {
-    world::run_job(&state, 0);
-  }
-  world::join_outputs(state, jobs, result);
+  world::run_passes(state, options.jobs, result);
+  if (options.occlusion == Occlusion::automatic) world::hide(state, views, different, options, result);
+  state.object_cost.drew(result.count);
   if (options.values_for_ids) world::write_values(state.world->values, output.ids.first(result.count));
   return result;
+}
+
+Status Culler::report_frame_time(double nanoseconds) noexcept {
+  if (!(nanoseconds >= 0) || !std::isfinite(nanoseconds))
+    return {StatusCode::bad_argument, "cull: a frame's time is negative or not finite"};
+  state_->object_cost.took(nanoseconds);
+  return {};
 }
 
 }  // namespace sightline

@@ -48,25 +48,73 @@ HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView&
   });
 }
 
+// Which of a group's chunks the occluders do not hide, a byte each.
+using ChunkAnswers = std::array<std::uint8_t, kGroup>;
+HWY_INLINE void ask_chunks(const ChunkMap::Group& group, const SectorView& view, ChunkAnswers& visible) {
+  const auto& b = group.bounds;
+  view.occluders->ask->boxes(
+      *view.occluders, view.projection,
+      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
+      visible.data());
+}
+
+std::uint64_t objects_of(const ChunkMap::ChunkView& chunk) {
+  return chunk.count -
+         static_cast<std::uint64_t>(std::count(chunk.objects, chunk.objects + chunk.count, kNoObject));
+}
+
 // Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold.
 std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& group, const SectorView& view,
                                  ChunkBits& bits) {
   std::uint64_t dropped = 0;
-  const auto& b = group.bounds;
-  std::array<std::uint8_t, kGroup> visible;
-  occlusion::query_boxes(
-      *view.occluders, view.projection,
-      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
-      visible.data());
+  ChunkAnswers visible;
+  ask_chunks(group, view, visible);
   for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    const ChunkMap::ChunkView chunk = map.chunk(group, static_cast<std::uint32_t>(i));
-    dropped += chunk.count -
-               static_cast<std::uint64_t>(std::count(chunk.objects, chunk.objects + chunk.count, kNoObject));
+    dropped += objects_of(map.chunk(group, static_cast<std::uint32_t>(i)));
   }
   return dropped;
+}
+
+// What find_hidden_chunks() does for a view and a group.
+HWY_INLINE std::uint32_t hidden_of(const EntryGroup& at, const SectorView& view, PlaneSet planes,
+                                   std::uint8_t mask_bits, ChunkTally& tally) {
+  if (planes == kOutside) return 0;
+  const ChunkBits bits = classify_chunks(at.group, view, planes);
+  if (bits.kept == 0) return 0;
+  ChunkAnswers visible;
+  visible.fill(1);
+  if (view.occluders) {
+    ask_chunks(at.group, view, visible);
+    tally.asked += at.group.count;
+  }
+  std::uint32_t hidden = 0;
+  for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const ChunkMap::ChunkView chunk = at.map.chunk(at.group, i);
+    if (visible[i]) {
+      tally.left += chunk.count;
+      continue;
+    }
+    hidden |= 1u << i;
+    ++tally.hidden;
+    // Of a chunk that the frustum crosses, or that has holes, nobody knows without looking at its objects.
+    if ((bits.crossing >> i & 1) == 0 && !chunk.loose && view.area_scale == 0)
+      tally.saved += static_cast<std::uint64_t>(std::popcount(mask_bits)) * chunk.count;
+  }
+  return hidden;
+}
+
+ChunkTally hidden_chunks(const PassInput& input, std::span<const GroupEntry> entries, std::uint32_t* hidden) {
+  ChunkTally tally;
+  for (const GroupEntry& entry : entries) {
+    const EntryGroup at = group_of(input, entry);
+    for (std::size_t v = 0; v < input.view_count; ++v)
+      *hidden++ = hidden_of(at, at.views[v], entry.planes[v], input.bits[v], tally);
+  }
+  return tally;
 }
 
 // Takes out the objects that the occluders hide, of those that the view sees otherwise. Returns how many.
@@ -75,7 +123,7 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
   std::uint64_t dropped = 0;
   if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
-  occlusion::query_boxes(
+  view.occluders->ask->boxes(
       *view.occluders, view.projection,
       {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
       visible.data());
@@ -87,13 +135,16 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
   return dropped;
 }
 
-// The chunks of a group that a view may see.
+// The chunks of a group that a view may see. Those that are known to be hidden are not asked for again.
 HWY_INLINE ChunkBits filter_chunks(const EntryGroup& at, const SectorView& view, PlaneSet planes,
-                                   std::uint64_t& dropped) {
+                                   const std::uint32_t* hidden, std::uint64_t& dropped) {
   if (planes == kOutside) return {};
   ChunkBits bits = classify_chunks(at.group, view, planes);
-  if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum))
+  if (hidden) {
+    bits.kept &= ~*hidden;
+  } else if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum)) {
     dropped += drop_hidden_chunks(at.map, at.group, view, bits);
+  }
   return bits;
 }
 
@@ -126,12 +177,13 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
   const auto count_occluded = [&](std::size_t v, std::uint64_t objects) {
     counts.occluded += static_cast<std::uint64_t>(std::popcount(input.bits[v])) * objects;
   };
+  const std::uint32_t* hidden = input.hidden.empty() ? nullptr : input.hidden.data();
   for (const GroupEntry& entry : entries) {
     const EntryGroup at = group_of(input, entry);
     std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
       std::uint64_t dropped = 0;
-      bits[v] = filter_chunks(at, at.views[v], entry.planes[v], dropped);
+      bits[v] = filter_chunks(at, at.views[v], entry.planes[v], hidden ? hidden++ : nullptr, dropped);
       count_occluded(v, dropped);
       any |= bits[v].kept;
     }
@@ -166,6 +218,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline::world {
 HWY_EXPORT(filtered_views);
+HWY_EXPORT(hidden_chunks);
+
+ChunkTally find_hidden_chunks(const PassInput& input, std::span<const GroupEntry> entries,
+                              std::uint32_t* hidden) noexcept {
+  return HWY_DYNAMIC_DISPATCH(hidden_chunks)(input, entries, hidden);
+}
 
 PassCounts cull_filtered_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                                 std::uint8_t* masks) noexcept {

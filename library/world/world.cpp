@@ -71,11 +71,35 @@ void WorldState::tidy(bool after_insertions) {
   touched.clear();
 }
 
+Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept {
+  if (!handles.sound())
+    return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
+  const std::span<const ChunkMap::Location> objects = WorldAccess::state(world).objects;
+  for (std::size_t i = 0; i < handles.size(); ++i) {
+    const Handle handle = handles[i];
+    if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
+        objects[handle.index].generation != handle.generation)
+      return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
+  }
+  return {};
+}
+
+WorldBox stored_box(const WorldState& state, ObjectId id) noexcept {
+  const Sector& sector = state.sectors[state.objects[id].sector];
+  const Box b = sector.map->box(id);
+  const WorldPoint& o = sector.origin;
+  return {{o.x + static_cast<double>(b.min.x), o.y + static_cast<double>(b.min.y),
+           o.z + static_cast<double>(b.min.z)},
+          {o.x + static_cast<double>(b.max.x), o.y + static_cast<double>(b.max.y),
+           o.z + static_cast<double>(b.max.z)}};
+}
+
 }  // namespace world
 
 namespace {
 
 using geometry::kBlock;
+using world::check_handles;
 using world::ChunkMap;
 using world::WorldState;
 
@@ -96,19 +120,6 @@ Status check_boxes(const BoxView& boxes) noexcept {
         return {StatusCode::bad_box, "world: a box is not valid, expected min <= max within 1e11 m of 0",
                 first + i};
     }
-  }
-  return {};
-}
-
-Status check_handles(const World& world, const Handles& handles) noexcept {
-  if (!handles.sound())
-    return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
-  const std::span<const ChunkMap::Location> objects = WorldAccess::state(world).objects;
-  for (std::size_t i = 0; i < handles.size(); ++i) {
-    const Handle handle = handles[i];
-    if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
-        objects[handle.index].generation != handle.generation)
-      return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
   }
   return {};
 }
@@ -241,6 +252,7 @@ Status World::remove(Strided<const Handle> handles) {
     s.touch(object.sector);
     s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
+    if (s.occluders) s.occluders->forget(id);
     s.free_ids.push_back(id);
   }
   s.size -= handles.size();
@@ -270,13 +282,7 @@ bool World::contains(Handle handle) const noexcept {
 
 WorldBox World::box(Handle handle) const noexcept {
   if (!contains(handle)) return {};
-  const world::Sector& sector = state_->sectors[state_->objects[handle.index].sector];
-  const Box b = sector.map->box(handle.index);
-  const WorldPoint& o = sector.origin;
-  return {{o.x + static_cast<double>(b.min.x), o.y + static_cast<double>(b.min.y),
-           o.z + static_cast<double>(b.min.z)},
-          {o.x + static_cast<double>(b.max.x), o.y + static_cast<double>(b.max.y),
-           o.z + static_cast<double>(b.max.z)}};
+  return world::stored_box(*state_, handle.index);
 }
 
 std::uint32_t World::layers(Handle handle) const noexcept {

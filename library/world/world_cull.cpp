@@ -251,7 +251,7 @@ void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
 
 PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept {
-  bool plain = true;
+  bool plain = input.hidden.empty();
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
   if (!plain) return cull_filtered_groups(input, entries, out, masks);
   if (input.view_count == 1 && !masks) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);

@@ -49,6 +49,17 @@ struct PassInput {
   std::size_t view_count = 1;
   /// Of each view, the bits of a mask: several where the caller's views are the same.
   std::array<std::uint8_t, kMaxViews> bits{};
+  /// Of each entry and each of its views the chunks that are known to be hidden, a bit each; or none.
+  std::span<const std::uint32_t> hidden = {};
+};
+
+/// What asking for chunks found.
+struct ChunkTally {
+  std::uint64_t asked = 0;   ///< chunks
+  std::uint64_t hidden = 0;  ///< chunks
+  std::uint64_t saved =
+      0;  ///< objects that the views surely saw otherwise, once for each of the caller's views
+  std::uint64_t left = 0;  ///< objects of chunks that are left, once for each view
 };
 
 /// Sorts the groups of a node: adds those that some view may see to `entries`. `views` are the sector's,
@@ -64,5 +75,10 @@ PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entri
 /// The same with all tests; cull_groups() calls it where some view has more than a frustum.
 PassCounts cull_filtered_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                                 std::uint8_t* masks) noexcept;
+
+/// Asks the views' occluders for the chunks of all entries, before any of their objects: writes PassInput's
+/// `hidden`. A view without occluders hides nothing.
+ChunkTally find_hidden_chunks(const PassInput& input, std::span<const GroupEntry> entries,
+                              std::uint32_t* hidden) noexcept;
 
 }  // namespace sightline::world

@@ -10,6 +10,7 @@
 #include <sightline/world.hpp>
 
 #include "library/world/chunk_map.hpp"
+#include "library/world/world_occluders.hpp"
 
 namespace sightline::world {
 
@@ -50,8 +51,9 @@ struct WorldState {
   std::vector<ObjectId> free_ids;
   /// One an id, or empty as long as nobody has set any.
   std::vector<std::uint32_t> layers, values;
-  std::vector<std::uint32_t> touched;  ///< sectors that changed since tidy(), each once
-  std::uint64_t tidied = 0;            ///< how many sectors tidy() has looked at, ever
+  std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
+  std::vector<std::uint32_t> touched;         ///< sectors that changed since tidy(), each once
+  std::uint64_t tidied = 0;                   ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;
 
   /// Whether anybody has culled since the last frame began: then the next change begins another.
@@ -62,6 +64,8 @@ struct WorldState {
   std::size_t awake_hand = 0;        ///< where let_rest() goes on
   static constexpr std::uint32_t kFewestAtRest = 64;
 
+  /// Made if there are none.
+  WorldOccluders& own_occluders();
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose map changes.
   void touch(std::uint32_t sector);
@@ -75,6 +79,11 @@ struct WorldState {
   /// Lets some of the awake sectors' maps rest.
   void let_rest();
 };
+
+/// Whether all handles name objects of the world.
+Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept;
+/// The object's box as stored.
+WorldBox stored_box(const WorldState& state, ObjectId id) noexcept;
 
 /// The sector that holds a box's centre.
 SectorCell sector_cell(const WorldBox& box) noexcept;

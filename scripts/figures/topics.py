@@ -156,6 +156,13 @@ def scenes(quick):
                            "--methods=roc,hroc,ioc,ihzb,vertex-chunk,resident-chunk,hiz", "--moving=0.1")
 
 
+def automatic(quick):
+    """Occlusion in one call: 100,000 objects of a city at street level, culled on one thread."""
+    city = compare("world:city?objects=100000", "vfc-vc,masked,world", "city-100000", size="1280x720", path="near",
+                   frames=4 if quick else 12)
+    return compare_with(city, lambda name: "city-100000/vfc-vc/cull" if name.endswith("/cull") else None)
+
+
 def surfaces(quick):
     """What is lost where cut-outs and backs that are not drawn are taken for solid, and where they are not."""
     views = 60 if quick else 300
@@ -282,5 +289,5 @@ def web(quick):
 
 
 TOPICS = {"world": world, "movers": movers, "moving": moving, "frustum": frustum, "occlusion": occlusion, "rays": rays,
-          "scenes": scenes, "surfaces": surfaces, "memory": memory, "startup": startup, "large": large, "bake": bake,
-          "draw-calls": draw_calls, "web": web}
+          "scenes": scenes, "surfaces": surfaces, "automatic": automatic, "memory": memory, "startup": startup, "large": large,
+          "bake": bake, "draw-calls": draw_calls, "web": web}

@@ -42,7 +42,8 @@ static void cull_views(sightline_culler* culler, const sightline_world* world) {
   sightline_cull_result result;
   EXPECT(sightline_cull(culler, world, views, 3, NULL, &output, &result) == SIGHTLINE_OK);
   EXPECT(result.count > 900 && result.tested <= 3 * kCount && result.nodes_visited > 0);
-  EXPECT(result.culled_occlusion == 0 && result.reserved[0] == 0 && result.reserved[3] == 0);
+  EXPECT(result.culled_occlusion == 0 && result.cost == 0 && result.reserved[0] == 0 &&
+         result.reserved[1] == 0);
   const size_t all = result.count;
   size_t few = 0;
   for (size_t i = 0; i < all; ++i) {

@@ -99,6 +99,14 @@ static void draw_and_ask(sightline_occlusion* occlusion, const sightline_view* v
   EXPECT(sightline_occlusion_draw_boxes(occlusion, &one) == SIGHTLINE_OK);
   EXPECT(sightline_occlusion_may_see_spheres(occlusion, &hidden, visible, 1) == SIGHTLINE_OK);
   EXPECT(visible[0] == 0);
+  for (uint32_t coverage = SIGHTLINE_COVERAGE_CENTRES; coverage <= SIGHTLINE_COVERAGE_AREA; ++coverage) {
+    for (uint32_t scale = 1; scale <= 4; scale *= 2) {
+      EXPECT(sightline_occlusion_begin_with(occlusion, view, coverage, scale) == SIGHTLINE_OK);
+      EXPECT(sightline_occlusion_draw_boxes(occlusion, &one) == SIGHTLINE_OK);
+      EXPECT(sightline_occlusion_may_see_spheres(occlusion, &hidden, visible, 1) == SIGHTLINE_OK);
+      EXPECT(visible[0] == 0);
+    }
+  }
   const float ball[4][1] = {{0}, {0}, {-3}, {1}};
   const sightline_sphere_view arrays = sightline_spheres_arrays(ball[0], ball[1], ball[2], ball[3], 1);
   EXPECT(sightline_occlusion_begin(occlusion, view) == SIGHTLINE_OK);
@@ -289,6 +297,10 @@ static void refuse_things(sightline_occlusion* occlusion, const sightline_view* 
   EXPECT_REFUSED(sightline_occlusion_draw_spheres(NULL, &ball), bad, none);
   EXPECT_REFUSED(sightline_occlusion_draw_spheres(occlusion, NULL), bad, none);
   EXPECT_REFUSED(sightline_occlusion_begin(NULL, view), bad, none);
+  EXPECT_REFUSED(sightline_occlusion_begin_with(NULL, view, SIGHTLINE_COVERAGE_AREA, 1), bad, none);
+  EXPECT_REFUSED(sightline_occlusion_begin_with(occlusion, NULL, SIGHTLINE_COVERAGE_AREA, 1), bad, none);
+  EXPECT_REFUSED(sightline_occlusion_begin_with(occlusion, view, 2, 1), bad, none);
+  EXPECT_REFUSED(sightline_occlusion_begin_with(occlusion, view, SIGHTLINE_COVERAGE_AREA, 3), bad, none);
   EXPECT_REFUSED(sightline_occlusion_begin(occlusion, NULL), bad, none);
   EXPECT_REFUSED(sightline_occlusion_view(occlusion, NULL), bad, none);
 }

@@ -13,7 +13,8 @@ int main(void) {
   STRUCT(sightline_box_view, origin);
   STRUCT(sightline_camera, shift);
   STRUCT(sightline_column, count);
-  STRUCT(sightline_cull_options, jobs);
+  STRUCT(sightline_cull_costs, reserved);
+  STRUCT(sightline_cull_options, costs);
   STRUCT(sightline_cull_output, capacity);
   STRUCT(sightline_cull_result, reserved);
   STRUCT(sightline_cull_view, view);
@@ -24,6 +25,7 @@ int main(void) {
   STRUCT(sightline_jobs, reserved);
   STRUCT(sightline_object_columns, values);
   STRUCT(sightline_occluder_parts, box_count);
+  STRUCT(sightline_occluder_placement, origin);
   STRUCT(sightline_pvs_cells, visible_count);
   STRUCT(sightline_ray, max_distance);
   STRUCT(sightline_sphere_view, count);
@@ -45,10 +47,15 @@ int main(void) {
   VALUE(SIGHTLINE_ARRAYS_FLOAT);
   VALUE(SIGHTLINE_BOTH_SIDES);
   VALUE(SIGHTLINE_FRONT_SIDE);
+  VALUE(SIGHTLINE_COVERAGE_CENTRES);
+  VALUE(SIGHTLINE_COVERAGE_AREA);
   VALUE(SIGHTLINE_OCCLUDES_WHOLE);
   VALUE(SIGHTLINE_OCCLUDES_PARTS);
   VALUE(SIGHTLINE_OCCLUDES_THIN);
   VALUE(SIGHTLINE_OCCLUDES_EMPTY);
+  VALUE(SIGHTLINE_OCCLUSION_NONE);
+  VALUE(SIGHTLINE_OCCLUSION_AUTOMATIC);
+  VALUE(SIGHTLINE_NO_OCCLUDER);
   VALUE(SIGHTLINE_OUTSIDE);
   VALUE(SIGHTLINE_CROSSING);
   VALUE(SIGHTLINE_INSIDE);

@@ -39,7 +39,7 @@ Replay first_loss(double moving) {
   Bench bench(scene, std::vector<std::string>{});
   bench.add("half", std::make_unique<Half>(scene));
   const Verification seen = verify(bench, camera::random_cameras(scene, 20, 1), 64, 48, moving);
-  Replay replay{kScene, "", "half", "cpu", RasterState::materials, moving, {}};
+  Replay replay{kScene, "", "half", "cpu", RasterState::materials, moving, 0, {}};
   EXPECT_FALSE(seen.methods.front().examples.empty());
   replay.lost = seen.methods.front().examples.back();
   return replay;

@@ -174,5 +174,25 @@ TEST(Bench, UnknownMethodIsRefused) {
   EXPECT_THROW(Bench(scene, std::vector<std::string>{"nothing-like-it"}), Error);
 }
 
+// Centres see only what they see; at other places of the pixels more shows, which area keeps, at any
+// resolution.
+TEST(Verify, SamplesShowWhatCentresMissAndAreaKeepsIt) {
+  Scene scene = generate_world("irregular?spheres=3000&detail=0");
+  const std::vector<std::string> methods{"masked", "masked?coverage=area",
+                                         "masked?coverage=area&resolution=half", "none"};
+  const std::vector<Camera> cameras = camera::random_cameras(scene, 12, 11);
+  Bench of_centres(scene, methods), of_samples(scene, methods, nullptr, 8);
+  const Verification centres = verify(of_centres, cameras, 160, 120, 0),
+                     samples = verify(of_samples, cameras, 160, 120, 0);
+  EXPECT_TRUE(centres.passed());
+  EXPECT_GT(samples.methods[0].visible, centres.methods[0].visible);
+  EXPECT_GT(samples.methods[0].lost_objects, 0u);  // whose promise is of centres
+  for (const std::size_t by_area : {1u, 2u}) {
+    const MethodVerdict& found = samples.methods[by_area];
+    EXPECT_EQ(found.lost_objects, 0u) << found.method;
+    EXPECT_LT(found.kept, samples.methods[3].kept / 2) << found.method;
+  }
+}
+
 }  // namespace
 }  // namespace sightline::measure

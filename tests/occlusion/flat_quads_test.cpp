@@ -121,7 +121,8 @@ TEST(FlatQuads, AreNowhereDrawnNearerThanTheyAreAndAlmostEverywhereTheyAre) {
   std::size_t covered = 0, missed = 0, pairs = 0;
   for (int round = 0; round < 400; ++round) {
     Camera camera = test::random_camera(random, kRoom);
-    const Result<View> view = make_view(camera, 20 + random.below(80), 20 + random.below(60));
+    const std::uint32_t width = 20 + random.below(80), height = 20 + random.below(60);
+    const Result<View> view = make_view(camera, width, height);
     if (!view) continue;
     std::vector<Quad> quads;
     for (int i = 0; i < 20; ++i) {

@@ -203,6 +203,19 @@ void answer_occlusion(const std::vector<NamedView>& views, Answers& out) {
     out.add("occlusion.coverage." + named.name, covered);
     expect(buffer.may_see(boxes.view(), seen));
     out.add_all("occlusion.boxes." + named.name, seen);
+    const auto answer_by = [&](const std::string& name, const OcclusionOptions& options) {
+      expect(buffer.begin({named.view, {}}, options));
+      draw_occluders(buffer);
+      expect(buffer.read_nearness(depth));
+      expect(buffer.may_see(boxes.view(), seen));
+      Hash hash;
+      for (const float nearness : depth) hash.add(nearness);
+      for (const std::uint8_t answer : seen) hash.add(answer);
+      out.add("occlusion." + name + "." + named.name, hash);
+    };
+    answer_by("area", {Coverage::area});
+    answer_by("half", {Coverage::centres, 2});
+    answer_by("quarter_area", {Coverage::area, 4});
   }
 }
 

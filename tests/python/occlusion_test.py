@@ -113,6 +113,16 @@ class Draw(Case):
         self.assertEqual((pixels.shape, pixels.dtype), ((48, 64), np.float32))
         np.testing.assert_allclose(pixels, 0.2, rtol=1e-3)
 
+    def test_every_place_of_the_image_and_coarser_pixels(self):
+        for coverage in ("centres", "area"):
+            for scale in (1, 2, 4):
+                self.occlusion.begin(VIEW, coverage, scale)
+                self.occlusion.draw_mesh(self.wall)
+                self.assertEqual(list(self.occlusion.may_see_boxes(BOXES)), [True, False])
+                self.assertEqual(self.occlusion.read_nearness().shape, (48, 64))
+        self.bad("coverage: expected", self.occlusion.begin, VIEW, "all")
+        self.refused("bad_argument", "scale", self.occlusion.begin, VIEW, "area", 3)
+
     def test_before_begin(self):
         fresh = sightline.Occlusion()
         for call, arg in ((fresh.draw_boxes, BOXES), (fresh.draw_spheres, SPHERES), (fresh.draw_mesh, self.wall)):

@@ -166,7 +166,8 @@ TEST_F(EdgeCases, FlatObjectsInTheirOwnBoxes) {
   const std::uint32_t quad = scene.add_mesh(corners, normals, indices);
   scene::Random random(4);
   for (int i = 0; i < 400; ++i) {
-    Affine transform = at(random.between(-20, 20), random.between(-3, 3), random.between(-40, -1));
+    const Vec3 place{random.between(-20, 20), random.between(-3, 3), random.between(-40, -1)};
+    Affine transform = at(place.x, place.y, place.z);
     const float size = random.between(0.005f, 1.5f);
     const float x = transform.rows[0].w, y = transform.rows[1].w, z = transform.rows[2].w;
     if (i % 3 == 0) transform.rows = {Vec4{size, 0, 0, x}, Vec4{0, size, 0, y}, Vec4{0, 0, 1, z}};

@@ -13,8 +13,10 @@ inline constexpr Box kRoom{{-50, -20, -50}, {50, 20, 50}};
 
 inline View small_view(scene::Random& random) {
   for (;;) {
-    const Result<View> view =
-        make_view(random_camera(random, kRoom), 20 + random.below(80), 20 + random.below(60));
+    // One after the other: compilers call a function's arguments in orders of their own.
+    const auto camera = random_camera(random, kRoom);
+    const std::uint32_t width = 20 + random.below(80), height = 20 + random.below(60);
+    const Result<View> view = make_view(camera, width, height);
     if (view) return *view;
   }
 }

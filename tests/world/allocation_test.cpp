@@ -8,6 +8,7 @@
 #include <sightline/occlusion.hpp>
 #include <sightline/world.hpp>
 
+#include "support/solid_boxes.hpp"
 #include "workbench/scene/random.hpp"
 
 // ThreadSanitizer brings its own operators, which cannot be replaced.
@@ -104,6 +105,44 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
   }
   EXPECT_EQ(allocations - warm, 0u);
   EXPECT_GT(kept, 1000u);
+}
+
+TEST(Allocation, OcclusionInOneCallAllocatesNothingOnceWarm) {
+  scene::Random random(3);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 6000; ++i) {
+    const Vec3 half{random.between(0.2f, 3), random.between(0.2f, 20), random.between(0.2f, 3)};
+    boxes.push_back(test::box_at({random.between(-300, 300), half.y, random.between(-300, 300)}, half));
+  }
+  test::SolidBoxes scene(std::move(boxes));
+  // Half of them by triangles, and with triangles to be asked for.
+  Occluder quad;
+  quad.positions = {{0, 0, 0.5f}, {1, 0, 0.5f}, {1, 1, 0.5f}, {0, 1, 0.5f}},
+  quad.indices = {0, 1, 2, 0, 2, 3};
+  const OccluderId flat = *scene.world.add_occluder(quad);
+  for (std::size_t i = 0; i < scene.boxes.size(); i += 2) {
+    const std::array placement{test::filling(scene.boxes[i], flat)};
+    const std::array<Vec3, 3> triangle{scene.boxes[i].min, scene.boxes[i].max, scene.boxes[i].min};
+    ASSERT_TRUE(scene.world.set_occluders(std::span(scene.handles).subspan(i, 1), placement));
+    ASSERT_TRUE(scene.world.set_triangles(scene.handles[i], triangle));
+  }
+  Culler culler;
+  CullOptions options = test::automatic(50000);
+  options.jobs = {run_here, nullptr, 4};
+  std::vector<ObjectId> visible(cull_capacity(scene.world, options));
+  std::size_t warm = 0, dropped = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    // The first frames see everything.
+    const bool above = frame < 3;
+    const Vec3 eye = above ? Vec3{0, 900, 0.1f} : Vec3{3.0f * static_cast<float>(frame) - 100, 2, 0};
+    const CullView view{.view = {test::looking(eye, above ? Vec3{0, -1, -0.001f} : Vec3{1, 0, 0.2f}), {}}};
+    if (frame == 5) warm = allocations;
+    const Result<CullResult> result = culler.cull(scene.world, {&view, 1}, options, {visible});
+    ASSERT_TRUE(result);
+    if (frame >= 5) dropped += result->culled_occlusion;
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+  EXPECT_GT(dropped, 1000u);
 }
 
 TEST(Allocation, MovingTheSameObjectsAllocatesNothingOnceWarm) {

@@ -9,9 +9,12 @@
 
 namespace sightline::measure {
 
-Bench::Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device)
+Bench::Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device,
+             std::uint32_t samples)
     : scene_(scene), renderer_(device ? std::make_unique<device::Renderer>(*device, scene) : nullptr) {
-  oracle_ = renderer_ ? oracle::make_raster_oracle(*renderer_) : oracle::make_ray_oracle(scene);
+  if (renderer_ && samples > 0)
+    throw Error("samples: a device judges pixel centres alone, expected --device cpu");
+  oracle_ = renderer_ ? oracle::make_raster_oracle(*renderer_) : oracle::make_ray_oracle(scene, samples);
   for (const std::string& specification : specifications) {
     subjects_.push_back({specification, create_method(specification, MethodSite{scene, renderer_.get()})});
   }

@@ -23,9 +23,11 @@ struct Subject {
 
 class Bench {
 public:
-  /// On the CPU, or on a device where one is given. Scene and device outlive the bench. Throws Error for a
-  /// method that does not exist or does not fit.
-  Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device = nullptr);
+  /// On the CPU, or on a device where one is given. Scene and device outlive the bench. On the CPU `samples`
+  /// places of each pixel are judged, for 0 its centre. Throws Error for a method that does not exist or does
+  /// not fit, and for samples on a device.
+  Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device = nullptr,
+        std::uint32_t samples = 0);
   ~Bench();
 
   [[nodiscard]] Scene& scene() noexcept { return scene_; }

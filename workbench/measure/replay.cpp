@@ -50,6 +50,7 @@ void save_replay(const std::filesystem::path& file, const Replay& replay) {
                 {"device", replay.device},
                 {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
                 {"moving", replay.moving},
+                {"samples", replay.samples},
                 {"moves", lost.moves},
                 {"size", {lost.width, lost.height}},
                 {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
@@ -72,8 +73,10 @@ Replay load_replay(const std::filesystem::path& path,
   replay.raster_state =
       static_cast<RasterState>(raster_state_of(member<std::string>(document, "faces", file), file));
   replay.moving = member<double>(document, "moving", file);
+  if (document.contains("samples")) replay.samples = member<std::uint32_t>(document, "samples", file);
   LostObject& lost = replay.lost;
   lost.moves = member<std::size_t>(document, "moves", file);
+  if (replay.samples > 64) throw Error(file + ": expected at most 64 \"samples\"");
   if (!(replay.moving >= 0 && replay.moving <= 1) || lost.moves > kMostMoves)
     throw Error(fmt::format("{}: expected \"moving\" from 0 to 1 and at most {} moves", file, kMostMoves));
   const auto size = member<std::array<std::uint32_t, 2>>(document, "size", file);

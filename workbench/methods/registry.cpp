@@ -21,6 +21,7 @@
   METHOD(kGridCell)                       \
   METHOD(kObjectFrustum)                  \
   METHOD(kMasked)                         \
+  METHOD(kWorld)                          \
   FAMILY(kDrawCallMethods, 9)             \
   METHOD(kClusterCone)                    \
   METHOD(kAdaptive)                       \

@@ -160,15 +160,15 @@ void EmbreeJudge::State::trace_tile(const PixelRays& rays, std::uint32_t x, std:
   }
 }
 
-ItemBuffer EmbreeJudge::render(const View& view) const {
+ItemBuffer EmbreeJudge::render(const View& view, std::uint32_t sample) const {
   or_throw(check(view));
   state_->held.require_same();
   ItemBuffer out;
-  out.width = view.width, out.height = view.height;
+  out.width = view.width, out.height = view.height, out.sample = sample;
   out.ids.assign(std::size_t{view.width} * view.height, kNoObject);
   out.distances.assign(out.ids.size(), std::numeric_limits<float>::infinity());
   out.pixels.assign(state_->scene.size(), 0);
-  const PixelRays rays(view);
+  const PixelRays rays(view, sample);
   const bool counts = !state_->see_through->empty();
   struct Worker {
     std::vector<std::uint32_t> pixels;
@@ -213,7 +213,7 @@ std::vector<std::uint32_t> EmbreeJudge::confirmed_pixels(const View& view, const
     place[objects[i]] = i;
     if (scene.surface[objects[i]] != Surface::opaque) see_through_places.push_back(i);
   }
-  const PixelRays rays(view);
+  const PixelRays rays(view, truth.sample);
   const auto add = [&](std::size_t i, const PixelRay& ray) {
     confirmed[i] += triangles[i].meet(ray).has_value();
   };

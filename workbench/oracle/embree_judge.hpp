@@ -1,5 +1,5 @@
-// The judge: the item buffer by Embree rays through pixel centres. It sees meshes and matrices, and knows
-// none of the culling code that it judges.
+// The judge: the item buffer by Embree rays through pixel centres, or other places of pixels. It sees meshes
+// and matrices, and knows none of the culling code that it judges.
 #pragma once
 
 #include <memory>
@@ -24,8 +24,8 @@ public:
   EmbreeJudge& operator=(const EmbreeJudge&) = delete;
 
   /// Throws Error for a view that does not pass check(). Same scene and view, same answer for any number of
-  /// threads.
-  [[nodiscard]] ItemBuffer render(const View& view) const;
+  /// threads. Which of a pixel's places the rays go through, `sample` says, as for PixelRays.
+  [[nodiscard]] ItemBuffer render(const View& view, std::uint32_t sample = 0) const;
 
   /// Told after Scene::move_object of each of `objects`.
   void move(std::span<const ObjectId> objects);

@@ -10,6 +10,7 @@ namespace sightline::oracle {
 
 struct ItemBuffer {
   std::uint32_t width = 0, height = 0;
+  std::uint32_t sample = 0;   ///< of each pixel, as PixelRays has it
   std::vector<ObjectId> ids;  ///< width × height, row 0 at the top: the nearest opaque object, or kNoObject
   std::vector<float> distances;  ///< metres from the near plane to what `ids` shows; +infinity for nothing
   /// One an object: pixels it is seen in. A cut-out or transparent one is seen where nothing opaque lies

@@ -57,8 +57,11 @@ public:
   virtual void update(std::span<const ObjectId> objects) = 0;
 };
 
-/// Rays through pixel centres by Embree, losses confirmed in double precision. The scene outlives it.
-std::unique_ptr<Oracle> make_ray_oracle(const Scene& scene);
+/// Rays by Embree, losses confirmed in double precision: through pixel centres, or where `samples` is not 0
+/// through so many random places of each pixel, the same in every view; then an object is visible that any of
+/// them sees, and pixels count once a sample. Of methods that draw triangles of their own centres alone are
+/// judged. The scene outlives it.
+std::unique_ptr<Oracle> make_ray_oracle(const Scene& scene, std::uint32_t samples = 0);
 
 /// The rasteriser's item buffer, and pictures to compare with. The renderer outlives it.
 std::unique_ptr<Oracle> make_raster_oracle(device::Renderer& renderer);

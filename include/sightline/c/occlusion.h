@@ -25,7 +25,7 @@ typedef struct sightline_occluder_mesh sightline_occluder_mesh;
  * NULL and 0: both sides of each. Triangles that join to fewer than three corners are left out. Errors:
  * BAD_ARGUMENT; BAD_MESH for indices that are not a multiple of three or out of range (the index says which),
  * for positions that are not finite (which position) and for another number of sides; TOO_MANY. Cost: n log
- * n, some 2 us a triangle: build once. Allocates: about 300 bytes a triangle. */
+ * n, some 2 us a triangle: build once. Allocates: about 500 bytes a triangle. */
 SIGHTLINE_API sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
                                                               const uint32_t* indices, size_t index_count,
                                                               const uint8_t* sides, size_t side_count,
@@ -128,6 +128,15 @@ SIGHTLINE_API void sightline_occlusion_destroy(sightline_occlusion* occlusion);
  * than any before. */
 SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion,
                                                          const sightline_view* view);
+/** Which places on the image are answered for: pixel centres, where rasterisers take their samples by
+ * default, or any place, for multisampling, jitter and upscaling. */
+enum { SIGHTLINE_COVERAGE_CENTRES = 0, SIGHTLINE_COVERAGE_AREA = 1 };
+/** The same for those places, which sightline_occlusion_begin takes for centres, in pixels `scale` times as
+ * wide as the view's: 1, 2 or 4; coarser has fewer tiles and hides less, what is promised stays the same.
+ * Errors: also BAD_ARGUMENT for a coverage or scale that is none. Cost, Allocates: the same. */
+SIGHTLINE_API sightline_status sightline_occlusion_begin_with(sightline_occlusion* occlusion,
+                                                              const sightline_view* view, uint32_t coverage,
+                                                              uint32_t scale);
 /** The view it was begun with. Errors: BAD_ARGUMENT; STALE_BUFFER before begin. */
 SIGHTLINE_API sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion,
                                                         sightline_view* view);

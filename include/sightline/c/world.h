@@ -73,6 +73,67 @@ SIGHTLINE_API sightline_status sightline_world_set_values(sightline_world* world
                                                           const sightline_handles* handles,
                                                           const sightline_column* values);
 
+/* --- what objects hide behind them, from culls with SIGHTLINE_OCCLUSION_AUTOMATIC --- */
+
+/** No occluder. */
+#define SIGHTLINE_NO_OCCLUDER 0xffffffffu
+
+/** Which occluder an object carries, and where. Made by sightline_occluder_placement_of(). */
+typedef struct sightline_occluder_placement {
+  uint32_t occluder;   /**< SIGHTLINE_NO_OCCLUDER takes away what the object carried */
+  float transform[16]; /**< column-major and affine: from the occluder's space to metres about `origin` */
+  uint32_t reserved;   /**< 0 */
+  double origin[3];    /**< metres */
+} sightline_occluder_placement;
+
+/** Moved by `transform`, about the world's origin; NULL: where it stands. */
+static inline sightline_occluder_placement sightline_occluder_placement_of(uint32_t occluder,
+                                                                           const float* transform) {
+  sightline_occluder_placement placement = {0, {0}, 0, {0, 0, 0}};
+  int i;
+  placement.occluder = occluder;
+  for (i = 0; i < 16; ++i) placement.transform[i] = transform ? transform[i] : i % 5 == 0 ? 1.0f : 0.0f;
+  return placement;
+}
+
+/** Keeps what sightline_occluder_create() made for objects to carry, as many as like; *name is its name in
+ * this world. Errors: BAD_ARGUMENT. Cost: some 2 us a triangle. Allocates: a copy. */
+SIGHTLINE_API sightline_status sightline_world_add_occluder(sightline_world* world,
+                                                            const sightline_occluder* occluder,
+                                                            uint32_t* name);
+/** The same of solid boxes, minimum and maximum, six floats each, and solid spheres, centre and radius, four
+ * floats each: they lie inside what carries them. Errors: BAD_ARGUMENT, BAD_BOX. Cost, Allocates: a copy. */
+SIGHTLINE_API sightline_status sightline_world_add_solids(sightline_world* world, const float* boxes,
+                                                          size_t box_count, const float* spheres,
+                                                          size_t sphere_count, uint32_t* name);
+/** The same of all triangles that the objects show, given as to sightline_occluder_mesh_create(). Errors: as
+ * there. Cost: some 2 us a triangle. Allocates: about 300 bytes a triangle. */
+SIGHTLINE_API sightline_status sightline_world_add_surface(sightline_world* world, const float* positions,
+                                                           size_t position_count, const uint32_t* indices,
+                                                           size_t index_count, const uint8_t* sides,
+                                                           size_t side_count, uint32_t* name);
+/** Forgets an occluder that no object carries; its name may be used again. Errors: BAD_ARGUMENT. */
+SIGHTLINE_API sightline_status sightline_world_remove_occluder(sightline_world* world, uint32_t name);
+/** Gives each object an occluder, switched on. Call it again when the object has moved: an occluder that
+ * reaches out of its object's box is not drawn. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates:
+ * some 200 bytes an object that carries one, 4 an id. */
+SIGHTLINE_API sightline_status sightline_world_set_occluders(sightline_world* world,
+                                                             const sightline_handles* handles,
+                                                             const sightline_occluder_placement* placements,
+                                                             size_t count);
+/** Switches what the objects carry on (1) or off (0), as doors do. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost:
+ * linear. */
+SIGHTLINE_API sightline_status sightline_world_set_occluding(sightline_world* world,
+                                                             const sightline_handles* handles,
+                                                             const uint8_t* on, size_t count);
+/** Gives an object all of its triangles, three points of three floats each about `origin` (NULL: the
+ * world's), which are asked for where its box may be seen, by views of the same origin; none takes them away.
+ * Call it again when the object has moved. `corner_count` is in points. Errors: BAD_ARGUMENT, BAD_MESH,
+ * STALE_HANDLE, TOO_MANY. Cost: a copy. Allocates: 576 bytes for every 16 triangles begun, 4 an id. */
+SIGHTLINE_API sightline_status sightline_world_set_triangles(sightline_world* world, sightline_handle handle,
+                                                             const float* corners, size_t corner_count,
+                                                             const double* origin);
+
 /** Objects; 0 for NULL. */
 SIGHTLINE_API size_t sightline_world_size(const sightline_world* world);
 /** All ids lie below this; those of removed objects are reused. 0 for NULL. */
@@ -117,19 +178,45 @@ static inline sightline_cull_view sightline_cull_view_of(const sightline_view* v
   return result;
 }
 
+/** Whether a cull draws the occluders that objects carry. */
+enum {
+  SIGHTLINE_OCCLUSION_NONE = 0,     /**< it does not; a view may still bring an occlusion */
+  SIGHTLINE_OCCLUSION_AUTOMATIC = 1 /**< as far as that pays; no view brings an occlusion */
+};
+
+/** What counted work costs, in any one unit; the defaults are nanoseconds. */
+typedef struct sightline_cull_costs {
+  float object; /**< an object that is left, for who draws it; 0: what sightline_report_frame_time() taught */
+  float node;   /**< a region, group or chunk looked at */
+  float test;   /**< an object tested against planes */
+  float candidate; /**< an object looked at for what it carries */
+  float tile;      /**< 8 x 8 pixels emptied or drawn */
+  float shape;     /**< a box or a sphere drawn */
+  float triangle;  /**< a triangle drawn */
+  float query;     /**< a box asked */
+  float occludee;  /**< a triangle asked */
+  float reserved;  /**< 0 */
+} sightline_cull_costs;
+
 /** How a call culls; the same for all its views. Made by sightline_cull_options_default(). */
 typedef struct sightline_cull_options {
-  uint32_t struct_size;    /**< bytes of this struct */
-  uint32_t values_for_ids; /**< 1: writes the objects' values instead of their ids */
-  sightline_jobs jobs;     /**< the caller's threads */
+  uint32_t struct_size;       /**< bytes of this struct */
+  uint32_t values_for_ids;    /**< 1: writes the objects' values instead of their ids */
+  sightline_jobs jobs;        /**< the caller's threads */
+  uint32_t occlusion;         /**< SIGHTLINE_OCCLUSION_... */
+  uint32_t reserved;          /**< 0 */
+  sightline_cull_costs costs; /**< finite, not negative; read by automatic occlusion */
 } sightline_cull_options;
 
-/** Ids, by the calling thread. */
+/** Ids, by the calling thread, without occlusion. */
 static inline sightline_cull_options sightline_cull_options_default(void) {
+  static const sightline_cull_costs costs = {0, 10, 1, 8, 2, 30, 15, 12, 10, 0};
   sightline_cull_options options;
   options.struct_size = (uint32_t)sizeof options;
   options.values_for_ids = 0;
   options.jobs.run = NULL, options.jobs.user = NULL, options.jobs.threads = 0, options.jobs.reserved = 0;
+  options.occlusion = SIGHTLINE_OCCLUSION_NONE, options.reserved = 0;
+  options.costs = costs;
   return options;
 }
 
@@ -157,7 +244,9 @@ typedef struct sightline_cull_result {
   uint64_t tested;           /**< objects tested one by one */
   uint64_t nodes_visited;    /**< regions, groups and chunks looked at */
   uint64_t culled_occlusion; /**< objects that only occlusion dropped, summed over the views */
-  uint64_t reserved[4];      /**< 0 */
+  double cost;               /**< automatic occlusion: of this cull and of drawing what it left */
+  double frustum_cost;       /**< the same by frustum alone */
+  uint64_t reserved[2];      /**< 0 */
 } sightline_cull_result;
 
 /** Elements that the arrays of a sightline_cull_output need: all objects, and what SIMD and jobs write
@@ -171,13 +260,18 @@ typedef struct sightline_culler sightline_culler;
 /** Never NULL. Allocates: its first tables. */
 SIGHTLINE_API sightline_culler* sightline_culler_create(void);
 SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
+/** Teaches what an object costs, where the costs' `object` is 0: how many nanoseconds the frame took that
+ * drew what the last cull left. Errors: BAD_ARGUMENT. */
+SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* culler, double nanoseconds);
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
  * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
  * is left out, but by `layers` and `min_area`. All views have the same struct_size. `options` may be NULL.
- * Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost: grows with
- * what is visible and with the boundary of the views, not with the world. Threads: only reads the world and
- * the occlusions. Allocates: nothing once the culler has grown to the world's size. */
+ * With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted work x
+ * costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more
+ * than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost:
+ * grows with what is visible and with the boundary of the views, not with the world. Threads: only reads the
+ * world and the occlusions. Allocates: nothing once the culler has grown to the world's size. */
 SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
                                               const sightline_cull_view* views, size_t view_count,
                                               const sightline_cull_options* options,

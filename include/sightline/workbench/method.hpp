@@ -52,9 +52,9 @@ public:
   /// bounds.
   void update(std::span<const ObjectId> objects);
   /// Culls the view. On the CPU fills the output with what to draw; on a device records culling and drawing
-  /// in named passes, and what is left in the targets is the picture. The same view, scene and times told by
-  /// report_frame_time() give the same answer, in the same order. Allocates nothing once output and method
-  /// have grown to their sizes. Throws Error for a view that does not pass check().
+  /// in named passes, and what is left in the targets is the picture. The same calls with the same views,
+  /// scene and times told by report_frame_time() give the same answers, in the same order. Allocates nothing
+  /// once output and method have grown to their sizes. Throws Error for a view that does not pass check().
   void record(FrameContext& context);
   /// Fills in what only the device knows once the last frame is finished: what it drew, ascending by id, and
   /// its counts. Not part of a frame, for checking. Does nothing where record() has said it all.

@@ -4,6 +4,7 @@
 // sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes, and what
 // its box leaves of an object is tested triangle by triangle.
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include <sightline/world.hpp>
@@ -28,14 +29,29 @@ constexpr std::array kMaskedParameters{
                   "what occludes: opaque surfaces from the sides that are drawn, or everything, cut-outs "
                   "and both sides, as many engines have it: loses what is seen through and past them",
                   "opaque", 0, 0, false, "opaque|all"},
+    ParameterInfo{"coverage",
+                  "what is answered for: pixel centres, or any place on the image, for multisampling and "
+                  "jitter",
+                  "centres", 0, 0, false, "centres|area"},
+    ParameterInfo{"resolution", "of the depth buffer; coarser has fewer tiles and hides less", "full", 0, 0,
+                  false, "full|half|quarter"},
 };
+
+OcclusionOptions buffer_from(const Parameters& parameters) {
+  const std::string_view resolution = parameters.word("resolution");
+  return {parameters.word("coverage") == "area" ? Coverage::area : Coverage::centres,
+          resolution == "full"   ? 1u
+          : resolution == "half" ? 2u
+                                 : 4u};
+}
 
 OccluderChoice choice_from(const Parameters& parameters) {
   return {.most = parameters.count("occluders"),
           .least_area = static_cast<float>(parameters.number("pixels")),
           .least_sphere = static_cast<float>(parameters.number("spheres")),
           .whole = parameters.count("whole"),
-          .all_solid = parameters.word("solid") == "all"};
+          .all_solid = parameters.word("solid") == "all",
+          .buffer = buffer_from(parameters)};
 }
 
 class Masked final : public CpuMethod {

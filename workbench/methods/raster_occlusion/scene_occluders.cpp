@@ -48,7 +48,7 @@ void SceneOccluders::update(std::span<const ObjectId> objects) {
 }
 
 bool SceneOccluders::draw(const WorldView& at, std::span<const ObjectId> candidates) {
-  if (!buffer_.begin(at)) return false;
+  if (!buffer_.begin(at, choice_.buffer)) return false;
   // What is refused is not drawn, and hides nothing.
   if (whole_) {
     static_cast<void>(buffer_.draw_mesh(*whole_));

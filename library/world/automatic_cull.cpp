@@ -1,0 +1,253 @@
+#include "library/world/automatic_cull.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <vector>
+
+#include <sightline/occlusion.hpp>
+
+#include "library/geometry/mutant.h"
+#include "library/world/occluder_picks.hpp"
+
+namespace sightline::world {
+
+namespace {
+
+// What is remembered from frame to frame.
+struct Memory {
+  std::array<OccluderPicks, kMaxViews> picks;  // by the place of the caller's view
+  std::vector<std::uint32_t> hidden;           // of PassInput
+  std::vector<std::uint8_t> seen;              // what the triangles of each object left of its mask
+  std::size_t asking = 0;                      // how many objects' triangles are asked, of the first
+  std::uint32_t parts = 0;                     // in so many jobs
+};
+
+// One frame's try: look for occluders, draw them, ask for chunks, for objects, for their triangles. Each step
+// is begun only where the purse affords all of it.
+class Try {
+public:
+  Try(CullerState& state, Memory& memory, std::span<const CullView> views, const DifferentViews& different,
+      const JobSystem& jobs, const CullCosts& costs, CullResult& result)
+      : state_(state),
+        memory_(memory),
+        views_(views),
+        different_(different),
+        jobs_(jobs),
+        costs_(costs),
+        result_(result),
+        masks_(masks_of_caller(state)),
+        before_(count_drawn(state, result.count)),
+        purse_(state.account.allowance(result.frustum_cost)) {}
+
+  void run() {
+    hide();
+    const std::uint64_t gone = before_ - drawn();
+    result_.culled_occlusion = gone;
+    result_.cost += purse_.spent() - static_cast<double>(gone) * double{costs_.object};
+  }
+
+private:
+  void hide() {
+    if (SIGHTLINE_MUTANT(automatic_by_frustum) || !draw_occluders()) return;
+    if (!cull_again()) return;
+    ask_triangles();
+    remember();
+  }
+
+  [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
+
+  [[nodiscard]] bool draw_occluders() {
+    std::uint64_t objects = 0;
+    for (const GroupEntry& entry : state_.entries) {
+      const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
+      chunks_ += group.count, objects += group.objects;
+    }
+    const double views = static_cast<double>(different_.count),
+                 object_views = static_cast<double>(objects) * views;
+    // The chunks are asked for and the rest is written again in any case; the objects too, if that leaves
+    // enough for drawing.
+    const double chunks =
+        static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
+    const double least = chunks + object_views * double{costs_.test};
+    const double whole = least + object_views * double{costs_.query};
+    const double kept_back = 2 * whole <= purse_.left() ? whole : least;
+    bool any = false;
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
+      const std::size_t place = different_.first[d];
+      drawn_[d] = share > 0 && memory_.picks[place].draw(*state_.world, views_[place],
+                                                         {state_.out, result_.count}, costs_, share, purse_);
+      any = any || drawn_[d];
+    }
+    return any;
+  }
+
+  void set_occluders(bool ask) {
+    for (std::size_t s = 0; s < state_.maps.size(); ++s) {
+      for (std::size_t d = 0; d < different_.count; ++d) {
+        if (!drawn_[d]) continue;
+        SectorView& view = state_.views[s * different_.count + d];
+        const std::size_t place = different_.first[d];
+        const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
+        view.occluders = ask ? &tiles : nullptr;
+        if (ask) view.projection = occlusion::eye_projection(tiles.view, state_.origins[s], tiles.scale);
+      }
+    }
+  }
+
+  // What hidden chunks save for certain: known where masks tell views apart, or there is only one.
+  [[nodiscard]] double saving(const ChunkTally& tally) const {
+    if (state_.filters_layers || (!masks_ && different_.count > 1)) return 0;
+    const int copies = masks_ ? 1 : std::popcount(different_.bits[0]);
+    return static_cast<double>(tally.saved) / copies * double{costs_.object};
+  }
+
+  [[nodiscard]] bool cull_again() {
+    const double nodes = static_cast<double>(chunks_) * double{costs_.node};
+    const double asking = nodes + static_cast<double>(chunks_ * different_.count) * double{costs_.query};
+    if (!purse_.affords(asking)) return false;
+    set_occluders(true);
+    std::vector<std::uint32_t>& hidden = memory_.hidden;
+    hidden.reserve(state_.entries.capacity() * different_.count);
+    hidden.resize(state_.entries.size() * different_.count);
+    const ChunkTally tally = find_hidden_chunks(state_.input, state_.entries, hidden.data());
+    purse_.pay(nodes + static_cast<double>(tally.asked) * double{costs_.query});
+    const double saved = saving(tally);
+    purse_.earn(saved);
+    const double least = nodes + static_cast<double>(tally.left) * double{costs_.test};
+    const double whole = least + static_cast<double>(tally.left) * double{costs_.query};
+    const bool objects = purse_.affords(whole);
+    if (!objects && (tally.hidden == 0 || !purse_.affords(least))) return false;
+    if (!objects) set_occluders(false);
+    purse_.pay(objects ? whole : least);
+    state_.input.hidden = hidden;
+    CullResult again;
+    run_passes(state_, jobs_, again);
+    result_.count = again.count;
+    result_.tested += again.tested;
+    result_.nodes_visited += again.nodes_visited + chunks_;
+    purse_.earn(static_cast<double>(before_ - drawn()) * double{costs_.object} - saved);
+    return true;
+  }
+
+  // --- triangles ---
+
+  [[nodiscard]] std::uint64_t triangles_of(ObjectId id) const {
+    const WorldOccluders& o = *state_.world->occluders;
+    const std::uint32_t set = o.triangle_set(id);
+    return set == kNothing ? 0 : o.triangles[set].count;
+  }
+
+  void ask_triangles() {
+    const WorldOccluders& o = *state_.world->occluders;
+    const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
+    if (o.triangles.size() == o.free_triangles.size() || !purse_.affords(looking)) return;
+    purse_.pay(looking);
+    const double each = static_cast<double>(different_.count) * double{costs_.occludee};
+    std::size_t count = 0;
+    for (; count < result_.count; ++count) {
+      const double cost = static_cast<double>(triangles_of(state_.out[count])) * each;
+      if (!purse_.affords(cost)) break;
+      purse_.pay(cost);
+    }
+    if (memory_.seen.size() < count) memory_.seen.resize(state_.world->size);
+    memory_.asking = count;
+    constexpr std::size_t kWorthAJob = 64;
+    memory_.parts = static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(count / kWorthAJob, 1, jobs_.run ? jobs_.threads : 1));
+    if (memory_.parts > 1) {
+      jobs_.run(jobs_.user, memory_.parts, ask_part, this);
+    } else {
+      ask_part(this, 0);
+    }
+    keep_seen();
+  }
+
+  static void ask_part(void* data, std::uint32_t part) {
+    const auto& self = *static_cast<const Try*>(data);
+    Memory& memory = self.memory_;
+    const std::size_t count = memory.asking, first = count * part / memory.parts,
+                      end = count * (part + 1) / memory.parts;
+    for (std::size_t i = first; i < end; ++i) memory.seen[i] = self.views_that_see(i);
+  }
+
+  // Bits of the mask of the i-th object that its triangles leave; without masks, any or none.
+  [[nodiscard]] std::uint8_t views_that_see(std::size_t i) const {
+    const std::uint8_t before = masks_ ? masks_[i] : std::uint8_t{0xff};
+    const ObjectId id = state_.out[i];
+    const WorldOccluders& o = *state_.world->occluders;
+    const std::uint32_t at = o.triangle_set(id);
+    if (at == kNothing || !stands_in(o.triangles[at].bounds, stored_box(*state_.world, id))) return before;
+    const ObjectTriangles& set = o.triangles[at];
+    std::uint8_t seen = before, asked = 0;
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      asked |= different_.bits[d];
+      const std::size_t place = different_.first[d];
+      if ((before & different_.bits[d]) == 0 || !drawn_[d] || !(set.origin == views_[place].view.origin))
+        continue;
+      const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
+      if (!occlusion::query_triangles(tiles, set.blocks, set.count))
+        seen &= static_cast<std::uint8_t>(~different_.bits[d]);
+    }
+    return seen & asked;
+  }
+
+  void keep_seen() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < result_.count; ++i) {
+      state_.out[kept] = state_.out[i];
+      const bool asked = i < memory_.asking;
+      if (masks_) masks_[kept] = asked ? memory_.seen[i] : masks_[i];
+      kept += !asked || memory_.seen[i] != 0;
+    }
+    result_.count = kept;
+  }
+
+  // --- what helps the next frame ---
+
+  void remember() {
+    const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
+    if (!purse_.affords(looking)) return;
+    purse_.pay(looking);
+    auto& picks = memory_.picks;
+    for (std::size_t d = 0; d < different_.count; ++d) picks[different_.first[d]].begin_seen();
+    for (std::size_t i = 0; i < result_.count; ++i) {
+      const std::uint32_t carrier = state_.world->occluders->carrier(state_.out[i]);
+      if (carrier == kNothing) continue;
+      for (std::size_t d = 0; d < different_.count; ++d)
+        if (!masks_ || (masks_[i] & different_.bits[d]) != 0) picks[different_.first[d]].saw(carrier);
+    }
+  }
+
+  CullerState& state_;
+  Memory& memory_;
+  std::span<const CullView> views_;
+  const DifferentViews& different_;
+  const JobSystem& jobs_;
+  const CullCosts& costs_;
+  CullResult& result_;
+  std::uint8_t* masks_;  // the caller's
+  std::uint64_t before_, chunks_ = 0;
+  std::array<bool, kMaxViews> drawn_{};
+  Purse purse_;
+};
+
+class Automatic final : public Hiding {
+public:
+  void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+            const CullOptions& options, const CullCosts& costs, CullResult& result) override {
+    Try(state, memory_, views, different, options.jobs, costs, result).run();
+  }
+
+private:
+  Memory memory_;
+};
+
+}  // namespace
+
+std::unique_ptr<Hiding> make_hiding() {
+  return std::make_unique<Automatic>();
+}
+
+}  // namespace sightline::world

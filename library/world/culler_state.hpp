@@ -1,0 +1,81 @@
+// What stands behind sightline::Culler.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <sightline/world.hpp>
+
+#include "library/world/account.hpp"
+#include "library/world/sector_test.hpp"
+#include "library/world/world_cull.hpp"
+#include "library/world/world_state.hpp"
+
+namespace sightline::world {
+
+struct Job {
+  std::size_t first_entry = 0, entries = 0;
+  std::size_t first_output = 0;
+  PassCounts counts;
+};
+
+/// Of several views those that differ.
+struct DifferentViews {
+  std::size_t count = 0;
+  std::array<std::uint8_t, kMaxViews> first{};  ///< which of the caller's views
+  std::array<std::uint8_t, kMaxViews> bits{};   ///< of all that are the same
+};
+
+struct CullerState;
+
+/// What a culler does after its passes by frustum, whose ids and masks stand in the state's output, and
+/// `result` is theirs: hides what the world's occluders hide, and adds to the result's cost, no more than the
+/// account allows. A world hands it to its cullers once it has an occluder, so that who has none need not
+/// link it.
+class Hiding {
+public:
+  virtual ~Hiding() = default;
+  virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+                    const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
+};
+
+struct CullerState {
+  std::vector<const ChunkMap*> maps;  ///< of the sectors that some view may see
+  std::vector<WorldPoint> origins;    ///< of these
+  std::vector<SectorView> views;      ///< of these
+  std::vector<GroupEntry> entries;
+  std::array<Job, kMaxJobs> jobs;
+  /// The plane that failed last, one a view and region: the next frame tries it first.
+  std::vector<std::vector<std::uint8_t>> failed;  // by the world's sector
+  std::array<SectorTest, kMaxViews> tests;
+
+  PassInput input;
+  ObjectId* out = nullptr;
+  std::uint8_t* masks = nullptr;
+  /// Of several views that layers tell apart, where the caller wants no masks.
+  std::vector<std::uint8_t> scratch_masks;
+
+  const WorldState* world = nullptr;
+  std::array<std::uint32_t, kMaxViews> layers{};  ///< of the caller's views
+  bool filters_layers = false;
+
+  Account account;
+  ObjectCost object_cost;
+  std::unique_ptr<Hiding> hiding;
+};
+
+/// The masks that the caller gets, or null.
+inline std::uint8_t* masks_of_caller(CullerState& state) noexcept {
+  return state.masks == state.scratch_masks.data() ? nullptr : state.masks;
+}
+
+/// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
+std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
+
+/// Writes what the input's views see of the entries, in as many jobs as there are, and adds to the result.
+void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result);
+
+}  // namespace sightline::world

@@ -1,0 +1,256 @@
+#include "library/world/occluder_picks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <sightline/frustum.hpp>
+#include <sightline/projection.hpp>
+
+#include "library/geometry/box_reader.hpp"
+#include "library/geometry/linear.hpp"
+#include "library/geometry/mutant.h"
+
+namespace sightline::world {
+
+namespace {
+
+constexpr std::size_t kMostPicks = 1024;
+constexpr float kTileArea = 64, kLeastArea = 16;  // px²
+
+double shape_cost(const OccluderShape& shape, bool along_axes, const CullCosts& costs) {
+  const double triangle = double{costs.triangle};
+  const double box = along_axes ? double{costs.shape} : 12 * triangle;
+  return static_cast<double>(shape.all.triangles()) * triangle +
+         static_cast<double>(shape.boxes.size()) * box +
+         static_cast<double>(shape.spheres.size()) * double{costs.shape};
+}
+
+// About the view's origin. Where it is the placement's, nothing is rounded.
+Mat4 transform_about(const OccluderPlacement& placement, const WorldPoint& origin) {
+  Mat4 out = placement.transform;
+  const double offset[3] = {placement.origin.x - origin.x, placement.origin.y - origin.y,
+                            placement.origin.z - origin.z};
+  for (std::size_t a = 0; a < 3; ++a)
+    if (offset[a] != 0) out.m[12 + a] = static_cast<float>(double{out.m[12 + a]} + offset[a]);
+  return out;
+}
+
+// What a direction is at least scaled by, by Gershgorin's discs, rounded downwards.
+double least_scale(const Mat4& m) {
+  const glm::dmat3 linear(geometry::to_double(m));
+  const glm::dmat3 products = glm::transpose(linear) * linear;
+  double least = products[0][0];
+  for (int a = 0; a < 3; ++a)
+    least = std::min(
+        least, products[a][a] - std::fabs(products[a][(a + 1) % 3]) - std::fabs(products[a][(a + 2) % 3]));
+  return least > 0 ? std::sqrt(least) * (1 - 1e-6) : 0;
+}
+
+// A box around the part of the near plane that the image shows, and a little more for rounding.
+Box near_rectangle(const View& view) {
+  const glm::dmat4 to_eye = geometry::to_double(view.world_to_eye);
+  const glm::dmat4 from_clip = glm::inverse(geometry::to_double(view.eye_to_clip) * to_eye);
+  // Of depths 0 and 1 one is near; the other may be infinitely far.
+  glm::dvec3 low(0), high(0);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double depth : {0.0, 1.0}) {
+    const glm::dvec4 middle = from_clip * glm::dvec4(0, 0, depth, 1);
+    const double along = -(to_eye * (middle / middle.w)).z;
+    if (!(along < nearest) || (!is_orthographic(view) && !(along > 0))) continue;
+    nearest = along;
+    for (const int corner : {0, 1, 2, 3}) {
+      const glm::dvec4 p = from_clip * glm::dvec4(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, depth, 1);
+      const glm::dvec3 at = glm::dvec3(p) / p.w;
+      low = corner == 0 ? at : glm::min(low, at), high = corner == 0 ? at : glm::max(high, at);
+    }
+  }
+  const glm::dvec3 size = high - low, far = glm::max(glm::abs(low), glm::abs(high));
+  const double more = 1e-5 * (size.x + size.y + size.z + far.x + far.y + far.z);
+  return {geometry::to_vec3(low - more), geometry::to_vec3(high + more)};
+}
+
+}  // namespace
+
+// A view, and what is worked out once for all candidates.
+struct OccluderPicks::Sight {
+  Sight(const WorldState& in_world, const CullView& culled, const CullCosts& at_costs)
+      : world(in_world),
+        view(culled),
+        costs(at_costs),
+        projector(make_projector(culled.view.view, {})),
+        frustum(make_frustum(culled.view.view)),
+        image(projector.width * projector.height),
+        near(near_rectangle(culled.view.view)) {}
+
+  [[nodiscard]] Sphere sphere(const CarrierBrief& brief) const {
+    const WorldPoint &c = brief.centre, &o = view.view.origin;
+    return {{static_cast<float>(c.x - o.x), static_cast<float>(c.y - o.y), static_cast<float>(c.z - o.z)},
+            brief.radius};
+  }
+
+  [[nodiscard]] bool sees_layers_of(ObjectId id) const {
+    return ((id < world.layers.size() ? world.layers[id] : kAllLayers) & view.layers) != 0;
+  }
+
+  // Whether some pixel may look from inside the box: what a pixel sees begins on the near plane, within the
+  // image.
+  [[nodiscard]] bool cuts(const Box& box) const {
+    if (SIGHTLINE_MUTANT(near_occluders_drawn_whole)) return false;
+    const Box& n = near;
+    const bool apart = n.max.x < box.min.x || n.min.x > box.max.x || n.max.y < box.min.y ||
+                       n.min.y > box.max.y || n.max.z < box.min.z || n.min.z > box.max.z;
+    return !apart;
+  }
+
+  // Whether `min_area` surely leaves an object of this box.
+  [[nodiscard]] bool large(const Box& box) const {
+    if (view.min_area == 0) return true;
+    const Vec3 half{0.5f * (box.max.x - box.min.x), 0.5f * (box.max.y - box.min.y),
+                    0.5f * (box.max.z - box.min.z)};
+    const Sphere around{{box.min.x + half.x, box.min.y + half.y, box.min.z + half.z},
+                        std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z)};
+    return projected_area(projector, around) > 1.01f * view.min_area;
+  }
+
+  const WorldState& world;
+  const CullView& view;
+  const CullCosts& costs;
+  Projector projector;
+  Frustum frustum;
+  float image;  // px²
+  Box near;     // around the part of the near plane that the image shows
+};
+
+double OccluderPicks::begin_cost(const CullView& view, const CullCosts& costs) noexcept {
+  const auto tiles = [](std::uint32_t pixels) { return std::uint64_t{pixels + 7} / 8; };
+  const std::uint64_t all = tiles(view.view.view.width) * tiles(view.view.view.height);
+  return static_cast<double>(all) * double{costs.tile};
+}
+
+bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
+                         const CullCosts& costs, double most, Purse& purse) {
+  // Room for all, so that a camera that turns allocates nothing.
+  picks_.reserve(world.occluders->carriers.size()), seen_.reserve(world.occluders->carriers.size());
+  picks_.clear();
+  const double begin = begin_cost(view, costs), had = purse.left();
+  const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
+  if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
+  const Sight sight(world, view, costs);
+  find(sight, in_view, purse);
+  const double drawing = choose(left() - begin);
+  if (picks_.empty() || !buffer_.begin(view.view)) return false;
+  purse.pay(begin + drawing);
+  std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
+  });
+  for (const Pick& pick : picks_) draw_one(sight, world.occluders->carriers[pick.carrier]);
+  return true;
+}
+
+// Those that were seen the last time; all that are in view where most of these are no longer. What comes into
+// view is seen, and so one of them the next time.
+void OccluderPicks::find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse) {
+  const WorldOccluders& o = *sight.world.occluders;
+  const double candidate = double{sight.costs.candidate};
+  std::size_t still = 0;
+  for (const std::uint32_t carrier : seen_) still += carrier < o.briefs.size() && look_at(sight, carrier);
+  purse.pay(static_cast<double>(seen_.size()) * candidate);
+  const double all = static_cast<double>(in_view.size()) * candidate;
+  if ((!seen_.empty() && 2 * still >= seen_.size()) || !purse.affords(all)) return;
+  purse.pay(all);
+  picks_.clear();
+  for (const ObjectId id : in_view)
+    if (const std::uint32_t carrier = o.carrier(id); carrier != kNothing) look_at(sight, carrier);
+}
+
+// Returns whether the view sees it at all.
+bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
+  const CarrierBrief& brief = sight.world.occluders->briefs[carrier];
+  if (brief.occluder == kNoOccluder) return false;
+  const Sphere sphere = sight.sphere(brief);
+  if (!overlaps(sight.frustum, sphere)) return false;
+  const float area = std::min(projected_area(sight.projector, sphere), sight.image);
+  if (!(area >= kLeastArea) || !sight.sees_layers_of(brief.object)) return true;
+  const Vec3& e = sight.projector.eye;
+  const Vec3 to{sphere.centre.x - e.x, sphere.centre.y - e.y, sphere.centre.z - e.z};
+  const double cost =
+      shape_cost(sight.world.occluders->shapes[brief.occluder], brief.along_axes, sight.costs) +
+      double{sight.costs.tile} * double{area / kTileArea};
+  picks_.push_back({area / static_cast<float>(cost), to.x * to.x + to.y * to.y + to.z * to.z,
+                    static_cast<float>(cost), carrier});
+  return true;
+}
+
+// Keeps those that cover most for what they cost, and returns what they cost together.
+double OccluderPicks::choose(double budget) {
+  const auto better = [](const Pick& a, const Pick& b) {
+    return a.score != b.score ? a.score > b.score : a.carrier < b.carrier;
+  };
+  const std::size_t most = std::min(picks_.size(), kMostPicks);
+  std::partial_sort(picks_.begin(), picks_.begin() + static_cast<std::ptrdiff_t>(most), picks_.end(), better);
+  picks_.resize(most);
+  double cost = 0;
+  std::size_t kept = 0;
+  for (const Pick& pick : picks_) {
+    if (cost + double{pick.cost} > budget) continue;  // a dear one leaves the cheaper ones their chance
+    cost += double{pick.cost};
+    picks_[kept++] = pick;
+  }
+  picks_.resize(kept);
+  return cost;
+}
+
+void OccluderPicks::draw_one(const Sight& sight, const Carrier& carrier) {
+  const WorldBox stored = stored_box(sight.world, carrier.object);
+  const Box box = geometry::relative_box(stored, sight.view.view.origin);
+  const bool here = stands_in(carrier.bounds, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
+  if (!here || !sight.large(box)) return;
+  const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
+  const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
+  // What lies inside an object would still show a front to a pixel that looks from inside it.
+  const bool cut = sight.cuts(box);
+  const OccluderMesh& mesh = cut ? shape.own : shape.all;
+  // What is refused is not drawn, and hides nothing.
+  if (mesh.triangles() > 0) static_cast<void>(buffer_.draw_mesh(mesh, transform));
+  if (cut) return;
+  if (!shape.boxes.empty()) draw_boxes(shape, carrier.placement);
+  if (shape.turned.triangles() > 0 && boxes_.empty())
+    static_cast<void>(buffer_.draw_mesh(shape.turned, transform));
+  draw_spheres(shape, transform);
+}
+
+// Leaves boxes_ empty where the placement turns boxes.
+void OccluderPicks::draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement) {
+  boxes_.clear();
+  const auto& m = placement.transform.m;
+  if (m[1] != 0 || m[2] != 0 || m[4] != 0 || m[6] != 0 || m[8] != 0 || m[9] != 0) return;
+  const WorldPoint& o = placement.origin;
+  for (const Box& box : shape.boxes) {
+    const auto range = [&](std::size_t a, float low, float high, double at) {
+      const double scale = double{m[5 * a]}, moved = double{m[12 + a]} + at;
+      return std::minmax({scale * double{low} + moved, scale * double{high} + moved});
+    };
+    const auto x = range(0, box.min.x, box.max.x, o.x), y = range(1, box.min.y, box.max.y, o.y),
+               z = range(2, box.min.z, box.max.z, o.z);
+    boxes_.push_back({{x.first, y.first, z.first}, {x.second, y.second, z.second}});
+  }
+  static_cast<void>(buffer_.draw_boxes(std::span<const WorldBox>(boxes_)));
+}
+
+void OccluderPicks::draw_spheres(const OccluderShape& shape, const Mat4& transform) {
+  if (shape.spheres.empty()) return;
+  spheres_.clear();
+  const double scale = least_scale(transform);
+  const geometry::RowTransform rows = geometry::row_transform(transform);
+  for (const Sphere& s : shape.spheres) {
+    const Vec3 c = geometry::transform_point(rows, s.centre);
+    // Less what the centre may have been moved by in rounding.
+    const double moved = 1e-6 * (std::fabs(double{c.x}) + std::fabs(double{c.y}) + std::fabs(double{c.z}));
+    const double radius = double{s.radius} * scale - moved;
+    if (radius > 0) spheres_.push_back({c, static_cast<float>(radius)});
+  }
+  static_cast<void>(buffer_.draw_spheres(std::span<const Sphere>(spheres_)));
+}
+
+}  // namespace sightline::world

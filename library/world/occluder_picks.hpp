@@ -1,0 +1,52 @@
+// Which of a world's occluders a view draws: those that are large on the image, cheap, and belong to objects
+// that were seen the last time; and the buffer they are drawn into.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <sightline/occlusion.hpp>
+#include <sightline/world.hpp>
+
+#include "library/world/account.hpp"
+#include "library/world/world_state.hpp"
+
+namespace sightline::world {
+
+class OccluderPicks {
+public:
+  /// Draws what pays of the occluders in view, for no more than `most` out of the purse. `in_view` are the
+  /// objects that the view sees by frustum. False where nothing was drawn.
+  bool draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
+            const CullCosts& costs, double most, Purse& purse);
+  /// What beginning a view's buffer costs.
+  static double begin_cost(const CullView& view, const CullCosts& costs) noexcept;
+  [[nodiscard]] const OcclusionBuffer& buffer() const noexcept { return buffer_; }
+
+  /// Told of what was seen in the end: begin, then each object that carries an occluder.
+  void begin_seen() noexcept { seen_.clear(); }
+  void saw(std::uint32_t carrier) { seen_.push_back(carrier); }
+
+private:
+  struct Pick {
+    float score, distance, cost;
+    std::uint32_t carrier;
+  };
+  struct Sight;
+
+  void find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse);
+  bool look_at(const Sight& sight, std::uint32_t carrier);
+  double choose(double budget);
+  void draw_one(const Sight& sight, const Carrier& carrier);
+  void draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement);
+  void draw_spheres(const OccluderShape& shape, const Mat4& transform);
+
+  OcclusionBuffer buffer_;
+  std::vector<std::uint32_t> seen_;  // carriers that were seen the last time
+  std::vector<Pick> picks_;
+  std::vector<WorldBox> boxes_;  // of the occluder at hand
+  std::vector<Sphere> spheres_;
+};
+
+}  // namespace sightline::world

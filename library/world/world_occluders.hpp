@@ -1,0 +1,93 @@
+// What a world's objects carry: occluders that they share, and triangles of their own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <sightline/occluder.hpp>
+#include <sightline/world.hpp>
+
+#include "library/occlusion/depth_tiles.hpp"
+
+namespace sightline::world {
+
+inline constexpr std::uint32_t kNothing = 0xffffffffu;
+
+/// An occluder that objects share, in its own space.
+struct OccluderShape {
+  OccluderMesh all;        ///< its triangles
+  OccluderMesh own;        ///< those of them that do not lie inside, for objects that the near plane cuts
+  OccluderMesh turned;     ///< its boxes as triangles, for placements that do not keep them along the axes
+  std::vector<Box> boxes;  ///< drawn where there are no triangles
+  std::vector<Sphere> spheres;
+  Box bounds;
+  std::uint32_t carriers = 0;
+  bool used = false;
+};
+
+/// What picking reads of a carrier: a sphere around its occluder, in metres.
+struct CarrierBrief {
+  WorldPoint centre;
+  float radius = 0;
+  OccluderId occluder = kNoOccluder;  ///< kNoOccluder: switched off
+  ObjectId object = kNoObject;
+  bool along_axes = false;  ///< whether the placement keeps boxes along the axes
+};
+
+/// An object that carries an occluder.
+struct Carrier {
+  ObjectId object = kNoObject;
+  OccluderPlacement placement;
+  WorldBox bounds;  ///< of the occluder as it is placed
+};
+
+/// An object's triangles.
+struct ObjectTriangles {
+  std::vector<occlusion::TriangleBlock> blocks;
+  std::uint32_t count = 0;
+  WorldPoint origin;
+  WorldBox bounds;
+};
+
+class Hiding;
+
+/// A world has none before its first occluder or triangles. What a culler and a world without any call is
+/// virtual, so that programs that never have any need not link it.
+struct WorldOccluders {
+  std::vector<OccluderShape> shapes;
+  std::vector<std::uint32_t> free_shapes;
+  std::vector<Carrier> carriers;
+  std::vector<CarrierBrief> briefs;  ///< one a carrier
+  std::vector<std::uint32_t> free_carriers;
+  std::vector<std::uint32_t> carrier_of;  ///< by id, kNothing for none; ids beyond its end carry nothing
+  std::vector<ObjectTriangles> triangles;
+  std::vector<std::uint32_t> free_triangles;
+  std::vector<std::uint32_t> triangles_of;  ///< the same
+
+  [[nodiscard]] std::uint32_t carrier(ObjectId id) const noexcept {
+    return id < carrier_of.size() ? carrier_of[id] : kNothing;
+  }
+  [[nodiscard]] std::uint32_t triangle_set(ObjectId id) const noexcept {
+    return id < triangles_of.size() ? triangles_of[id] : kNothing;
+  }
+  virtual ~WorldOccluders();
+  /// To be called of every object that is removed.
+  virtual void forget(ObjectId id) noexcept;
+  /// What a culler hides by what stands here.
+  [[nodiscard]] virtual std::unique_ptr<Hiding> make_hiding() const;
+
+  /// Whether some object carries an occluder.
+  [[nodiscard]] bool any() const noexcept { return carriers.size() > free_carriers.size(); }
+
+  void place(ObjectId id, const OccluderPlacement& placement, std::size_t ids);
+  void take_away(ObjectId id) noexcept;
+  void set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin, std::size_t ids);
+  void take_triangles(ObjectId id) noexcept;
+};
+
+/// Whether `inner` lies within `outer`, but for a millimetre and what rounding may have done.
+bool stands_in(const WorldBox& inner, const WorldBox& outer) noexcept;
+
+}  // namespace sightline::world

@@ -1,0 +1,269 @@
+// What is answered for the area of pixels, and for coarser pixels: nothing that any place of the image shows
+// is hidden, nothing is drawn nearer than it is anywhere in its pixel, and not much more is left than of
+// centres.
+#include <gtest/gtest.h>
+
+#include <sightline/occlusion.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/exact_rays.hpp"
+#include "support/occluder_meshes.hpp"
+#include "support/small_scenes.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+using test::ExactRays;
+
+constexpr OcclusionOptions kArea{Coverage::area}, kHalf{Coverage::area, 2}, kQuarter{Coverage::area, 4},
+    kHalfCentres{Coverage::centres, 2};
+
+std::vector<float> pixels_of(const OcclusionBuffer& buffer) {
+  const View view = buffer.view().view;
+  std::vector<float> out(std::size_t{view.width} * view.height);
+  EXPECT_TRUE(buffer.read_nearness(out));
+  return out;
+}
+
+// Places of pixel i that the options speak of: its centre; some within it, those at its corners among them.
+std::vector<glm::dvec2> places_in(Random& random, const View& view, std::size_t i, Coverage coverage) {
+  const glm::dvec2 at(static_cast<double>(i % view.width), static_cast<double>(i / view.width));
+  if (coverage == Coverage::centres) return {at + 0.5};
+  std::vector<glm::dvec2> out;
+  for (const double x : {1e-4, 1 - 1e-4}) {
+    for (const double y : {1e-4, 1 - 1e-4}) out.push_back(at + glm::dvec2(x, y));
+  }
+  for (int k = 0; k < 4; ++k) out.push_back(at + glm::dvec2{random.between(0, 1), random.between(0, 1)});
+  return out;
+}
+
+struct Held {
+  std::size_t whole = 0, drawn = 0;  // pixels all of whose places show an occluder; of these, those drawn
+};
+
+// Holds each pixel that was drawn against the exact nearness at its places.
+template <class Truth>
+void hold_pixels(Random& random, const OcclusionBuffer& buffer, const Truth& truth, Held& counted) {
+  const View view = buffer.view().view;
+  const std::vector<float> drawn = pixels_of(buffer);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    bool whole = true;
+    for (const glm::dvec2& p : places_in(random, view, i, buffer.options().coverage)) {
+      const double exact = truth(p.x, p.y);
+      whole = whole && exact > ExactRays::kMiss;
+      ASSERT_LE(drawn[i], exact) << "at " << p.x << ' ' << p.y << " of " << view.width << 'x' << view.height;
+    }
+    counted.whole += whole;
+    counted.drawn += whole && drawn[i] > ExactRays::kMiss;
+  }
+}
+
+TEST(Coverage, OfBoxesAndSpheresIsSafeAtAnyPlace) {
+  // How much is drawn at least of the pixels that lie whole in a box, or in a sphere: a tenth below what was
+  // measured.
+  struct Case {
+    OcclusionOptions options;
+    double boxes, spheres;
+  };
+  for (const auto& [options, least, least_of_spheres] :
+       {Case{kArea, 0.56, 0.68}, Case{kHalf, 0.52, 0.6}, Case{kQuarter, 0.46, 0.48},
+        Case{kHalfCentres, 0.54, 0.55}}) {
+    Random random(31);
+    Held boxes_counted, spheres_counted;
+    for (int round = 0; round < 30; ++round) {
+      const View view = test::small_view(random);
+      const ExactRays rays(view);
+      std::vector<Box> boxes;
+      std::vector<Sphere> spheres;
+      for (int i = 0; i < 8; ++i) {
+        boxes.push_back(test::box_of(random, 20));
+        spheres.push_back(test::sphere_of(random, 12));
+      }
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}, options));
+      EXPECT_EQ(buffer.options(), options);
+      ASSERT_TRUE(buffer.draw_boxes(boxes));
+      const auto nearest = [&](const auto& things, double x, double y) {
+        double best = ExactRays::kMiss;
+        for (const auto& thing : things) best = std::max(best, rays.hit(x, y, thing));
+        return best;
+      };
+      hold_pixels(
+          random, buffer, [&](double x, double y) { return nearest(boxes, x, y); }, boxes_counted);
+      ASSERT_TRUE(buffer.begin({view, {}}, options));
+      ASSERT_TRUE(buffer.draw_spheres(spheres));
+      hold_pixels(
+          random, buffer, [&](double x, double y) { return nearest(spheres, x, y); }, spheres_counted);
+    }
+    EXPECT_GT(static_cast<double>(boxes_counted.drawn), least * static_cast<double>(boxes_counted.whole));
+    EXPECT_GT(static_cast<double>(spheres_counted.drawn),
+              least_of_spheres * static_cast<double>(spheres_counted.whole));
+  }
+}
+
+// Whether a place of the image sees the thing past the boxes.
+template <class Thing>
+bool seen_somewhere(Random& random, const ExactRays& rays, const View& view, Coverage coverage,
+                    std::span<const Box> occluders, const Thing& thing) {
+  for (std::size_t i = 0; i < std::size_t{view.width} * view.height; ++i) {
+    for (const glm::dvec2& p : places_in(random, view, i, coverage)) {
+      const double at = rays.hit(p.x, p.y, thing);
+      if (at == ExactRays::kMiss) continue;
+      if (std::ranges::all_of(occluders, [&](const Box& box) { return rays.hit(p.x, p.y, box) < at; }))
+        return true;
+    }
+  }
+  return false;
+}
+
+TEST(Coverage, HidesNothingThatAnyPlaceSees) {
+  for (const OcclusionOptions& options : {kArea, kHalf, kHalfCentres}) {
+    Random random(32);
+    std::size_t hidden = 0, asked = 0;
+    for (int round = 0; round < 24; ++round) {
+      const View view = test::small_view(random);
+      const ExactRays rays(view);
+      std::vector<Box> occluders;
+      for (int i = 0; i < 10; ++i) occluders.push_back(test::box_of(random, 14));
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}, options));
+      ASSERT_TRUE(buffer.draw_boxes(occluders));
+      const auto ask = [&](bool visible, const auto& thing, const char* kind) {
+        ++asked;
+        if (visible) return;
+        ++hidden;
+        EXPECT_FALSE(seen_somewhere(random, rays, view, options.coverage, occluders, thing))
+            << kind << ", round " << round;
+      };
+      for (int i = 0; i < 8; ++i) {
+        const Box box = test::box_of(random, 1.5f);
+        ask(buffer.may_see(box), box, "box");
+        const Sphere sphere = test::sphere_of(random, 1);
+        std::array<std::uint8_t, 1> visible;
+        ASSERT_TRUE(buffer.may_see(std::array{sphere}, visible));
+        ask(visible[0] != 0, sphere, "sphere");
+        const Vec3 at = random.inside(test::kRoom);
+        std::array<Vec3, 3> triangle;
+        for (Vec3& c : triangle) {
+          const Vec3 off = random.inside({{-2, -2, -2}, {2, 2, 2}});
+          c = {at.x + off.x, at.y + off.y, at.z + off.z};
+        }
+        ask(buffer.may_see(triangle), triangle, "triangle");
+      }
+    }
+    EXPECT_GT(hidden, asked / 4);
+  }
+}
+
+double nearest_of(const ExactRays& rays, double x, double y, const scene::Shape& shape) {
+  double best = ExactRays::kMiss;
+  for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return shape.positions[shape.indices[i + k]]; };
+    best = std::max(best, rays.hit(x, y, {corner(0), corner(1), corner(2)}));
+  }
+  return best;
+}
+
+// From somewhere around the shape.
+View looking_at(Random& random, const scene::Shape& shape) {
+  Vec3 low = shape.positions[0], high = low;
+  for (const Vec3& p : shape.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
+  const Vec3 direction = random.direction();
+  const float away = random.between(0.8f, 2.0f);
+  Camera camera;
+  camera.eye = {middle.x + away * std::max(high.x - low.x, 1.0f) * direction.x,
+                middle.y + away * std::max(high.y - low.y, 1.0f) * direction.y,
+                middle.z + away * std::max(high.z - low.z, 1.0f) * direction.z};
+  camera.forward = {middle.x - camera.eye.x, middle.y - camera.eye.y, middle.z - camera.eye.z};
+  camera.near_plane = 0.01f;
+  return *make_view(camera, 64, 48);
+}
+
+// Draws the shape from around it and holds its pixels; returns the share of whole ones that are drawn.
+double share_drawn(const scene::Shape& shape, Sides sides, TJunctions junctions,
+                   const OcclusionOptions& options) {
+  const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, sides, junctions);
+  Random random(33);
+  Held held;
+  for (int round = 0; round < 3; ++round) {
+    const View view = looking_at(random, shape);
+    const ExactRays rays(view);
+    OcclusionBuffer buffer;
+    EXPECT_TRUE(buffer.begin({view, {}}, options));
+    EXPECT_TRUE(buffer.draw_mesh(mesh));
+    hold_pixels(
+        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape); }, held);
+  }
+  return static_cast<double>(held.drawn) / static_cast<double>(held.whole);
+}
+
+TEST(Coverage, OfMeshesIsSafeAtAnyPlaceAndClosedWhereTrianglesMeet) {
+  std::vector<test::NamedMesh> meshes;
+  meshes.push_back({"sphere", test::Form::convex, scene::sphere(2)});
+  meshes.push_back({"box", test::Form::convex, test::fine_box({{-2, -1, -1}, {2, 1, 1}}, 3)});
+  meshes.push_back({"hills", test::Form::open, test::ground(8)});
+  meshes.push_back({"block", test::Form::concave, test::block_of_ground(3)});
+  for (const test::NamedMesh& of : meshes) {
+    for (const Sides sides : {Sides::both, Sides::front}) {
+      SCOPED_TRACE(of.name);
+      // Hills seen edge on show triangles less than half a pixel wide, which count as missing.
+      const double least = of.form == test::Form::open ? 0.3 : 0.55;
+      EXPECT_GT(share_drawn(of.shape, sides, TJunctions::open, kArea), least);
+      share_drawn(of.shape, sides, TJunctions::open, kHalf);
+    }
+  }
+}
+
+// Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
+TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
+  Random random(34);
+  for (int round = 0; round < 25; ++round) {
+    scene::Shape shape;
+    for (int i = 0; i < 14; ++i) shape.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
+    for (int i = 0; i < 30 * 3; i += 3) {
+      const std::uint32_t a = random.below(14), b = random.below(14), c = random.below(14);
+      shape.indices.insert(shape.indices.end(), {a, b, c});
+    }
+    share_drawn(shape, round % 2 == 0 ? Sides::both : Sides::front, TJunctions::closed, kArea);
+  }
+}
+
+// A wide quad with a row of narrow ones along it, and one of them missing.
+TEST(Coverage, OfTJunctionsIsSafeAtAnyPlace) {
+  for (const int missing : {-1, 3}) {
+    for (const float fold : {0.0f, 1.5f}) {
+      scene::Shape shape;
+      const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+        const auto first = static_cast<std::uint32_t>(shape.positions.size());
+        shape.positions.insert(shape.positions.end(), {a, b, c, d});
+        for (const std::uint32_t k : {0, 1, 2, 0, 2, 3}) shape.indices.push_back(first + k);
+      };
+      add({-4, 0, 0}, {4, 0, 0}, {4, 4, 0}, {-4, 4, 0});
+      for (int i = 0; i < 8; ++i) {
+        const auto x = static_cast<float>(i - 4);
+        if (i != missing) add({x, -2, fold}, {x + 1, -2, fold}, {x + 1, 0, 0}, {x, 0, 0});
+      }
+      EXPECT_GT(share_drawn(shape, Sides::both, TJunctions::closed, kArea), missing < 0 ? 0.75 : 0.5);
+    }
+  }
+}
+
+TEST(Coverage, RefusesOptionsThatAreNone) {
+  OcclusionBuffer buffer;
+  const WorldView view{*make_view(Camera{}, 64, 48), {}};
+  for (const std::uint32_t scale : {0u, 3u, 8u})
+    EXPECT_EQ(buffer.begin(view, {Coverage::area, scale}).code(), StatusCode::bad_argument);
+  EXPECT_EQ(buffer.begin(view, {static_cast<Coverage>(7), 1}).code(), StatusCode::bad_argument);
+  EXPECT_FALSE(buffer.begun());
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,257 @@
+// Occlusion in one call: what is left out is hidden, and it is never slower in counted work.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <deque>
+#include <numbers>
+
+#include <sightline/rays.hpp>
+#include <sightline/world.hpp>
+
+#include "support/run_threads.hpp"
+#include "support/solid_boxes.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+using namespace test;
+
+// What the promise says of frames: each, every 64 in a row, and all.
+class Promise {
+public:
+  void frame(const CullResult& result) {
+    cost_ += result.cost, frustum_ += result.frustum_cost;
+    EXPECT_LE(cost_, 1.02 * frustum_);
+    EXPECT_LE(result.cost, 1.05 * result.frustum_cost);
+    last_.emplace_back(result.cost, result.frustum_cost);
+    if (last_.size() > 64) last_.pop_front();
+    double cost = 0, frustum = 0;
+    for (const auto& [c, f] : last_) cost += c, frustum += f;
+    EXPECT_LE(cost, 1.05 * frustum);
+  }
+  [[nodiscard]] double ratio() const { return cost_ / frustum_; }
+
+private:
+  std::deque<std::pair<double, double>> last_;
+  double cost_ = 0, frustum_ = 0;
+};
+
+// Blocks along streets, and things that stand between them.
+std::vector<Box> town(std::uint32_t seed, int blocks) {
+  Random random(seed);
+  std::vector<Box> out;
+  for (int x = 0; x < blocks; ++x) {
+    for (int z = 0; z < blocks; ++z) {
+      const Vec3 at{40.0f * static_cast<float>(x), 10, 40.0f * static_cast<float>(z)};
+      out.push_back(box_at(at, {14, random.between(8, 20), 14}));
+      for (int i = 0; i < 30; ++i)
+        out.push_back(box_at({at.x + 20 + random.between(-3, 3), 1, at.z + random.between(-20, 20)},
+                             {0.5f, 0.5f, 0.5f}));
+    }
+  }
+  return out;
+}
+
+// Things that hide nothing from one another.
+std::vector<Box> field(std::uint32_t seed, int things) {
+  Random random(seed);
+  std::vector<Box> out;
+  for (int i = 0; i < things; ++i)
+    out.push_back(box_at({random.between(-400, 400), 0, random.between(-400, 400)}, {0.2f, 0.05f, 0.2f}));
+  return out;
+}
+
+Vec3 heading(float angle) {
+  return {std::sin(angle), -0.02f, -std::cos(angle)};
+}
+
+// What the costs say of a cull by frustum.
+double counted(const CullResult& result, std::uint64_t drawn, const CullCosts& costs) {
+  return static_cast<double>(result.nodes_visited) * double{costs.node} +
+         static_cast<double>(result.tested) * double{costs.test} +
+         static_cast<double>(drawn) * double{costs.object};
+}
+
+TEST(AutomaticOcclusion, IsNeverSlowerInCountedWorkWhateverTheSceneDoes) {
+  SolidBoxes streets(town(1, 16));
+  SolidBoxes open(field(2, 5000));
+  Random random(3);
+  for (const float object : {0.5f, 20.0f, 300.0f, 5000.0f}) {
+    const CullOptions options = automatic(object);
+    for (int kind = 0; kind < 5; ++kind) {
+      Culler culler, plain;
+      Promise promise;
+      std::size_t dropped = 0;
+      for (int frame = 0; frame < 300; ++frame) {
+        const float t = static_cast<float>(frame);
+        // A walk through the streets; an open field; both in turns of many lengths; a view that jumps; one
+        // that looks at the sky half of the time.
+        const bool in_field = kind == 1 || (kind == 2 && (frame / (1 + frame / 40)) % 2 == 1);
+        Vec3 eye{20, 1.7f, 600 - t}, forward = heading(0.01f * t);
+        if (kind == 3) eye = {random.between(0, 600), 2, random.between(0, 600)}, forward = heading(t);
+        if (kind == 4 && frame % 2 == 1) forward = {0, 1, 0.01f};
+        const SolidBoxes& scene = in_field ? open : streets;
+        const CullView view{.view = {looking(in_field ? Vec3{0, 30, 0} : eye, forward), {}}};
+        const Culled seen = cull_with(culler, scene.world, {&view, 1}, options);
+        const Culled frustum = cull_with(plain, scene.world, {&view, 1}, {});
+        ASSERT_EQ(seen.result.frustum_cost, counted(frustum.result, frustum.result.count, options.costs));
+        ASSERT_LE(seen.result.count, frustum.result.count);
+        ASSERT_GE(seen.result.cost, static_cast<double>(seen.result.count) * double{object});
+        ASSERT_EQ(seen.result.culled_occlusion, frustum.result.count - seen.result.count);
+        promise.frame(seen.result);
+        dropped += frustum.result.count - seen.result.count;
+        if (HasFailure()) return;
+      }
+      if (kind == 0 && object >= 300) {
+        EXPECT_LT(promise.ratio(), 0.5);
+      }
+      if (kind == 1) {
+        EXPECT_LT(dropped, 300u);
+      }
+    }
+  }
+}
+
+TEST(AutomaticOcclusion, BeginsNoTryThatItCannotAfford) {
+  SolidBoxes streets(town(1, 8));
+  Culler culler;
+  const CullView view{.view = {looking({20, 1.7f, 300}, {0, 0, -1}, 1280, 720), {}}};
+  for (int frame = 0; frame < 40; ++frame) {
+    const Culled seen = cull_with(culler, streets.world, {&view, 1}, automatic(1));
+    EXPECT_EQ(seen.result.cost, seen.result.frustum_cost);
+    EXPECT_EQ(seen.result.culled_occlusion, 0u);
+  }
+}
+
+// Who is seen at a pixel centre of a world of solid boxes: what a ray meets first. Rays that begin inside a
+// box meet it there, as the near plane cuts it.
+std::vector<std::uint8_t> truly_seen(const std::vector<Box>& boxes, const View& view) {
+  BoxBvh bvh;
+  EXPECT_TRUE(bvh.build(BoxView(boxes)));
+  std::vector<ObjectId> ids(boxes.size());
+  // An uneven number of rays a pixel: one goes through its centre.
+  const auto count = bvh.visible_set({view, {}}, view.width, view.height, ids);
+  EXPECT_TRUE(count);
+  std::vector<std::uint8_t> seen(boxes.size(), 0);
+  for (std::size_t i = 0; i < *count; ++i) seen[ids[i]] = 1;
+  return seen;
+}
+
+TEST(AutomaticOcclusion, LosesNothingThatARayThroughAPixelMeets) {
+  Random random(11);
+  std::size_t kept = 0, in_view = 0, lost = 0;
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    std::vector<Box> boxes = town(seed, 10);
+    for (int i = 0; i < 600; ++i)
+      boxes.push_back(box_at({random.between(-50, 400), random.between(0, 40), random.between(-50, 400)},
+                             {random.between(0.1f, 4), random.between(0.1f, 4), random.between(0.1f, 4)}));
+    const SolidBoxes scene(std::move(boxes));
+    Culler culler, plain;
+    for (int frame = 0; frame < 60; ++frame) {
+      const Vec3 eye{random.between(-20, 380), random.between(0.3f, 30), random.between(-20, 380)};
+      const auto inside = [&](const Box& b) {
+        const float reach = 0.2f;
+        return eye.x > b.min.x - reach && eye.x < b.max.x + reach && eye.y > b.min.y - reach &&
+               eye.y < b.max.y + reach && eye.z > b.min.z - reach && eye.z < b.max.z + reach;
+      };
+      if (std::any_of(scene.boxes.begin(), scene.boxes.end(), inside)) continue;
+      const CullView view{.view = {looking(eye, random.direction(), 96, 64), {}}};
+      // Twice the same: the second time with what was learned.
+      for (int again = 0; again < 2; ++again) {
+        const Culled seen = cull_with(culler, scene.world, {&view, 1}, automatic(20000));
+        const std::vector<std::uint8_t> truth = truly_seen(scene.boxes, view.view.view);
+        std::vector<std::uint8_t> left(scene.boxes.size(), 0);
+        for (const ObjectId id : seen.ids) left[id] = 1;
+        for (std::size_t i = 0; i < truth.size(); ++i) lost += truth[i] && !left[i];
+        kept += seen.result.count;
+        in_view += cull_with(plain, scene.world, {&view, 1}, {}).result.count;
+      }
+    }
+  }
+  EXPECT_EQ(lost, 0u);
+  EXPECT_LT(3 * kept, 2 * in_view);
+}
+
+TEST(AutomaticOcclusion, GivesTheSameBitsForAnyNumberOfJobs) {
+  const SolidBoxes scene(town(5, 12));
+  std::vector<std::vector<Culled>> answers;
+  for (const std::uint32_t threads : {1u, 2u, 8u}) {
+    Culler culler;
+    CullOptions options = automatic(3000);
+    if (threads > 1) options.jobs = {run_threads, nullptr, threads};
+    std::vector<Culled> frames;
+    for (int frame = 0; frame < 24; ++frame) {
+      const float t = static_cast<float>(frame);
+      const View camera = looking({20, 2, 450 - t}, heading(0.02f * t)),
+                 other = looking({20.1f, 2, 450 - t}, heading(0.02f * t + 0.4f));
+      const std::array views{CullView{.view = {camera, {}}}, CullView{.view = {other, {}}},
+                             CullView{.view = {camera, {}}}};
+      frames.push_back(cull_with(culler, scene.world, views, options, frame % 3 != 0));
+    }
+    answers.push_back(std::move(frames));
+  }
+  std::size_t dropped = 0;
+  for (std::size_t frame = 0; frame < answers[0].size(); ++frame) {
+    dropped += answers[0][frame].result.culled_occlusion;
+    for (std::size_t k = 1; k < answers.size(); ++k) {
+      ASSERT_EQ(answers[k][frame].ids, answers[0][frame].ids);
+      ASSERT_EQ(answers[k][frame].masks, answers[0][frame].masks);
+      ASSERT_EQ(answers[k][frame].result.cost, answers[0][frame].result.cost);
+    }
+  }
+  EXPECT_GT(dropped, 1000u);
+}
+
+TEST(AutomaticOcclusion, KeepsItsPromiseForSeveralViewsWithMasksAndWithout) {
+  const SolidBoxes scene(town(6, 12));
+  for (const bool masks : {false, true}) {
+    Culler culler, plain;
+    Promise promise;
+    const CullOptions options = automatic(2000);
+    for (int frame = 0; frame < 120; ++frame) {
+      const float t = static_cast<float>(frame);
+      const std::array views{CullView{.view = {looking({20, 2, 450 - t}, heading(0.03f * t)), {}}},
+                             CullView{.view = {looking({20, 2, 450 - t}, heading(0.03f * t + 1)), {}}}};
+      const Culled seen = cull_with(culler, scene.world, views, options, masks);
+      const Culled frustum = cull_with(plain, scene.world, views, {}, masks);
+      std::uint64_t drawn = frustum.result.count;
+      if (masks) drawn = 0;
+      for (const std::uint8_t mask : frustum.masks) drawn += static_cast<std::uint64_t>(std::popcount(mask));
+      ASSERT_EQ(seen.result.frustum_cost, counted(frustum.result, drawn, options.costs));
+      promise.frame(seen.result);
+      // Each view by itself, by a culler that has as much to spend, sees nothing that is not there.
+      for (std::size_t i = 0; i < seen.ids.size() && masks; ++i) ASSERT_NE(seen.masks[i], 0);
+    }
+    EXPECT_LT(promise.ratio(), masks ? 0.7 : 0.8);
+  }
+}
+
+TEST(AutomaticOcclusion, LearnsWhatAnObjectCosts) {
+  const SolidBoxes scene(town(1, 16));
+  Culler culler;
+  Random random(9);
+  CullResult last;
+  for (int frame = 0; frame < 60; ++frame) {
+    const CullView view{
+        .view = {looking({20, 1.7f, random.between(0, 600)}, heading(random.between(0, 6))), {}}};
+    last = cull_with(culler, scene.world, {&view, 1}, kAutomatic).result;
+    // 2 ms whatever is drawn, and 30 µs an object.
+    ASSERT_TRUE(culler.report_frame_time(2e6 + 30000.0 * static_cast<double>(last.count)));
+  }
+  const CullView view{.view = {looking({20, 1.7f, 600}, heading(0)), {}}};
+  Culler plain;
+  const Culled frustum = cull_with(plain, scene.world, {&view, 1}, {});
+  last = cull_with(culler, scene.world, {&view, 1}, kAutomatic).result;
+  EXPECT_NEAR(last.frustum_cost / counted(frustum.result, frustum.result.count, automatic(30000).costs), 1,
+              1e-3);
+  EXPECT_EQ(culler.report_frame_time(-1).code(), StatusCode::bad_argument);
+  EXPECT_EQ(culler.report_frame_time(NAN).code(), StatusCode::bad_argument);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,213 @@
+// What objects carry: doors, what moved, layers, the near plane, triangles, shapes turned and far away; and
+// what is refused.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "support/solid_boxes.hpp"
+
+namespace sightline {
+namespace {
+
+using namespace test;
+
+// A wall, and boxes behind it.
+struct Wall {
+  static constexpr std::size_t kAll = 121;
+  Wall() : scene(boxes()), view{.view = {at({0, 1, 0}, {0, 0, -1}), {}}} {}
+  static std::vector<Box> boxes() {
+    std::vector<Box> out{box_at({0, 1, -10}, {30, 30, 0.5f})};
+    for (std::size_t i = 1; i < kAll; ++i)
+      out.push_back(box_at({0.3f * static_cast<float>(i) - 18.3f, 1, -40}, {0.1f, 1, 0.1f}));
+    return out;
+  }
+  // Large enough for each thing to hold a pixel's centre.
+  static View at(const Vec3& eye, const Vec3& forward) { return looking(eye, forward, 1280, 960); }
+  std::size_t seen(Culler& culler) {
+    return cull_with(culler, scene.world, {&view, 1}, automatic(5e6f)).result.count;
+  }
+  // By a culler that remembers nothing, and so tries at once.
+  std::size_t seen_anew() {
+    Culler culler;
+    return seen(culler);
+  }
+  SolidBoxes scene;
+  CullView view;
+};
+constexpr std::size_t kAll = Wall::kAll;
+
+TEST(Carriers, ADoorHidesWhileItIsSwitchedOn) {
+  Wall wall;
+  Culler culler;
+  const std::span door = std::span(wall.scene.handles).first(1);
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_EQ(wall.seen(culler), 1u);
+    ASSERT_TRUE(wall.scene.world.set_occluding(door, std::array<std::uint8_t, 1>{0}));
+    EXPECT_EQ(wall.seen(culler), kAll);
+    ASSERT_TRUE(wall.scene.world.set_occluding(door, std::array<std::uint8_t, 1>{1}));
+    // Frames that hid nothing made the next tries rarer.
+    for (int frame = 0; frame < 40; ++frame) static_cast<void>(wall.seen(culler));
+  }
+  const std::array<OccluderPlacement, 1> none{};
+  ASSERT_TRUE(wall.scene.world.set_occluders(door, none));
+  EXPECT_EQ(wall.seen(culler), kAll);
+}
+
+TEST(Carriers, WhatMovedOrLeftHidesNothingWhereItWas) {
+  Wall wall;
+  Culler culler;
+  EXPECT_EQ(wall.seen(culler), 1u);
+  const std::span door = std::span(wall.scene.handles).first(1);
+  const std::array away{box_at({0, 100, -10}, {30, 30, 0.5f})};
+  ASSERT_TRUE(wall.scene.world.move(door, BoxView(away)));
+  EXPECT_EQ(wall.seen(culler), kAll - 1);
+  const std::array back{wall.scene.boxes[0]};
+  ASSERT_TRUE(wall.scene.world.move(door, BoxView(back)));
+  for (int frame = 0; frame < 40; ++frame) static_cast<void>(wall.seen(culler));
+  EXPECT_EQ(wall.seen(culler), 1u);
+  // Its id goes to another, which carries nothing.
+  ASSERT_TRUE(wall.scene.world.remove(door));
+  std::array<Handle, 1> other;
+  ASSERT_TRUE(wall.scene.world.insert(BoxView(back), other));
+  ASSERT_EQ(other[0].index, door[0].index);
+  EXPECT_EQ(wall.seen(culler), kAll);
+}
+
+TEST(Carriers, WhatAViewDoesNotSeeHidesNothingFromIt) {
+  Wall wall;
+  const std::array<std::uint32_t, 1> layer{2};
+  ASSERT_TRUE(wall.scene.world.set_layers(std::span(wall.scene.handles).first(1), layer));
+  Culler culler;
+  EXPECT_EQ(wall.seen(culler), 1u);
+  wall.view.layers = 1;
+  Culler another;
+  EXPECT_EQ(wall.seen(another), kAll - 1);
+}
+
+TEST(Carriers, WhatTheNearPlaneCutsHidesNothingWithItsInside) {
+  Wall wall;
+  Culler culler;
+  // From inside the wall one looks out of it.
+  wall.view.view.view = Wall::at({0, 1, -10}, {0, 0, -1});
+  EXPECT_EQ(wall.seen(culler), kAll);
+  wall.view.view.view = Wall::at({0, 1, -9.48f}, {0, 0, -1});  // 2 cm before it; the near plane is at 5 cm
+  EXPECT_EQ(wall.seen(culler), kAll);
+}
+
+TEST(Carriers, AsksForTheTrianglesOfWhatItsBoxLeaves) {
+  Wall wall;
+  World& world = wall.scene.world;
+  // The foot of its box is nearer than the wall's upper part; its one triangle is behind all of it.
+  const std::array boxes{Box{{-1, -2, -22}, {1, 100, -20}}};
+  const std::array<Vec3, 3> hidden{Vec3{-1, -2, -21}, {1, -2, -21}, {0, 3, -21}};
+  std::array<Handle, 1> handle;
+  ASSERT_TRUE(world.insert(BoxView(boxes), handle));
+  wall.view.view.view = Wall::at({0, 1, 0}, {0, 0.7f, -1});
+  const std::size_t before = wall.seen_anew();
+  ASSERT_TRUE(world.set_triangles(handle[0], hidden));
+  EXPECT_EQ(wall.seen_anew(), before - 1);
+  // From another origin nobody knows where they are.
+  wall.view.view.origin = {0, 0, 1e-3};
+  EXPECT_EQ(wall.seen_anew(), before);
+  wall.view.view.origin = {};
+  // They stayed where the object no longer is.
+  const std::array moved{Box{{3, -2, -22}, {5, 100, -20}}};
+  ASSERT_TRUE(world.move(handle, BoxView(moved)));
+  EXPECT_EQ(wall.seen_anew(), before);
+  ASSERT_TRUE(world.move(handle, BoxView(boxes)));
+  EXPECT_EQ(wall.seen_anew(), before - 1);
+  ASSERT_TRUE(world.set_triangles(handle[0], {}));
+  EXPECT_EQ(wall.seen_anew(), before);
+}
+
+TEST(Carriers, ShapesAreSharedTurnedAndScaled) {
+  World world;
+  const std::vector<Box> boxes = Wall::boxes();
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  Occluder mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  const std::array<Sphere, 1> ball{Sphere{{0, 0, 0}, 0.5f}};
+  // A quad; the box of a wall turned by a quarter about y; a sphere that grew.
+  const std::array shapes{*world.add_occluder(mesh), *world.add_occluder(kUnitBox),
+                          *world.add_occluder({}, ball)};
+  std::array<OccluderPlacement, 3> placements;
+  for (std::size_t i = 0; i < 3; ++i) placements[i].occluder = shapes[i];
+  placements[0].transform.m = {29, 0, 0, 0, 0, 29, 0, 0, 0, 0, 1, 0, 0, 1, -10, 1};
+  placements[1].transform.m = {0, 0, -0.9f, 0, 0, 58, 0, 0, 58, 0, 0, 0, -29, -28, -9.55f, 1};
+  placements[2].transform.m = {0.9f, 0, 0, 0, 0, 0.9f, 0, 0, 0, 0, 0.9f, 0, 0, 1, -10, 1};
+  const CullView view{.view = {Wall::at({0, 1, 0}, {0, 0, -1}), {}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_TRUE(world.set_occluders(std::span(handles).first(1), std::span(placements).subspan(i, 1)));
+    Culler culler;
+    const std::size_t seen = cull_with(culler, world, {&view, 1}, automatic(5e6f)).result.count;
+    // Behind the sphere, of 0.45 m at 10 m, stand those within 1.8 m of the middle at 40 m, less a pixel or
+    // two.
+    if (i < 2) EXPECT_EQ(seen, 1u) << i;
+    if (i == 2) {
+      EXPECT_GE(seen, kAll - 9);
+      EXPECT_LE(seen, kAll - 4);
+    }
+  }
+  EXPECT_FALSE(world.remove_occluder(shapes[2]));
+  EXPECT_TRUE(world.remove_occluder(shapes[0]));
+  EXPECT_FALSE(world.remove_occluder(shapes[0]));
+}
+
+TEST(Carriers, FarFromTheOriginItIsTheSame) {
+  const std::vector<Box> boxes = Wall::boxes();
+  const WorldPoint far{1e7, 0, -1e7};
+  World world;
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes, far), handles));
+  std::array placements{filling(boxes[0], *world.add_occluder(kUnitBox))};
+  placements[0].origin = far;
+  ASSERT_TRUE(world.set_occluders(std::span(handles).first(1), placements));
+  const CullView view{.view = {Wall::at({0, 1, 0}, {0, 0, -1}), far}};
+  Culler culler;
+  EXPECT_EQ(cull_with(culler, world, {&view, 1}, automatic(5e6f)).result.count, 1u);
+}
+
+TEST(Carriers, RefusesWhatItCannotTake) {
+  Wall wall;
+  World& world = wall.scene.world;
+  const std::span one = std::span(wall.scene.handles).first(1);
+  Occluder bad;
+  bad.solid_triangles = 1;
+  EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(world.add_occluder({}, std::array<Sphere, 1>{Sphere{{}, -1}}).error().code(),
+            StatusCode::bad_box);
+  bad = kUnitBox;
+  bad.boxes[0].max.x = -1;
+  EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_box);
+  bad.boxes.clear(), bad.indices = {0, 1, 2};
+  EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_mesh);
+  EXPECT_EQ(world.remove_occluder(7).code(), StatusCode::bad_argument);
+  std::array<OccluderPlacement, 1> placement{OccluderPlacement{7}};
+  EXPECT_EQ(world.set_occluders(one, placement).code(), StatusCode::bad_argument);
+  placement[0].occluder = wall.scene.unit;
+  EXPECT_EQ(world.set_occluders({}, placement).code(), StatusCode::bad_argument);
+  placement[0].transform.m[3] = 1;
+  EXPECT_EQ(world.set_occluders(one, placement).index(), 0u);
+  placement[0].transform = {}, placement[0].origin.x = NAN;
+  EXPECT_EQ(world.set_occluders(one, placement).code(), StatusCode::bad_argument);
+  EXPECT_EQ(world.set_occluding(one, std::array<std::uint8_t, 1>{2}).code(), StatusCode::bad_argument);
+  EXPECT_EQ(world.set_occluding({}, std::array<std::uint8_t, 1>{1}).code(), StatusCode::bad_argument);
+  EXPECT_EQ(world.set_triangles(one[0], std::array<Vec3, 2>{}).code(), StatusCode::bad_mesh);
+  EXPECT_EQ(world.set_triangles({}, {}).code(), StatusCode::stale_handle);
+  Culler culler;
+  std::vector<ObjectId> ids(cull_capacity(world));
+  CullOptions options = automatic(-1);
+  EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
+  options = kAutomatic, options.costs.query = INFINITY;
+  EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin(wall.view.view));
+  wall.view.occlusion = &buffer;
+  EXPECT_EQ(culler.cull(world, {&wall.view, 1}, kAutomatic, {ids}).error().index(), 0u);
+}
+
+}  // namespace
+}  // namespace sightline
