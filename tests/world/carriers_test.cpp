@@ -87,12 +87,21 @@ TEST(Carriers, WhatAViewDoesNotSeeHidesNothingFromIt) {
 
 TEST(Carriers, WhatTheNearPlaneCutsHidesNothingWithItsInside) {
   Wall wall;
-  Culler culler;
   // From inside the wall one looks out of it.
   wall.view.view.view = Wall::at({0, 1, -10}, {0, 0, -1});
-  EXPECT_EQ(wall.seen(culler), kAll);
+  EXPECT_EQ(wall.seen_anew(), kAll);
   wall.view.view.view = Wall::at({0, 1, -9.48f}, {0, 0, -1});  // 2 cm before it; the near plane is at 5 cm
-  EXPECT_EQ(wall.seen(culler), kAll);
+  EXPECT_EQ(wall.seen_anew(), kAll);
+
+  // A thinner wall inside it shows a front that is not drawn.
+  const std::array inside{filling(box_at({0, 1, -10.3f}, {30, 30, 0.1f}), wall.scene.unit)};
+  ASSERT_TRUE(wall.scene.world.set_occluders(std::span(wall.scene.handles).first(1), inside));
+  for (const float z : {-9.8f, -9.48f}) {
+    wall.view.view.view = Wall::at({0, 1, z}, {0, 0, -1});
+    EXPECT_EQ(wall.seen_anew(), kAll);
+  }
+  wall.view.view.view = Wall::at({0, 1, 0}, {0, 0, -1});
+  EXPECT_EQ(wall.seen_anew(), 1u);
 }
 
 TEST(Carriers, AsksForTheTrianglesOfWhatItsBoxLeaves) {
