@@ -1,6 +1,6 @@
 // Beyond Lee & Shin 2023: the chunks stay on the GPU. Each frame sends only which chunks are in and what
-// moved; objects are tested in compute; at most the three faces that look at the eye are restored; objects
-// that were visible last frame are drawn once, before the test.
+// moved; chunks, and of those that may show objects, are tested in compute; at most the three faces that look
+// at the eye are restored; objects that were visible last frame are drawn once, before the test.
 #include <cstring>
 
 #include "library/geometry/mutant.h"
@@ -11,6 +11,9 @@ namespace sightline::methods {
 
 namespace {
 
+constexpr std::uint32_t kResidentChunks[] =
+#include "shaders/resident_chunks.comp.inc"
+    ;
 constexpr std::uint32_t kResidentTest[] =
 #include "shaders/resident_test.comp.inc"
     ;
@@ -20,30 +23,33 @@ constexpr std::uint32_t kFace[] =
 constexpr std::uint32_t kDepthTiles[] =
 #include "shaders/depth_tiles.comp.inc"
     ;
-constexpr std::uint32_t kTileTest[] =
-#include "shaders/tile_test.comp.inc"
-    ;
 constexpr std::uint32_t kSeenBox[] =
 #include "shaders/seen_box.frag.inc"
     ;
 
 // As in the shaders.
-constexpr std::uint32_t kDepthTile = 4, kBlock = 8, kFaceVertices = 18, kQuestionSize = 20;
+constexpr std::uint32_t kDepthTile = 4, kBlock = 8, kFaceVertices = 18;
 constexpr std::uint32_t kWords = world::ChunkMap::kCapacity + 1;  ///< a chunk: how many, ids
 constexpr std::uint32_t kPart = 32;                               ///< objects that a workgroup takes
 constexpr std::uint32_t kParts = (world::ChunkMap::kCapacity + kPart - 1) / kPart;
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct ResidentPush {
-  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, questions, blocks, tiles, list, test;
-  std::uint32_t stamp, parts_in, widest;
+  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, parts, tiles, list, test;
+  std::uint32_t stamp, chunks, widest;
+};
+
+/// A chunk that is in.
+struct ChunkIn {
+  device::shared::BoxData bounds;
+  std::uint32_t chunk, parts;
 };
 
 /// What the device finds out in a frame, as in resident.h.
 struct TestData {
   std::array<vk::DrawIndirectCommand, 2> draws;
-  vk::DispatchIndirectCommand block_groups;
-  std::uint32_t blocks;
+  vk::DispatchIndirectCommand part_groups;
+  std::uint32_t parts;
 };
 static_assert(sizeof(TestData) == 48);
 
@@ -60,13 +66,13 @@ public:
   ResidentChunk(device::Renderer& renderer, const Parameters& parameters)
       : TwoPhase(renderer, submission::contribution_from(parameters)),
         chunks_(renderer.scene(), parameters.count("depth")),
+        tiles_(renderer.device(), kDepthTiles),
+        coarse_(renderer.device(), kResidentChunks),
         objects_(renderer.device(), kResidentTest, shader_constants(contribution_)),
         faces_(renderer.device(), {.vertex = kFace,
                                    .fragment = kSeenBox,
                                    .constants = shader_constants(contribution_),
                                    .depth_write = false}),
-        depth_tiles_(renderer.device(), kDepthTiles),
-        against_tiles_(renderer.device(), kTileTest),
         list_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "objects to test"),
         test_(renderer.device(), sizeof(TestData), device::Memory::device, "draw commands") {
     send_changes();
@@ -86,10 +92,10 @@ private:
     if (limit > room_) {
       room_ = limit + limit / 2;
       resident_ = device::Buffer(device, std::uint64_t{room_} * kWords * 4, device::Memory::device, "chunks");
-      chunks_in_ = device::Buffer(device, std::uint64_t{room_} * kParts * 4, device::Memory::upload,
+      chunks_in_ = device::Buffer(device, std::uint64_t{room_} * sizeof(ChunkIn), device::Memory::upload,
                                   "which chunks are in");
-      questions_ = device::Buffer(device, std::uint64_t{room_} * kParts * kPart * kQuestionSize,
-                                  device::Memory::device, "what objects ask");
+      parts_ = device::Buffer(device, std::uint64_t{room_} * kParts * 4, device::Memory::device,
+                              "what the tiles leave of them");
       changed_.resize(limit);
       for (std::uint32_t chunk = 0; chunk < limit; ++chunk) changed_[chunk] = chunk;
     } else {
@@ -119,17 +125,22 @@ private:
     });
   }
 
-  void test(device::Recorder& frame) override {
-    chunks_.select(frame.view, contribution_);
-    auto* const first = chunks_in_.mapped<std::uint32_t>();
+  /// Writes which chunks are in; returns how many.
+  std::uint32_t enter_chunks(const View& view) {
+    chunks_.select(view, contribution_);
+    auto* const first = chunks_in_.mapped<ChunkIn>();
     auto* entry = first;
     const auto enter = [&](std::uint32_t chunk, std::uint32_t mark) {
       const std::uint32_t parts = (chunks_.map().chunk(chunk).count + kPart - 1) / kPart;
-      for (std::uint32_t part = 0; part < parts; ++part) *entry++ = (chunk * kParts + part) | mark;
+      *entry++ = {device::box_data(chunks_.map().chunk_bounds(chunk), 0), chunk | mark, parts};
     };
     for (const std::uint32_t chunk : chunks_.inside()) enter(chunk, kWhollyIn);
     for (const std::uint32_t chunk : chunks_.crossing()) enter(chunk, 0);
-    const auto count = static_cast<std::uint32_t>(entry - first);
+    return static_cast<std::uint32_t>(entry - first);
+  }
+
+  void test(device::Recorder& frame) override {
+    const std::uint32_t count = enter_chunks(frame.view);
     if (count == 0) return;
     const TestData nothing{{vk::DrawIndirectCommand{0, 1, 0, 0},
                             vk::DrawIndirectCommand{0, 1, kFaceVertices * renderer_.buffers().objects, 0}},
@@ -137,25 +148,23 @@ private:
                            0};
     frame.commands.updateBuffer<TestData>(test_.handle(), 0, nothing);
     const std::uint32_t blocks = make_room(frame.targets.depth.width(), frame.targets.depth.height());
-    frame.commands.fillBuffer(blocks_.handle(), 0, std::uint64_t{4} * blocks, 0);
     frame.targets.depth.begin_reading(frame.commands);
     const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
     const ResidentPush push{boxes,
                             state_.address(),
                             chunks_in_.address(),
                             resident_.address(),
-                            questions_.address(),
-                            blocks_.address(),
+                            parts_.address(),
                             farthest_.address(),
                             list_.address(),
                             test_.address(),
                             stamp_,
                             count,
                             frame.widest_dispatch()};
-    frame.dispatch(objects_, push, count * kPart, kPart);
     // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
-    frame.dispatch(depth_tiles_, push, {test_, offsetof(TestData, block_groups)});
-    frame.dispatch(against_tiles_, push, count * kPart, kPart);
+    frame.dispatch(tiles_, push, blocks * kBlock * kBlock, kBlock * kBlock);
+    frame.dispatch(coarse_, push, count, kPart);
+    frame.dispatch(objects_, push, {test_, offsetof(TestData, part_groups)});
     frame.targets.depth.end_reading(frame.commands);
     frame.begin_rendering({});
     frame.bind(faces_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);
@@ -169,18 +178,11 @@ private:
   /// Room for the tiles of a picture; returns how many blocks they are.
   std::uint32_t make_room(std::uint32_t width, std::uint32_t height) {
     const auto across = [](std::uint32_t all, std::uint32_t each) { return (all + each - 1) / each; };
-    const std::uint32_t columns = across(width, kDepthTile), rows = across(height, kDepthTile),
-                        blocks = across(columns, kBlock) * across(rows, kBlock);
-    device::Device& device = renderer_.device();
-    const std::uint64_t tile_bytes = std::uint64_t{4} * columns * rows,
-                        block_bytes = std::uint64_t{8} * blocks;
-    if (farthest_.size() < tile_bytes) {
-      farthest_ = device::Buffer(device, tile_bytes, device::Memory::device, "depth tiles");
-    }
-    if (blocks_.size() < block_bytes) {
-      blocks_ = device::Buffer(device, block_bytes, device::Memory::device, "blocks of depth tiles");
-    }
-    return blocks;
+    const std::uint32_t columns = across(width, kDepthTile), rows = across(height, kDepthTile);
+    const std::uint64_t bytes = std::uint64_t{4} * columns * rows;
+    if (farthest_.size() < bytes)
+      farthest_ = device::Buffer(renderer_.device(), bytes, device::Memory::device, "depth tiles");
+    return across(columns, kBlock) * across(rows, kBlock);
   }
 
   void count(CullStats& stats) override {
@@ -189,11 +191,10 @@ private:
   }
 
   GroundChunks chunks_;
-  device::ComputePipeline objects_;
+  device::ComputePipeline tiles_, coarse_, objects_;
   device::GraphicsPipeline faces_;
-  device::ComputePipeline depth_tiles_, against_tiles_;
-  device::Buffer questions_, list_, test_;
-  device::Buffer resident_, chunks_in_, staging_, blocks_, farthest_;
+  device::Buffer list_, test_;
+  device::Buffer resident_, chunks_in_, parts_, staging_, farthest_;
   std::uint32_t room_ = 0;  ///< chunks that the buffers hold
   std::vector<std::uint32_t> changed_;
   std::vector<vk::BufferCopy> regions_;

@@ -9,13 +9,12 @@
 layout(local_size_x = kBlock * kBlock) in;
 #include "workbench/device/shaders/invocation.h"
 
-// The farthest depth of each tile of 4 x 4 pixels: a group a block that was asked for, a lane a tile. Past the
-// picture's edge the sampler repeats it.
+// The farthest depth of each tile of 4 x 4 pixels: a group a block, a lane a tile. Past the picture's edge the
+// sampler repeats it.
 void main() {
-  const uint lane = gl_LocalInvocationID.x;
-  const uvec2 size = tiles_in_image(), all_blocks = blocks_in_image();
-  if (workgroup() >= test.blocks) return;
-  const uvec2 block = unpacked(blocks.at[all_blocks.x * all_blocks.y + workgroup()]);
+  const uvec2 size = tiles_in_image();
+  const uint lane = gl_LocalInvocationID.x, across = (size.x + kBlock - 1) / kBlock;
+  const uvec2 block = uvec2(workgroup() % across, workgroup() / across);
   const uvec2 tile = kBlock * block + uvec2(lane % kBlock, lane / kBlock);
   if (any(greaterThanEqual(tile, size))) return;
   // Four texels about each point, which lies where they meet.
