@@ -17,6 +17,7 @@ layout(local_size_x = kGroup) in;
 
 // Pixels. A smaller box is cheap to rasterise, and may miss the pixel's middle next to its point.
 const float kLarge = 8;
+const uint kMostPixels = 256;  // to look at one by one
 
 // Whether a point of the box can be seen. If it can, so can the box's face before it, and the raster test would
 // say the same.
@@ -37,6 +38,21 @@ bool shows_somewhere(vec3 centre, vec3 half_extent) {
   bool shown = shows(centre - away * min(min(share.x, share.y), share.z), slack);
   for (uint i = 0; i < 8 && !shown; ++i) shown = shows(corner(centre, 0.95 * half_extent, i), slack);
   return shown;
+}
+
+// Whether some pixel of a small footprint leaves the box open: far away a tile, too, holds many objects and
+// the gaps between them.
+bool pixels_leave_open(Footprint print) {
+  const uvec2 edge = image_size() - 1;
+  const uvec2 first = min(uvec2(max(print.low, vec2(0))), edge);
+  const uvec2 last = min(uvec2(max(print.high, vec2(0))), edge), span = last - first + 1;
+  bool open = print.whole || span.x * span.y > kMostPixels;
+  for (uvec2 at = first; at.y <= last.y && !open;) {
+    open = !hides(texelFetch(frame_depth, ivec2(at), 0).x, print.nearest);
+    const bool ends = at.x == last.x;
+    at = uvec2(ends ? first.x : at.x + 1, ends ? at.y + 1 : at.y);
+  }
+  return open;
 }
 
 // Boxes wholly in the picture are listed from the front, those across its edge from the back.
@@ -70,7 +86,7 @@ void main() {
   bool seen = SIGHTLINE_MUTANT(resident_chunk_by_frustum) ? true : rests || reaches_near_plane(centre, half_extent);
   if (!seen) {
     const Footprint print = footprint(centre, half_extent);
-    if (tiles_leave_open(print)) {
+    if (tiles_leave_open(print) && pixels_leave_open(print)) {
       const bool large = !print.whole && all(greaterThan(print.high - print.low, vec2(kLarge)));
       const bool inside = !print.whole && all(greaterThan(print.low, vec2(0))) && all(lessThan(print.high, vec2(image_size())));
       seen = large && shows_somewhere(centre, half_extent);
