@@ -75,8 +75,12 @@ int run_replay(const VerifyOptions& options) {
   const measure::MethodVerdict now = measure::look_again(bench, replay);
   expect_silence(device.get());
   if (now.examples.empty() && now.holds()) {
-    fmt::print("{} loses nothing in this view any more; object {} and {} pixels were lost.\n", now.method,
-               replay.lost.object, replay.lost.pixels);
+    if (replay.lost.object == kNoObject)
+      fmt::print("{} draws this view as it should; {} pixels were otherwise.\n", now.method,
+                 replay.lost.pixels);
+    else
+      fmt::print("{} loses nothing in this view any more; object {} and {} pixels were lost.\n", now.method,
+                 replay.lost.object, replay.lost.pixels);
     return Exit::done;
   }
   for (const measure::LostObject& lost : now.examples) fmt::print("{}\n", measure::describe(now, lost));

@@ -126,6 +126,17 @@ TEST(Verify, BrokenFrustumIsFoundAndViewAndObjectAreNamed) {
   EXPECT_EQ(or_throw(make_view(replayed.at(0), lost.width, lost.height)), view);
 }
 
+TEST(Verify, SaysWhereAPictureDiffersThoughNothingIsLost) {
+  measure::MethodVerdict verdict;
+  verdict.method = "none";
+  measure::LostObject where;
+  where.view = 12, where.pixels = 2;
+  EXPECT_NE(measure::describe(verdict, where).find("none (exact) drew 2 pixels otherwise in view 12"),
+            std::string::npos);
+  where.object = 3;
+  EXPECT_NE(measure::describe(verdict, where).find("lost object 3 in view 12 (2 pixels"), std::string::npos);
+}
+
 TEST(Verify, ApproximateLossIsReportedAndIsNoFailure) {
   Scene scene = generate_world("regular?columns=20&rows=20");
   const std::vector<Camera> cameras = camera::random_cameras(scene, 40, 3);

@@ -30,12 +30,14 @@ void examine(Bench& bench, Subject& subject, const View& view, const LostObject&
   verdict.lost_pixels += judged.loss.lost_pixels;
   verdict.excess_objects += judged.loss.excess.size();
   verdict.different_pixels += judged.different_pixels;
-  if (judged.loss.lost.empty()) return;
-  ++verdict.views_with_loss;
+  const bool lost = !judged.loss.lost.empty();
+  verdict.views_with_loss += lost;
+  const bool breaks = verdict.guarantee == Guarantee::exact && judged.different_pixels > 0;
+  if (!lost && !breaks) return;
   if (verdict.examples.size() >= examples_wanted(verdict.guarantee)) return;
   verdict.examples.push_back(where);
-  verdict.examples.back().object = judged.loss.lost.front();
-  verdict.examples.back().pixels = judged.loss.lost_pixels;
+  verdict.examples.back().object = lost ? judged.loss.lost.front() : kNoObject;
+  verdict.examples.back().pixels = lost ? judged.loss.lost_pixels : judged.different_pixels;
 }
 
 Verification start_verification(const Bench& bench) {
@@ -81,8 +83,11 @@ Verification verify(Bench& bench, std::span<const Camera> cameras, std::uint32_t
 }
 
 std::string describe(const MethodVerdict& verdict, const LostObject& lost) {
-  return fmt::format("{} ({}) lost object {} in view {} ({} pixels lost in this view); the view, {}x{}: {}",
-                     verdict.method, to_string(verdict.guarantee), lost.object, lost.view, lost.pixels,
+  const std::string what = lost.object == kNoObject
+                               ? fmt::format("drew {} pixels otherwise in view {}", lost.pixels, lost.view)
+                               : fmt::format("lost object {} in view {} ({} pixels lost in this view)",
+                                             lost.object, lost.view, lost.pixels);
+  return fmt::format("{} ({}) {}; the view, {}x{}: {}", verdict.method, to_string(verdict.guarantee), what,
                      lost.width, lost.height, camera::camera_json(lost.camera, lost.origin).dump());
 }
 

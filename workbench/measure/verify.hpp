@@ -19,8 +19,8 @@ struct LostObject {
   std::size_t view = 0;  ///< index of the camera
   Camera camera;
   std::uint32_t width = 0, height = 0;
-  ObjectId object = kNoObject;
-  std::uint64_t pixels = 0;      ///< lost in this view, over all its lost objects
+  ObjectId object = kNoObject;   ///< kNoObject: none was lost, but pixels of the picture differ
+  std::uint64_t pixels = 0;      ///< lost in this view, over all its lost objects; or that differ
   WorldPoint origin{};           ///< what the camera counts from
   std::size_t moves = 0;         ///< how often objects had moved by then
   std::optional<Camera> before;  ///< on a device: what was drawn just before
@@ -33,7 +33,8 @@ struct MethodVerdict {
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
   std::uint64_t different_pixels = 0;  ///< on a device: that differ from the picture of all it could draw
   std::size_t views_with_loss = 0;
-  std::vector<LostObject> examples;  ///< from the first views with a loss, one for approximate methods
+  std::vector<LostObject>
+      examples;  ///< from the first views that break the guarantee, one for approximate methods
 
   /// False where an exact or conservative method lost something, or an exact one drew another picture; an
   /// approximate one only reports.

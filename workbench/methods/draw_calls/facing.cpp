@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <sightline/projection.hpp>
+
 #include "library/geometry/linear.hpp"
 #include "workbench/partition/triangle_partition.hpp"
 
@@ -13,15 +15,24 @@ namespace {
 
 using geometry::to_double;
 
-// A rasteriser snaps corners to 1/256 of a pixel, so that a triangle seen within a hair of its edge may turn
-// round: a small one of a pixel by a quarter of a degree.
-constexpr double kSnap = 0.25 * std::numbers::pi / 180;
+// Pixels. Corners are put on a grid of 1/256, so each is moved by √2/512 at most; times 2.8, since the image
+// of an edge away from its middle is longer than at it.
+constexpr double kSnap = 1.0 / 128;
+// What single precision and clipping may turn besides.
+constexpr double kRounding = 1e-4;
 
 glm::dvec3 precise_normal(const std::array<Vec3, 3>& triangle) noexcept {
   const glm::dvec3 a = to_double(triangle[0]);
   const glm::dvec3 across = glm::cross(to_double(triangle[1]) - a, to_double(triangle[2]) - a);
   const double length = glm::length(across);
   return length > 0 ? across / length : glm::dvec3(0);
+}
+
+// Perimeter over twice the area, rounded up; of triangles with an area.
+float thinness(const std::array<Vec3, 3>& triangle) noexcept {
+  const glm::dvec3 a = to_double(triangle[0]), b = to_double(triangle[1]), c = to_double(triangle[2]);
+  const double perimeter = glm::length(b - a) + glm::length(c - b) + glm::length(a - c);
+  return static_cast<float>(1.000001 * perimeter / glm::length(glm::cross(b - a, c - a)));
 }
 
 std::uint32_t sector_of(double x, double z) noexcept {
@@ -63,9 +74,11 @@ FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint
   cone.axis = geometry::to_vec3(sum / length);
   const glm::dvec3 axis = glm::normalize(to_double(cone.axis));
   double least = 1;
-  for (const std::uint32_t triangle : triangles)
+  for (const std::uint32_t triangle : triangles) {
     least = std::min(least, glm::dot(axis, precise_normal(all[triangle])));
-  const double half_angle = std::acos(std::clamp(least, -1.0, 1.0)) + kSnap;
+    cone.thin = std::max(cone.thin, thinness(all[triangle]));
+  }
+  const double half_angle = std::acos(std::clamp(least, -1.0, 1.0)) + kRounding;
   if (half_angle < std::numbers::pi / 2) cone.reach = static_cast<float>(std::sin(half_angle)) + 1e-6f;
   return cone;
 }
@@ -73,6 +86,7 @@ FacingCone cone_of(const partition::TriangleSpan& all, std::span<const std::uint
 Facing::Facing(const View& view, FacingRule rule) noexcept
     : rule_(rule),
       orthographic_(is_orthographic(view)),
+      snap_(kSnap / double{make_projector(view, {}).pixels_per_metre}),
       eye_(eye_position(view)),
       forward_(view_direction(view)),
       on_xz_(forward_.x != 0 || forward_.z != 0 ? sector_of(forward_.x, forward_.z) : kSteep),
@@ -91,14 +105,15 @@ bool Facing::may_face(const FacingCone& cone) const noexcept {
   if (cone.reach > 1) return true;
   const glm::dvec3 axis = to_double(cone.axis);
   const double reach = cone.reach;
-  if (orthographic_) return glm::dot(axis, to_double(forward_)) < reach;
+  if (orthographic_) return glm::dot(axis, to_double(forward_)) < reach + turned_by(cone, 0);
   const glm::dvec3 eye = to_double(eye_), low = to_double(cone.bounds.min) - eye,
                    high = to_double(cone.bounds.max) - eye;
   for (std::uint32_t corner = 0; corner < 8; ++corner) {
     const glm::dvec3 way{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
                          corner & 4 ? high.z : low.z};
-    const double along = glm::dot(axis, way);
-    if (!(along > 0) || along * along < reach * reach * glm::dot(way, way)) return true;
+    const double away = glm::length(way);
+    if (!(glm::dot(axis, way) > 0) || glm::dot(axis, way) < (reach + turned_by(cone, away)) * away)
+      return true;
   }
   return false;
 }
