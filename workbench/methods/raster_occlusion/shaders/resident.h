@@ -1,5 +1,5 @@
-// What the steps of resident-chunk's test share: depth tiles are made of the picture so far, chunks in view are
-// held against them, and of the chunks that they leave the objects.
+// What the steps of resident-chunk's test share: depth tiles are made of the picture so far, chunks in view
+// are held against them, and of the chunks that they leave the objects.
 const uint kParts = 3, kWords = 97;  // parts of a chunk that a workgroup takes; words of a chunk
 const uint kFaceVertices = 18;
 const uint kGroup = 32;     // lanes, an object or a chunk each
@@ -33,7 +33,7 @@ layout(push_constant, scalar) uniform Push {
   WordBuffer state;
   ChunkInBuffer chunks_in;
   WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
-  WordBuffer parts;          // that the tiles leave: three times the chunk's number and the part's, or kWhollyIn
+  WordBuffer parts;  // that the tiles leave: three times the chunk's number and the part's, or kWhollyIn
   FloatBuffer tiles;
   WordBuffer list;  // boxes for the raster test
   TestBuffer test;
