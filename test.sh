@@ -54,6 +54,9 @@ scripts/check-surfaces.sh build/release
 stage "occlusion among 120,000 objects"
 scripts/check-occlusion.sh build/release
 
+stage "occlusion in one call"
+scripts/check-automatic.sh build/release
+
 stage "documents"
 scripts/check-docs.py build/release
 tests/structure/planted_docs.sh build/release

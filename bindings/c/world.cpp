@@ -45,15 +45,16 @@ Status take(const sightline_object_columns& given, ObjectColumns& columns) {
 
 Status take(const sightline_cull_options* given, CullOptions& options) {
   sightline_cull_options o = sightline_cull_options_default();
-  if (given &&
-      (!take_struct(given, SIGHTLINE_FIRST_SIZE(sightline_cull_options, jobs), o) || o.values_for_ids > 1 ||
-       o.occlusion > SIGHTLINE_OCCLUSION_AUTOMATIC || o.reserved != 0 || o.costs.reserved != 0)) {
+  if (given && (!take_struct(given, SIGHTLINE_FIRST_SIZE(sightline_cull_options, jobs), o) ||
+                o.values_for_ids > 1 || o.occlusion > SIGHTLINE_OCCLUSION_AUTOMATIC ||
+                o.coverage > SIGHTLINE_COVERAGE_AREA || o.reserved != 0 || o.costs.reserved != 0)) {
     return {StatusCode::bad_argument,
-            "cull: struct_size, values_for_ids or occlusion of the options are unknown, "
+            "cull: struct_size, values_for_ids, occlusion or coverage of the options are unknown, "
             "expected those of sightline_cull_options_default"};
   }
   options.values_for_ids = o.values_for_ids == 1;
   options.occlusion = static_cast<Occlusion>(o.occlusion);
+  options.buffer = {static_cast<Coverage>(o.coverage), o.scale};
   const sightline_cull_costs& c = o.costs;
   options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
   return c_api::take(o.jobs, options.jobs);

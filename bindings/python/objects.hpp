@@ -3,9 +3,11 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
+#include <string>
 
 #include <sightline/occlusion.hpp>
 #include <sightline/view.hpp>
@@ -50,6 +52,9 @@ auto looking_unlocked(const Guarded<T>& object, const Call& call) {
   const Unlocked unlocked;
   return looking(object, call);
 }
+
+/// Refuses a coverage other than 'centres' and 'area'.
+OcclusionOptions occlusion_options(const std::string& coverage, std::uint32_t scale);
 
 // Each adds its classes and functions.
 void add_views(pybind11::module_& m);

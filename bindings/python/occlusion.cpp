@@ -55,8 +55,7 @@ void set(SharedTriangles& triangles, std::uint32_t object, const py::object& cor
 }
 
 void begin(Occlusion& occlusion, const WorldView& view, const std::string& coverage, std::uint32_t scale) {
-  if (coverage != "centres" && coverage != "area") refuse("coverage: expected 'centres' or 'area'");
-  const OcclusionOptions options{coverage == "area" ? Coverage::area : Coverage::centres, scale};
+  const OcclusionOptions options = occlusion_options(coverage, scale);
   expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.begin(view, options); }));
 }
 
@@ -209,6 +208,11 @@ void add_triangles(py::module_& m) {
 }
 
 }  // namespace
+
+OcclusionOptions occlusion_options(const std::string& coverage, std::uint32_t scale) {
+  if (coverage != "centres" && coverage != "area") refuse("coverage: expected 'centres' or 'area'");
+  return {coverage == "area" ? Coverage::area : Coverage::centres, scale};
+}
 
 void add_occlusion(py::module_& m) {
   add_triangles(m);

@@ -162,13 +162,15 @@ sightline::Occlusion occlusion_of(const std::string& name) {
 }
 
 py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object& views, bool masks,
-                bool values, const std::string& occlusion, float object_cost) {
+                bool values, const std::string& occlusion, float object_cost, const std::string& coverage,
+                std::uint32_t scale) {
   const std::vector<ViewOfWorld> given = views_of(views);
   std::vector<CullView> seen;
   for (const ViewOfWorld& v : given)
     seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area});
   CullOptions options{{}, values};
   options.occlusion = occlusion_of(occlusion), options.costs.object = object_cost;
+  options.buffer = occlusion_options(coverage, scale);
   for (;;) {
     Output output(world, options, masks);
     const CullOutput out{span_of(output.ids), span_of(output.masks)};
@@ -256,9 +258,10 @@ void add_world(py::module_& m) {
           "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides "
           "left\n"
           "out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that drawing an\n"
-          "object costs; 0: what report_frame_time() taught.",
+          "object costs; 0: what report_frame_time() taught. coverage, scale: as Occlusion.begin has them.",
           py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
-          py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f)
+          py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "centres",
+          py::arg("scale") = 1)
       .def(
           "report_frame_time",
           [](LockedCuller& culler, double seconds) {

@@ -15,14 +15,12 @@
 
 #include <sightline/box_view.hpp>
 #include <sightline/jobs.hpp>
-#include <sightline/occluder.hpp>
+#include <sightline/occlusion.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
 
 namespace sightline {
-
-class OcclusionBuffer;
 
 /// Names an object for as long as it stands in its world. A handle whose object was removed is found out, not
 /// followed: the generation of a reused index differs.
@@ -96,6 +94,8 @@ public:
   /// Keeps an occluder for objects to carry, as many as like: what make_occluder made, or triangles and boxes
   /// put there by hand, and solid spheres. Its boxes are drawn where it has no triangles. All but triangles
   /// behind the first `solid_triangles` must lie inside what the objects show; those others are part of it.
+  /// More than 512 triangles are drawn in parts, near ones first, as far as that pays: all walls of a level
+  /// may be one occluder.
   /// Errors: as OccluderMesh::make; bad_box; bad_argument for more solid triangles than triangles. Cost: as
   /// OccluderMesh::make. Allocates: a copy.
   Result<OccluderId> add_occluder(const Occluder& occluder, std::span<const Sphere> spheres = {});
@@ -183,6 +183,8 @@ struct CullOptions {
   bool values_for_ids = false;            ///< writes the objects' values instead of their ids
   Occlusion occlusion = Occlusion::none;  ///< automatic: no view brings a buffer
   CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
+  /// Which places of the images automatic occlusion answers for, and how finely.
+  OcclusionOptions buffer = {};
 };
 
 /// Where a cull writes; both have cull_capacity() elements, but `masks` may be empty. What stands behind the
@@ -222,7 +224,8 @@ public:
   /// Writes the ids of the objects that at least one of the 1 … kMaxViews views may see, and which views see
   /// each, in an order that depends on the calls so far alone, culls between moves among them: never on
   /// threads, SIMD width or processor. Nothing that is visible at some pixel centre is left out, but by
-  /// `layers` and `min_area`. Errors: bad_argument (no or too many views; an option out of range), bad_view,
+  /// `layers` and `min_area`; nothing at any place on the image where occlusion is asked for with
+  /// Coverage::area. Errors: bad_argument (no or too many views; an option out of range), bad_view,
   /// buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows with what is
   /// visible and with the boundary of the views, not with the world: 20 to 30 µs for the few thousand of a
   /// million still boxes that a camera sees. Threads: only reads the world and the buffers. Allocates:

@@ -99,8 +99,25 @@ void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double
                            const std::array<SeamLine, 3>& seams) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
-/// Allocates until it has seen its largest mesh.
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform);
+/// What drawing may cost of a mesh that is drawn in parts: groups of 16 triangles, near ones first, those
+/// alone that it pays for. In any one unit; counted alike for any width of vectors.
+struct MeshBudget {
+  double look = 0;      ///< a group, whether it is in view
+  double query = 0;     ///< a group in view, whether it is hidden
+  double triangle = 0;  ///< one of a group that is drawn
+  double tile = 0;      ///< a tile around such a group
+  double left = 0;      ///< what may still be spent
+
+  bool pay(double cost) noexcept {
+    if (!(cost <= left)) return false;
+    left -= cost;
+    return true;
+  }
+};
+/// With a budget draws a part of the mesh, without one all of it. Allocates until it has seen its largest
+/// mesh.
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+               MeshBudget* budget = nullptr);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
 struct BoxQuestions {
@@ -135,6 +152,7 @@ struct OccluderMesh::Topology : occlusion::OccluderTopology {};
 /// The way of the library's own to what a buffer holds.
 struct OcclusionAccess {
   static const occlusion::DepthTiles& tiles(const OcclusionBuffer& buffer) noexcept { return *buffer.state_; }
+  static occlusion::DepthTiles& tiles(OcclusionBuffer& buffer) noexcept { return *buffer.state_; }
   static const occlusion::OccluderTopology& topology(const OccluderMesh& mesh) noexcept {
     return *mesh.topology_;
   }

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include <sightline/projection.hpp>
+
 #include "library/occlusion/depth_tiles.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -201,12 +203,32 @@ HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) 
   for (std::size_t i = 0; i < 3; ++i) hwy::Prefetch(&mesh.neighbour[(group * 3 + i) * kGroup]);
 }
 
-void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform) {
+constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together
+
+// Pays for a group whose box stands at `place`. What is left out hides nothing, and leaves the seams beside
+// it as true as they are: the mesh goes on there.
+inline bool affords_group(const DepthTiles& tiles, std::size_t place, const Projector& projector,
+                          MeshBudget& budget) {
+  const auto& box = tiles.mesh.box;
+  const auto half = [&](std::size_t axis) { return 0.5f * (box[axis + 3][place] - box[axis][place]); };
+  const Vec3 size{half(0), half(1), half(2)};
+  const Sphere around{{box[0][place] + size.x, box[1][place] + size.y, box[2][place] + size.z},
+                      std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z)};
+  const float image = projector.width * projector.height;
+  const double in_tiles = double{std::min(projected_area(projector, around), image)} / (kTile * kTile);
+  return budget.pay(static_cast<double>(kGroup) * budget.triangle +
+                    (in_tiles / (tiles.scale * tiles.scale) + 1) * budget.tile);
+}
+
+void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                    MeshBudget* budget) {
+  if (budget && !budget->pay(static_cast<double>(mesh.groups.size()) * budget->look)) return;
+  const Projector projector = budget ? make_projector(tiles.view.view, {}) : Projector{};
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = tiles.mesh;
-  constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together
   for (std::size_t first = 0; first < s.near_first.size(); first += kGroupsAtOnce) {
     const std::size_t count = std::min(kGroupsAtOnce, s.near_first.size() - first);
+    if (budget && !budget->pay(static_cast<double>(count) * budget->query)) return;
     const auto place = [&](std::size_t i) { return static_cast<std::uint32_t>(s.near_first[first + i]); };
     std::array<std::array<float, kGroupsAtOnce>, 6> box;
     for (std::size_t side = 0; side < 6; ++side) {
@@ -218,6 +240,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
         {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
         visible.data());
     for (std::size_t i = 0; i < count; ++i) {
+      if (budget && visible[i]) visible[i] = affords_group(tiles, place(i), projector, *budget);
       if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -246,7 +269,8 @@ bool mirrors(const RowTransform& transform) {
 
 }  // namespace
 
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform) {
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+               MeshBudget* budget) {
   MeshScratch& s = tiles.mesh;
   const std::size_t groups = mesh.groups.size();
   if (s.known.size() < groups) {
@@ -258,7 +282,7 @@ void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransfo
   }
   s.front = tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
-  HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform);
+  HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, budget);
 }
 
 }  // namespace sightline::occlusion

@@ -28,12 +28,13 @@ struct Memory {
 class Try {
 public:
   Try(CullerState& state, Memory& memory, std::span<const CullView> views, const DifferentViews& different,
-      const JobSystem& jobs, const CullCosts& costs, CullResult& result)
+      const CullOptions& options, const CullCosts& costs, CullResult& result)
       : state_(state),
         memory_(memory),
         views_(views),
         different_(different),
-        jobs_(jobs),
+        jobs_(options.jobs),
+        buffer_(options.buffer),
         costs_(costs),
         result_(result),
         masks_(masks_of_caller(state)),
@@ -63,8 +64,10 @@ private:
       const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
       chunks_ += group.count, objects += group.objects;
     }
-    const double views = static_cast<double>(different_.count),
-                 object_views = static_cast<double>(objects) * views;
+    const double views = static_cast<double>(different_.count);
+    // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
+    const double in_view = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
+                 object_views = std::min(static_cast<double>(objects) * views, in_view);
     // The chunks are asked for and the rest is written again in any case; the objects too, if that leaves
     // enough for drawing.
     const double chunks =
@@ -76,8 +79,9 @@ private:
     for (std::size_t d = 0; d < different_.count; ++d) {
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
-      drawn_[d] = share > 0 && memory_.picks[place].draw(*state_.world, views_[place],
-                                                         {state_.out, result_.count}, costs_, share, purse_);
+      drawn_[d] =
+          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], {state_.out, result_.count},
+                                                 buffer_, costs_, share, purse_);
       any = any || drawn_[d];
     }
     return any;
@@ -169,7 +173,15 @@ private:
     Memory& memory = self.memory_;
     const std::size_t count = memory.asking, first = count * part / memory.parts,
                       end = count * (part + 1) / memory.parts;
-    for (std::size_t i = first; i < end; ++i) memory.seen[i] = self.views_that_see(i);
+    constexpr std::size_t kAhead = 3;
+    const WorldOccluders& o = *self.state_.world->occluders;
+    for (std::size_t i = first; i < end; ++i) {
+      if (i + kAhead < end) {
+        const std::uint32_t next = o.triangle_set(self.state_.out[i + kAhead]);
+        if (next != kNothing) occlusion::prefetch(o.triangles[next].blocks);
+      }
+      memory.seen[i] = self.views_that_see(i);
+    }
   }
 
   // Bits of the mask of the i-th object that its triangles leave; without masks, any or none.
@@ -178,7 +190,7 @@ private:
     const ObjectId id = state_.out[i];
     const WorldOccluders& o = *state_.world->occluders;
     const std::uint32_t at = o.triangle_set(id);
-    if (at == kNothing || !stands_in(o.triangles[at].bounds, stored_box(*state_.world, id))) return before;
+    if (at == kNothing) return before;
     const ObjectTriangles& set = o.triangles[at];
     std::uint8_t seen = before, asked = 0;
     for (std::size_t d = 0; d < different_.count; ++d) {
@@ -190,7 +202,10 @@ private:
       if (!occlusion::query_triangles(tiles, set.blocks, set.count))
         seen &= static_cast<std::uint8_t>(~different_.bits[d]);
     }
-    return seen & asked;
+    seen &= asked;
+    // Found last, for most are seen: whether the triangles are where the object is.
+    const bool all = seen == (before & asked);
+    return all || stands_in(set.bounds, stored_box(*state_.world, id)) ? seen : before;
   }
 
   void keep_seen() {
@@ -225,6 +240,7 @@ private:
   std::span<const CullView> views_;
   const DifferentViews& different_;
   const JobSystem& jobs_;
+  const OcclusionOptions& buffer_;
   const CullCosts& costs_;
   CullResult& result_;
   std::uint8_t* masks_;  // the caller's
@@ -237,7 +253,7 @@ class Automatic final : public Hiding {
 public:
   void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
             const CullOptions& options, const CullCosts& costs, CullResult& result) override {
-    Try(state, memory_, views, different, options.jobs, costs, result).run();
+    Try(state, memory_, views, different, options, costs, result).run();
   }
 
 private:

@@ -266,7 +266,12 @@ Status check_view(const CullView& view, std::size_t index) noexcept {
   return {};
 }
 
-Status check_automatic(std::span<const CullView> views, const CullCosts& costs) noexcept {
+Status check_automatic(std::span<const CullView> views, const OcclusionOptions& buffer,
+                       const CullCosts& costs) noexcept {
+  if (buffer.scale != 1 && buffer.scale != 2 && buffer.scale != 4)
+    return {StatusCode::bad_argument, "cull: the buffer's scale is none, expected 1, 2 or 4"};
+  if (buffer.coverage != Coverage::centres && buffer.coverage != Coverage::area)
+    return {StatusCode::bad_argument, "cull: the buffer's coverage is none, expected centres or area"};
   for (const float cost : {costs.object, costs.node, costs.test, costs.candidate, costs.tile, costs.shape,
                            costs.triangle, costs.query, costs.occludee}) {
     if (!(cost >= 0) || !std::isfinite(cost))
@@ -296,7 +301,7 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
   if (options.occlusion == Occlusion::none) return {};
   if (options.occlusion != Occlusion::automatic)
     return {StatusCode::bad_argument, "cull: the options' occlusion is neither none nor automatic"};
-  return check_automatic(views, options.costs);
+  return check_automatic(views, options.buffer, options.costs);
 }
 
 // Whether layers drop anything, and what that takes.

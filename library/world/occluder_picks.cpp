@@ -17,13 +17,15 @@ namespace {
 
 constexpr std::size_t kMostPicks = 1024;
 constexpr float kTileArea = 64, kLeastArea = 16;  // px²
+// A mesh of more triangles is drawn in parts, near ones first, for as much as there is to spend; it is picked
+// for so many at the least, and for no more than its share of what is left for drawing.
+constexpr std::size_t kWhole = 512, kLeastPart = 256;
+constexpr double kPartShare = 0.5;
+// Where all of a pixel counts, what goes on beside a triangle is looked at, too.
+constexpr double kMarginCost = 3;
 
-double shape_cost(const OccluderShape& shape, bool along_axes, const CullCosts& costs) {
-  const double triangle = double{costs.triangle};
-  const double box = along_axes ? double{costs.shape} : 12 * triangle;
-  return static_cast<double>(shape.all.triangles()) * triangle +
-         static_cast<double>(shape.boxes.size()) * box +
-         static_cast<double>(shape.spheres.size()) * double{costs.shape};
+bool in_parts(const OccluderShape& shape) noexcept {
+  return shape.all.triangles() > kWhole;
 }
 
 // About the view's origin. Where it is the placement's, nothing is rounded.
@@ -74,10 +76,14 @@ Box near_rectangle(const View& view) {
 
 // A view, and what is worked out once for all candidates.
 struct OccluderPicks::Sight {
-  Sight(const WorldState& in_world, const CullView& culled, const CullCosts& at_costs)
+  Sight(const WorldState& in_world, const CullView& culled, const OcclusionOptions& drawn,
+        const CullCosts& at_costs)
       : world(in_world),
         view(culled),
         costs(at_costs),
+        triangle(double{at_costs.triangle} *
+                 (drawn.coverage == Coverage::area || drawn.scale > 1 ? kMarginCost : 1)),
+        tile(double{at_costs.tile} / (drawn.scale * drawn.scale)),
         projector(make_projector(culled.view.view, {})),
         frustum(make_frustum(culled.view.view)),
         image(projector.width * projector.height),
@@ -103,6 +109,21 @@ struct OccluderPicks::Sight {
     return !apart;
   }
 
+  // What is drawn whole of a shape.
+  [[nodiscard]] double shape_cost(const OccluderShape& shape, bool along_axes) const {
+    const double box = along_axes ? double{costs.shape} : 12 * triangle;
+    const double mesh = in_parts(shape) ? 0 : static_cast<double>(shape.all.triangles()) * triangle;
+    return mesh + static_cast<double>(shape.boxes.size()) * box +
+           static_cast<double>(shape.spheres.size()) * double{costs.shape};
+  }
+
+  // What is drawn in parts: `triangles` of it, in groups that each cover a little of the image.
+  [[nodiscard]] double parts_cost(const OccluderShape& shape, std::size_t triangles) const {
+    constexpr double kGroup = 16;
+    const double look = static_cast<double>(shape.all.triangles()) / kGroup * double{costs.test};
+    return look + static_cast<double>(triangles) * (triangle + (double{costs.query} + 4 * tile) / kGroup);
+  }
+
   // Whether `min_area` surely leaves an object of this box.
   [[nodiscard]] bool large(const Box& box) const {
     if (view.min_area == 0) return true;
@@ -116,35 +137,39 @@ struct OccluderPicks::Sight {
   const WorldState& world;
   const CullView& view;
   const CullCosts& costs;
+  double triangle, tile;  // what a triangle and 8 × 8 pixels of the view cost to draw
   Projector projector;
   Frustum frustum;
   float image;  // px²
   Box near;     // around the part of the near plane that the image shows
 };
 
-double OccluderPicks::begin_cost(const CullView& view, const CullCosts& costs) noexcept {
-  const auto tiles = [](std::uint32_t pixels) { return std::uint64_t{pixels + 7} / 8; };
+double OccluderPicks::begin_cost(const CullView& view, const OcclusionOptions& options,
+                                 const CullCosts& costs) noexcept {
+  const std::uint32_t side = 8 * options.scale;
+  const auto tiles = [&](std::uint32_t pixels) { return std::uint64_t{pixels + side - 1} / side; };
   const std::uint64_t all = tiles(view.view.view.width) * tiles(view.view.view.height);
   return static_cast<double>(all) * double{costs.tile};
 }
 
 bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
-                         const CullCosts& costs, double most, Purse& purse) {
+                         const OcclusionOptions& options, const CullCosts& costs, double most, Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
   picks_.reserve(world.occluders->carriers.size()), seen_.reserve(world.occluders->carriers.size());
   picks_.clear();
-  const double begin = begin_cost(view, costs), had = purse.left();
+  const double begin = begin_cost(view, options, costs), had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
   if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
-  const Sight sight(world, view, costs);
+  const Sight sight(world, view, options, costs);
   find(sight, in_view, purse);
-  const double drawing = choose(left() - begin);
-  if (picks_.empty() || !buffer_.begin(view.view)) return false;
-  purse.pay(begin + drawing);
+  const double budget = left() - begin;
+  double spare = budget - choose(budget);
+  if (picks_.empty() || !buffer_.begin(view.view, options)) return false;
   std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
   });
-  for (const Pick& pick : picks_) draw_one(sight, world.occluders->carriers[pick.carrier]);
+  for (const Pick& pick : picks_) spare = draw_one(sight, pick, spare);
+  purse.pay(begin + budget - spare);
   return true;
 }
 
@@ -174,11 +199,13 @@ bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
   if (!(area >= kLeastArea) || !sight.sees_layers_of(brief.object)) return true;
   const Vec3& e = sight.projector.eye;
   const Vec3 to{sphere.centre.x - e.x, sphere.centre.y - e.y, sphere.centre.z - e.z};
-  const double cost =
-      shape_cost(sight.world.occluders->shapes[brief.occluder], brief.along_axes, sight.costs) +
-      double{sight.costs.tile} * double{area / kTileArea};
-  picks_.push_back({area / static_cast<float>(cost), to.x * to.x + to.y * to.y + to.z * to.z,
-                    static_cast<float>(cost), carrier});
+  const OccluderShape& shape = sight.world.occluders->shapes[brief.occluder];
+  const double whole = sight.shape_cost(shape, brief.along_axes) + sight.tile * double{area / kTileArea};
+  const bool parts = in_parts(shape);
+  const double claim = whole + (parts ? sight.parts_cost(shape, kLeastPart) : 0),
+               most = whole + (parts ? sight.parts_cost(shape, shape.all.triangles()) : 0);
+  picks_.push_back({area / static_cast<float>(claim), to.x * to.x + to.y * to.y + to.z * to.z, carrier, parts,
+                    whole, claim, most});
   return true;
 }
 
@@ -192,32 +219,50 @@ double OccluderPicks::choose(double budget) {
   picks_.resize(most);
   double cost = 0;
   std::size_t kept = 0;
-  for (const Pick& pick : picks_) {
-    if (cost + double{pick.cost} > budget) continue;  // a dear one leaves the cheaper ones their chance
-    cost += double{pick.cost};
+  for (Pick pick : picks_) {
+    if (cost + pick.claim > budget) continue;  // a dear one leaves the cheaper ones their chance
+    pick.claim = std::max(pick.claim, std::min(pick.most, kPartShare * (budget - cost)));
+    cost += pick.claim;
     picks_[kept++] = pick;
   }
   picks_.resize(kept);
   return cost;
 }
 
-void OccluderPicks::draw_one(const Sight& sight, const Carrier& carrier) {
+double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spare) {
+  const Carrier& carrier = sight.world.occluders->carriers[pick.carrier];
   const WorldBox stored = stored_box(sight.world, carrier.object);
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
   const bool here = stands_in(carrier.bounds, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
-  if (!here || !sight.large(box)) return;
+  if (!here || !sight.large(box)) return spare;
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
   const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
   // What lies inside an object would still show a front to a pixel that looks from inside it.
   const bool cut = sight.cuts(box);
-  const OccluderMesh& mesh = cut ? shape.own : shape.all;
-  // What is refused is not drawn, and hides nothing.
-  if (mesh.triangles() > 0) static_cast<void>(buffer_.draw_mesh(mesh, transform));
-  if (cut) return;
+  const OccluderMesh& mesh = cut ? shape.shown() : shape.all;
+  spare = draw_triangles(sight, mesh, transform, pick, spare);
+  if (cut) return spare;
   if (!shape.boxes.empty()) draw_boxes(shape, carrier.placement);
   if (shape.turned.triangles() > 0 && boxes_.empty())
     static_cast<void>(buffer_.draw_mesh(shape.turned, transform));
   draw_spheres(shape, transform);
+  return spare;
+}
+
+// A large mesh for what was put by for it and the spare, of which it leaves some.
+double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mesh, const Mat4& transform,
+                                     const Pick& pick, double spare) {
+  if (mesh.triangles() == 0) return spare;
+  if (!pick.parts) {
+    // What is refused is not drawn, and hides nothing.
+    static_cast<void>(buffer_.draw_mesh(mesh, transform));
+    return spare;
+  }
+  occlusion::MeshBudget budget{double{sight.costs.test}, double{sight.costs.query}, sight.triangle,
+                               sight.tile, pick.claim - pick.whole + spare};
+  occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh),
+                       geometry::row_transform(transform), &budget);
+  return budget.left;
 }
 
 // Leaves boxes_ empty where the placement turns boxes.

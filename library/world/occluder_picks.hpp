@@ -19,9 +19,10 @@ public:
   /// Draws what pays of the occluders in view, for no more than `most` out of the purse. `in_view` are the
   /// objects that the view sees by frustum. False where nothing was drawn.
   bool draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
-            const CullCosts& costs, double most, Purse& purse);
+            const OcclusionOptions& options, const CullCosts& costs, double most, Purse& purse);
   /// What beginning a view's buffer costs.
-  static double begin_cost(const CullView& view, const CullCosts& costs) noexcept;
+  static double begin_cost(const CullView& view, const OcclusionOptions& options,
+                           const CullCosts& costs) noexcept;
   [[nodiscard]] const OcclusionBuffer& buffer() const noexcept { return buffer_; }
 
   /// Told of what was seen in the end: begin, then each object that carries an occluder.
@@ -30,15 +31,21 @@ public:
 
 private:
   struct Pick {
-    float score, distance, cost;
+    float score, distance;
     std::uint32_t carrier;
+    bool parts;    // its mesh is drawn in parts
+    double whole;  // what all else of it costs
+    double claim;  // what is put by for it; of parts first the least that is of use
+    double most;   // that drawing all of it costs
   };
   struct Sight;
 
   void find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse);
   bool look_at(const Sight& sight, std::uint32_t carrier);
   double choose(double budget);
-  void draw_one(const Sight& sight, const Carrier& carrier);
+  double draw_one(const Sight& sight, const Pick& pick, double spare);
+  double draw_triangles(const Sight& sight, const OccluderMesh& mesh, const Mat4& transform, const Pick& pick,
+                        double spare);
   void draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement);
   void draw_spheres(const OccluderShape& shape, const Mat4& transform);
 

@@ -99,7 +99,8 @@ Status make_meshes(const Occluder& occluder, OccluderShape& shape) {
   auto all = OccluderMesh::make(occluder.positions, indices, sides);
   if (!all) return all.error();
   shape.all = *std::move(all);
-  if (solid < indices.size()) {
+  shape.some_inside = solid > 0;
+  if (shape.some_inside && solid < indices.size()) {
     const bool each = sides.size() == indices.size() / 3;
     auto own = OccluderMesh::make(occluder.positions, indices.subspan(solid),
                                   each ? sides.subspan(solid / 3) : sides);

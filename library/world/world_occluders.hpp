@@ -18,13 +18,17 @@ inline constexpr std::uint32_t kNothing = 0xffffffffu;
 /// An occluder that objects share, in its own space.
 struct OccluderShape {
   OccluderMesh all;        ///< its triangles
-  OccluderMesh own;        ///< those of them that do not lie inside, for objects that the near plane cuts
+  OccluderMesh own;        ///< those of them that do not lie inside, where others do
   OccluderMesh turned;     ///< its boxes as triangles, for placements that do not keep them along the axes
   std::vector<Box> boxes;  ///< drawn where there are no triangles
   std::vector<Sphere> spheres;
   Box bounds;
+  bool some_inside = false;  ///< some of its triangles lie inside
   std::uint32_t carriers = 0;
   bool used = false;
+
+  /// What objects show that the near plane cuts.
+  [[nodiscard]] const OccluderMesh& shown() const noexcept { return some_inside ? own : all; }
 };
 
 /// What picking reads of a carrier: a sphere around its occluder, in metres.

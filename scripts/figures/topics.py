@@ -157,10 +157,20 @@ def scenes(quick):
 
 
 def automatic(quick):
-    """Occlusion in one call: 100,000 objects of a city at street level, culled on one thread."""
+    """Occlusion in one call: 100,000 objects of a city at street level, culled on one thread; for every place of the
+    image, too; and frames along walks through levels."""
     city = compare("world:city?objects=100000", "vfc-vc,masked,world", "city-100000", size="1280x720", path="near",
                    frames=4 if quick else 12)
-    return compare_with(city, lambda name: "city-100000/vfc-vc/cull" if name.endswith("/cull") else None)
+    for row in [row for row in city if row.case == "world/cull"]:
+        city.append(Row("city-100000-kept", "world", "objects", row.kept, repetitions=row.repetitions))
+        city.append(Row("city-100000-kept", "seen", "objects", row.kept - row.excess, repetitions=row.repetitions))
+    rows = compare_with(city, lambda name: "city-100000/vfc-vc/cull" if name.endswith("/cull") else
+                        "city-100000-kept/seen" if name == "city-100000-kept/world" else None)
+    for level in ("oasago2", "czest2ctf", "ctf_inyard"):
+        walk = compare(LEVEL.format(level), "vfc-vc,masked,world,world?coverage=area", level, size="320x180", path="walk",
+                       device="any", limit=True, frames=6 if quick else 16)
+        rows += compare_with(walk, lambda name, level=level: f"{level}/masked/frame" if name.endswith("/frame") else None)
+    return rows
 
 
 def surfaces(quick):

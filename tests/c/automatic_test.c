@@ -20,7 +20,13 @@ static size_t left(sightline_culler* culler, const sightline_world* world) {
   EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
   EXPECT(result.frustum_cost > 0 && result.cost <= 1.05 * result.frustum_cost);
   EXPECT(result.reserved[0] == 0 && result.reserved[1] == 0);
-  return result.count;
+  const size_t count = result.count;
+  options.coverage = SIGHTLINE_COVERAGE_AREA, options.scale = 2;
+  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
+  EXPECT(result.count >= count);
+  options.scale = 3;
+  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_BAD_ARGUMENT);
+  return count;
 }
 
 /* A row of boxes, of which the first is a wall. */

@@ -143,11 +143,12 @@ static void refuse_options(sightline_culler* culler, const sightline_world* worl
   const sightline_view ahead = view_ahead();
   const sightline_cull_view view = sightline_cull_view_of(&ahead);
   const sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
-  sightline_cull_options wrong[5];
-  for (int i = 0; i < 5; ++i) wrong[i] = sightline_cull_options_default();
+  sightline_cull_options wrong[6];
+  for (int i = 0; i < 6; ++i) wrong[i] = sightline_cull_options_default();
   wrong[0].struct_size = 0, wrong[1].struct_size += 1;
   wrong[2].values_for_ids = 2, wrong[3].jobs.threads = 65, wrong[4].jobs.reserved = 1;
-  for (int i = 0; i < 5; ++i) {
+  wrong[5].coverage = SIGHTLINE_COVERAGE_AREA + 1;
+  for (int i = 0; i < 6; ++i) {
     sightline_cull_result r;
     EXPECT_REFUSED(sightline_cull(culler, world, &view, 1, &wrong[i], &output, &r), SIGHTLINE_BAD_ARGUMENT,
                    SIGHTLINE_NO_INDEX);

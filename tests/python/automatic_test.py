@@ -33,6 +33,8 @@ class Automatic(Case):
         for name in names:
             world.set_occluders(handles[:1], name)
             self.assertEqual(left(culler, world), 1)
+            some = culler.cull(world, AHEAD, occlusion="automatic", object_cost=100000, coverage="area", scale=2)
+            self.assertEqual(len(some), 1)
         world.set_occluding(handles[:1], np.array([False]))
         self.assertEqual(left(culler, world), 201)
         world.set_occluders(handles[:1], sightline.NO_OCCLUDER)
@@ -65,6 +67,8 @@ class Automatic(Case):
         world, handles = walled()
         culler = sightline.Culler()
         self.bad("'none' or 'automatic'", culler.cull, world, AHEAD, occlusion="on")
+        self.bad("'centres' or 'area'", culler.cull, world, AHEAD, occlusion="automatic", coverage="all")
+        self.bad("the buffer's scale", culler.cull, world, AHEAD, occlusion="automatic", scale=3)
         self.bad("a cost", culler.cull, world, AHEAD, occlusion="automatic", object_cost=-1)
         self.bad("frame's time", culler.report_frame_time, -1)
         self.refused("bad_argument", "no occluder of this name", world.remove_occluder, 3, index=3)

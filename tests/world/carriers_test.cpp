@@ -210,6 +210,10 @@ TEST(Carriers, RefusesWhatItCannotTake) {
   std::vector<ObjectId> ids(cull_capacity(world));
   CullOptions options = automatic(-1);
   EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
+  options = kAutomatic, options.buffer.scale = 3;
+  EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
+  options = kAutomatic, options.buffer.coverage = static_cast<Coverage>(2);
+  EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
   options = kAutomatic, options.costs.query = INFINITY;
   EXPECT_EQ(culler.cull(world, {&wall.view, 1}, options, {ids}).error().code(), StatusCode::bad_argument);
   OcclusionBuffer buffer;

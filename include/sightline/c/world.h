@@ -206,6 +206,8 @@ typedef struct sightline_cull_options {
   uint32_t occlusion;         /**< SIGHTLINE_OCCLUSION_... */
   uint32_t reserved;          /**< 0 */
   sightline_cull_costs costs; /**< finite, not negative; read by automatic occlusion */
+  uint32_t coverage;          /**< SIGHTLINE_COVERAGE_...: which places automatic occlusion answers for */
+  uint32_t scale;             /**< pixels of the view along a side of one of its buffer's: 1, 2 or 4 */
 } sightline_cull_options;
 
 /** Ids, by the calling thread, without occlusion. */
@@ -217,6 +219,7 @@ static inline sightline_cull_options sightline_cull_options_default(void) {
   options.jobs.run = NULL, options.jobs.user = NULL, options.jobs.threads = 0, options.jobs.reserved = 0;
   options.occlusion = SIGHTLINE_OCCLUSION_NONE, options.reserved = 0;
   options.costs = costs;
+  options.coverage = SIGHTLINE_COVERAGE_CENTRES, options.scale = 1;
   return options;
 }
 

@@ -4,13 +4,13 @@
 // sphere. Where a scene is one built thing of few triangles, like a game level, all of it occludes, and what
 // its box leaves of an object is tested triangle by triangle.
 #include <array>
-#include <string_view>
 #include <vector>
 
 #include <sightline/world.hpp>
 
 #include "library/geometry/mutant.h"
 #include "workbench/methods/methods.hpp"
+#include "workbench/methods/raster_occlusion/buffer_parameters.hpp"
 #include "workbench/methods/raster_occlusion/scene_occluders.hpp"
 #include "workbench/submission/draw_list.hpp"
 
@@ -29,21 +29,9 @@ constexpr std::array kMaskedParameters{
                   "what occludes: opaque surfaces from the sides that are drawn, or everything, cut-outs "
                   "and both sides, as many engines have it: loses what is seen through and past them",
                   "opaque", 0, 0, false, "opaque|all"},
-    ParameterInfo{"coverage",
-                  "what is answered for: pixel centres, or any place on the image, for multisampling and "
-                  "jitter",
-                  "centres", 0, 0, false, "centres|area"},
-    ParameterInfo{"resolution", "of the depth buffer; coarser has fewer tiles and hides less", "full", 0, 0,
-                  false, "full|half|quarter"},
+    kCoverageParameter,
+    kResolutionParameter,
 };
-
-OcclusionOptions buffer_from(const Parameters& parameters) {
-  const std::string_view resolution = parameters.word("resolution");
-  return {parameters.word("coverage") == "area" ? Coverage::area : Coverage::centres,
-          resolution == "full"   ? 1u
-          : resolution == "half" ? 2u
-                                 : 4u};
-}
 
 OccluderChoice choice_from(const Parameters& parameters) {
   return {.most = parameters.count("occluders"),

@@ -9,6 +9,7 @@
 #include <sightline/world.hpp>
 
 #include "workbench/methods/methods.hpp"
+#include "workbench/methods/raster_occlusion/buffer_parameters.hpp"
 #include "workbench/methods/raster_occlusion/occluder_proxy.hpp"
 #include "workbench/submission/draw_list.hpp"
 
@@ -23,6 +24,8 @@ constexpr std::array kWorldParameters{
     ParameterInfo{"object", "ns, what drawing an object costs; 0: learned from the frames' times", "10000", 0,
                   1e9},
     ParameterInfo{"whole", "most triangles of a scene that occludes as one", "150000", 0, 1e9, true},
+    kCoverageParameter,
+    kResolutionParameter,
 };
 
 class WorldMethod final : public CpuMethod {
@@ -30,6 +33,7 @@ public:
   WorldMethod(const Scene& scene, const Parameters& parameters)
       : CpuMethod(scene), draw_list_(scene), handles_(scene.size()), moved_(scene.size(), 0) {
     options_.occlusion = parameters.word("occlusion") == "automatic" ? Occlusion::automatic : Occlusion::none;
+    options_.buffer = buffer_from(parameters);
     options_.costs.object = static_cast<float>(parameters.number("object"));
     usable_ = static_cast<bool>(world_.insert(scene.bounds.view(), handles_));
     if (!usable_ || options_.occlusion == Occlusion::none) return;
