@@ -4,6 +4,6 @@ export { Block, bytes, doubles, floats, integers, type Input, type Numbers } fro
 export type { BoxArray, Boxes } from './boxes.js';
 export { clipZeroToOne, type View } from './views.js';
 export {
-  allLayers, Culler, cullBoxes, cullSpheres, idOf, World, type Columns, type Culled, type CullOptions, type CullView,
+  allLayers, Culler, cullBoxes, cullSpheres, idOf, type Columns, type CullCosts, type Culled, type CullOptions, type CullView,
   type Handle, type Handles,
 } from './world.js';

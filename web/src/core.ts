@@ -4,3 +4,4 @@ import { inflate, offer } from './runtime.js';
 
 offer(1, () => inflate(bytes));
 export * from './core-api.js';
+export { World } from './world.js';

@@ -17,7 +17,7 @@ export class OccluderMesh extends Owned {
         refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
       const [at, index] = call.place(positions, indices);
       const made = need('mesh_create')(at!, positions.length / 3, index!, indices.length, sides === 'front' ? 1 : 0);
-      if (made === 0) check(bad_mesh);
+      if (made === 0) check(wasm().last_code!());
       return made;
     }));
   }
@@ -27,7 +27,16 @@ export class OccluderMesh extends Owned {
   }
 }
 
-const bad_mesh = 7; // the code where there is no mesh; the library's sentence says why
+const coverages = ['centres', 'area'] as const;
+/** How fine and for which places an OcclusionBuffer answers. */
+export interface OcclusionOptions {
+  /** `centres` of pixels, where a canvas without antialiasing takes its one sample; or `area`, any place on the image:
+   * antialiasing, jitter, upscaling, another size of canvas. That hides a little less, and meshes take two to three times as
+   * long. */
+  coverage?: (typeof coverages)[number];
+  /** Pixels of the view along a side of one of the buffer's: 1, 2 or 4. */
+  scale?: number;
+}
 
 /** One view's depth of occluders: begin it with a view, draw occluders, ask. */
 export class OcclusionBuffer extends Owned {
@@ -35,11 +44,13 @@ export class OcclusionBuffer extends Owned {
     super('OcclusionBuffer', 'occlusion_create', 'occlusion_destroy');
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
-  begin(view: View): void {
+  begin(view: View, { coverage = 'centres', scale = 1 }: OcclusionOptions = {}): void {
+    const places = coverages.indexOf(coverage);
+    if (places < 0) refuse(`begin: a coverage of ${coverage}, expected ${coverages.join(', ')}`);
     calling((call) => {
       const at = call.room(viewBytes);
       writeView('begin', view, at);
-      check(wasm().occlusion_begin!(this.pointer, at));
+      check(wasm().occlusion_begin!(this.pointer, at, places, Number.isInteger(scale) ? scale : 0));
     });
   }
   /** Draws boxes of which every point inside is solid. */
@@ -67,7 +78,7 @@ export class OcclusionBuffer extends Owned {
       check(wasm().occlusion_draw_mesh!(this.pointer, mesh.pointer, at));
     });
   }
-  /** Whether some pixel centre may see each box: 1 or 0, where 0 is certain. */
+  /** Whether some pixel centre, or place on the image, may see each box: 1 or 0, where 0 is certain. */
   maySee(boxes: Boxes, out: Block<Uint8Array>): void {
     calling((call) => {
       const { count, args } = placeBoxes('maySee', call, boxes);

@@ -74,7 +74,7 @@ export class WorkerWorld {
   setValues(handles: Float64Array, values: Uint32Array): Promise<void> {
     return this.#post('setValues', handles, values);
   }
-  cull(views: PostedView | readonly PostedView[], options: CullOptions = {}): Promise<PostedCull> {
+  cull(views: PostedView | readonly PostedView[], options: Pick<CullOptions, 'valuesForIds'> = {}): Promise<PostedCull> {
     return this.#post('cull', views, options);
   }
   /** Ends the thread; calls that still wait are refused. */

@@ -22,7 +22,8 @@ export interface Columns {
 /** Handles for a call: of many objects, or of one. */
 export type Handles = Input<Float64Array> | Handle;
 
-const list = (handles: Handles): Input<Float64Array> => {
+/** @internal Of one handle, too. */
+export const handleList = (handles: Handles): Input<Float64Array> => {
   const all = typeof handles === 'number' ? Float64Array.of(handles) : handles;
   expectKind('handles', all, Float64Array);
   return all;
@@ -54,7 +55,7 @@ export class World extends Owned {
   move(handles: Handles, boxes: Boxes): void {
     calling((call) => {
       const { data, count, args } = readBoxes('move', boxes);
-      const named = list(handles);
+      const named = handleList(handles);
       expectLength('move: handles', named, count);
       const [at, numbers] = call.place(data, named);
       check(wasm().world_move!(this.pointer, numbers!, ...args(at!)));
@@ -63,7 +64,7 @@ export class World extends Owned {
   /** Takes objects out; their handles are stale from then on. */
   remove(handles: Handles): void {
     calling((call) => {
-      const named = list(handles);
+      const named = handleList(handles);
       const [numbers] = call.place(named);
       check(wasm().world_remove!(this.pointer, numbers!, named.length));
     });
@@ -115,7 +116,7 @@ export class World extends Owned {
 
   #setColumn(name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
     calling((call) => {
-      const named = list(handles);
+      const named = handleList(handles);
       expectKind(what, column, Uint32Array);
       expectLength(what, column, named.length);
       const [numbers, at] = call.place(named, column);
@@ -134,10 +135,36 @@ export interface CullView extends View {
   occlusion?: { readonly pointer: number };
 }
 
+/** What counted work costs, in any one unit; the library's defaults are nanoseconds. Automatic occlusion weighs by them what it
+ * does against what it saves. */
+export interface CullCosts {
+  /** An object that is left, for who draws it; 0: what reportFrameTime() taught, or 1000. */
+  object?: number;
+  /** A region, group or chunk looked at; an object tested against planes; one looked at for what it carries. */
+  node?: number;
+  test?: number;
+  candidate?: number;
+  /** 8 x 8 pixels emptied or drawn; a box or a sphere drawn; a triangle drawn. */
+  tile?: number;
+  shape?: number;
+  triangle?: number;
+  /** A box asked; a triangle asked. */
+  query?: number;
+  occludee?: number;
+}
+const defaultCosts: Required<CullCosts> = { // as <sightline/world.hpp> has them, in its order
+  object: 0, node: 10, test: 1, candidate: 8, tile: 2, shape: 30, triangle: 15, query: 12, occludee: 10 };
+const costBytes = 36;
+
 /** How a call culls. */
 export interface CullOptions {
   /** Writes the objects' values instead of their ids. */
   valuesForIds?: boolean;
+  /** `automatic`: draws the occluders that the world's objects carry, as far as that pays, and drops what lies behind them;
+   * no view brings a buffer. */
+  occlusion?: 'none' | 'automatic';
+  /** Read by automatic occlusion. */
+  costs?: CullCosts;
 }
 
 /** What a cull wrote. The arrays lie in the module's memory, until this culler's next call; copy what has to last. */
@@ -150,6 +177,10 @@ export interface Culled {
   readonly tested: number;
   readonly nodesVisited: number;
   readonly culledOcclusion: number;
+  /** With automatic occlusion, in the unit of the costs: the work of this cull and of drawing what it left; and that of
+   * culling by frustum alone. */
+  readonly cost: number;
+  readonly frustumCost: number;
 }
 
 /** Culls worlds, and remembers from frame to frame what helps the next. */
@@ -157,7 +188,8 @@ export class Culler extends Owned {
   #ids: Block<Uint32Array> | undefined;
   #masks: Block<Uint8Array> | undefined;
   readonly #views = bytes(8 * cullViewBytes);
-  readonly #result = doubles(4);
+  readonly #costs = bytes(costBytes);
+  readonly #result = doubles(6);
 
   constructor() {
     super('Culler', 'culler_create', 'culler_destroy');
@@ -167,28 +199,35 @@ export class Culler extends Owned {
    * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
   cull(world: World, views: CullView | readonly CullView[], options: CullOptions = {}): Culled {
     const all = Array.isArray(views) ? (views as readonly CullView[]) : [views as CullView];
-    const count = this.#run(world, all, options.valuesForIds ?? false);
-    const [, tested, nodesVisited, culledOcclusion] = this.#result.array;
+    const count = this.#run(world, all, options);
+    const [, tested, nodesVisited, culledOcclusion, cost, frustumCost] = this.#result.array;
     return {
       ids: this.#ids!.array.subarray(0, count),
       masks: this.#masks!.array.subarray(0, count),
       tested: tested!, nodesVisited: nodesVisited!, culledOcclusion: culledOcclusion!,
+      cost: cost!, frustumCost: frustumCost!,
     };
   }
   /** @internal The same with values for ids, each below `limit` and no other object's, in ascending order. */
   cullSorted(world: World, views: readonly CullView[], limit: number): { count: number; ids: number; masks: number } {
-    const count = this.#run(world, views, true);
+    const count = this.#run(world, views, { valuesForIds: true });
     wasm().sort_ids!(this.pointer, this.#ids!.pointer, this.#masks!.pointer, count, limit);
     return { count, ids: this.#ids!.pointer, masks: this.#masks!.pointer };
   }
 
+  /** Teaches what an object costs, where `costs.object` is 0: how many nanoseconds the frame took that drew what the last cull
+   * left. It is learned once frames differ in how many they draw. */
+  reportFrameTime(nanoseconds: number): void {
+    check(wasm().report_frame_time!(this.pointer, nanoseconds));
+  }
+
   override dispose(): void {
     if (this.disposed) return;
-    for (const block of [this.#ids, this.#masks, this.#views, this.#result]) block?.dispose();
+    for (const block of [this.#ids, this.#masks, this.#views, this.#costs, this.#result]) block?.dispose();
     super.dispose();
   }
 
-  #run(world: World, views: readonly CullView[], values: boolean): number {
+  #run(world: World, views: readonly CullView[], { valuesForIds, occlusion, costs }: CullOptions): number {
     const pointer = this.pointer;
     if (!(world instanceof World)) refuse('cull: expected a World');
     if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
@@ -199,9 +238,19 @@ export class Culler extends Owned {
       this.#masks = bytes(this.#ids.length);
     }
     views.forEach((view, v) => this.#write(view, this.#views.pointer + v * cullViewBytes));
-    check(wasm().cull!(pointer, world.pointer, this.#views.pointer, views.length, values ? 1 : 0, this.#ids.pointer,
-      this.#masks!.pointer, this.#ids.length, this.#result.pointer));
+    check(wasm().cull!(pointer, world.pointer, this.#views.pointer, views.length, valuesForIds ? 1 : 0,
+      this.#placeCosts(occlusion, costs), this.#ids.pointer, this.#masks!.pointer, this.#ids.length, this.#result.pointer));
     return this.#result.array[0]!;
+  }
+
+  // 0 where occlusion is not automatic.
+  #placeCosts(occlusion: CullOptions['occlusion'] = 'none', costs: CullCosts = {}): number {
+    if (occlusion === 'none') return 0;
+    if (occlusion !== 'automatic') refuse(`cull: an occlusion of ${occlusion as string}, expected none or automatic`);
+    const all = { ...defaultCosts, ...costs }, names = Object.keys(all);
+    if (names.length > costBytes / 4) refuse(`cull: a cost named ${names[costBytes / 4]}, expected one of CullCosts`);
+    new Float32Array(buffer(), this.#costs.pointer, costBytes / 4).set(Object.values(all));
+    return this.#costs.pointer;
   }
 
   #write(view: CullView, at: number): void {

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { test } from 'node:test';
 import {
-  BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, noObject,
+  BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, noObject, noOccluder,
   OccluderMesh, OcclusionBuffer, ready, SightlineError, supported, World } from 'sightline-culling';
 import { WorkerWorld } from 'sightline-culling/worker';
 
@@ -122,6 +122,8 @@ test('1,000 rounds of making and disposing leak nothing', async () => {
     buffer.begin(view), buffer.drawBoxes(boxes);
     bvh.build(boxes);
     const mesh = new OccluderMesh(Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), Uint32Array.of(0, 1, 2));
+    world.setOccluders(world.handle(0), world.addOccluder({ boxes: Float32Array.of(-1, -1, -1, 1, 1, 1) }));
+    culler.cull(world, view, { occlusion: 'automatic' });
     assert.throws(() => world.insert(Float32Array.of(1, 0, 0, 0, 0, 0)));
     for (const thing of [world, culler, buffer, bvh, mesh]) thing.dispose();
   };
@@ -135,7 +137,7 @@ test('1,000 rounds of making and disposing leak nothing', async () => {
 // Four million rounds: in `test.sh --full`.
 test('a slot whose generations are spent is retired', { skip: !process.env.SIGHTLINE_FULL }, async () => {
   await ready;
-  const world = new World(), culler = new Culler();
+  const world = new World(), culler = new Culler(), solid = world.addOccluder({ boxes: Float32Array.of(0, 0, 0, 1, 1, 1) });
   const box = floats(6);
   box.array.set(cube(0, 0, -5));
   let handle = world.insert(box)[0];
@@ -143,7 +145,10 @@ test('a slot whose generations are spent is retired', { skip: !process.env.SIGHT
   for (let i = 0; i < 2 ** 22 - 1; ++i) world.remove(handle), (handle = world.insert(box)[0]);
   assert.equal(idOf(handle), idOf(first));
   assert.equal(Math.floor(handle / 2 ** 31), 2 ** 22 - 1);
+  world.setOccluders(handle, solid);
   world.remove(handle);
+  world.removeOccluder(solid); // nobody carries it any more
+  assert.throws(() => world.setTriangles(handle, new Float32Array(9)), refusal('stale_handle', /./));
   assert.equal(world.size, 0);
   assert.equal(world.contains(handle), false);
   assert.equal(world.handle(idOf(handle)), undefined);
@@ -173,6 +178,100 @@ test('what is hidden is culled, what shows is not', async () => {
   const seen = bytes(1);
   buffer.maySee(Float32Array.from(cube(0, 0, -20, 0.5)), seen);
   assert.equal(seen.array[0], 0);
+});
+
+test('a buffer answers for pixel centres or for any place on the image', async () => {
+  await ready;
+  const buffer = new OcclusionBuffer(), seen = bytes(1);
+  // Behind a wall, but for a strip narrower than half a pixel, between two centres.
+  const wall = Float32Array.of(-20, -20, -11, 0.1, 20, -10), box = Float32Array.of(-1, -1, -21, 0.25, 1, -20);
+  const answers = [{}, { coverage: 'centres' }, { coverage: 'area' }, { coverage: 'area', scale: 2 }].map((options) => {
+    buffer.begin(view, options);
+    buffer.drawBoxes(wall);
+    buffer.maySee(box, seen);
+    return seen.array[0];
+  });
+  assert.deepEqual(answers, [0, 0, 1, 1]);
+  assert.throws(() => buffer.begin(view, { coverage: 'samples' }), refusal('bad_argument', /samples, expected centres, area/));
+  for (const scale of [0, 3, 1.5]) assert.throws(() => buffer.begin(view, { scale }), refusal('bad_argument', /./));
+});
+
+test('what objects carry hides what is behind them, where that pays', async () => {
+  await ready;
+  const world = new World(), culler = new Culler(), options = { occlusion: 'automatic', costs: { object: 1e6 } };
+  const behind = Array.from({ length: 400 }, (_, i) => cube((i % 20) - 10, Math.floor(i / 20) - 10, -40, 0.2)).flat();
+  const wall = world.insert(Float32Array.from(cube(0, 0, -20, 18)))[0];
+  world.insert(Float32Array.from(behind));
+  const seen = () => {
+    let last;
+    for (let frame = 0; frame < 40; ++frame) last = culler.cull(world, view, options);
+    return last;
+  };
+  assert.equal(seen().ids.length, 401);
+  const solid = world.addOccluder({ boxes: Float32Array.of(-18, -18, -18, 18, 18, 18) });
+  world.setOccluders(wall, solid, Float32Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -20, 1));
+  const culled = seen();
+  assert.deepEqual([...culled.ids], [0]);
+  assert.equal(culled.culledOcclusion, 400);
+  assert.ok(culled.cost < 0.1 * culled.frustumCost);
+  world.setOccluding(wall, false);
+  assert.equal(seen().ids.length, 401);
+  world.setOccluding(wall, Uint8Array.of(1));
+  assert.equal(seen().ids.length, 1);
+  world.setOccluders(wall, noOccluder);
+  assert.equal(seen().ids.length, 401);
+  world.removeOccluder(solid);
+  assert.equal(world.addOccluder({ spheres: Float32Array.of(0, 0, 0, 1) }), solid);
+});
+
+test('an object is asked by the triangles that it shows', async () => {
+  await ready;
+  const world = new World(), culler = new Culler(), options = { occlusion: 'automatic', costs: { object: 1e6 } };
+  const handles = world.insert(Float32Array.from([...cube(0, 0, -20, 8), ...cube(0, 0, -40, 30)]));
+  world.setOccluders(handles[0], world.addOccluder({ boxes: Float32Array.of(-8, -8, -28, 8, 8, -12) }));
+  const seen = () => Array.from({ length: 40 }, () => culler.cull(world, view, options).ids.length).at(-1);
+  assert.equal(seen(), 2);
+  world.setTriangles(handles[1], Float32Array.of(-3, -3, -40, 3, -3, -40, 0, 3, -40));
+  assert.equal(seen(), 1);
+  world.setTriangles(handles[1], new Float32Array(0));
+  assert.equal(seen(), 2);
+});
+
+test('occluders that are not sound are refused and change nothing', async () => {
+  await ready;
+  const world = new World(), culler = new Culler(), handle = world.insert(Float32Array.from(cube(0, 0, -5)))[0];
+  const triangle = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), indices: Uint32Array.of(0, 1, 2) };
+  const add = (occluder) => () => world.addOccluder(occluder);
+  assert.throws(add({ ...triangle, indices: Uint32Array.of(0, 1, 3) }), refusal('bad_mesh', /index 2/));
+  assert.throws(add({ ...triangle, positions: [0, 0, 0] }), refusal('bad_argument', /positions: expected a Float32Array/));
+  assert.throws(add({ ...triangle, sides: Uint8Array.of(2) }), refusal('bad_argument', /neither 0 .both. nor 1 .front./));
+  assert.throws(add({ ...triangle, solidTriangles: 2 }), refusal('bad_argument', /more solid triangles/));
+  assert.throws(add({ ...triangle, solidTriangles: 0.5 }), refusal('bad_argument', /0\.5 solid triangles/));
+  assert.throws(add({ boxes: new Float32Array(7) }), refusal('bad_argument', /7 numbers of boxes, expected a multiple of 6/));
+  assert.throws(add({ boxes: Float32Array.of(0, 0, 0, 1, 1, NaN) }), refusal('bad_box', /index 0/));
+  assert.throws(add({ spheres: Float32Array.of(0, 0, 0, -1) }), refusal('bad_box', /index 0/));
+  const solid = world.addOccluder(triangle);
+  assert.throws(() => world.setOccluders(handle, solid + 1), refusal('bad_argument', /names no occluder/));
+  assert.throws(() => world.setOccluders(handle, -1), refusal('bad_argument', /expected what addOccluder returned/));
+  assert.throws(() => world.setOccluders(handle, solid, new Float32Array(16)), refusal('bad_argument', /not affine/));
+  assert.throws(() => world.setOccluders(handle, solid, new Float32Array(15)), refusal('bad_argument', /15 elements, expected 16/));
+  assert.throws(() => world.setOccluders(handle, solid, undefined, [0, NaN, 0]), refusal('bad_argument', /out of reach/));
+  assert.throws(() => world.setOccluders(handle + 2 ** 31, solid), refusal('stale_handle', /./));
+  world.setOccluders(handle, solid);
+  assert.throws(() => world.removeOccluder(solid), refusal('bad_argument', /still carries/));
+  assert.throws(() => world.removeOccluder(solid + 1), refusal('bad_argument', /no occluder of this name/));
+  assert.throws(() => world.setOccluding(handle, Uint8Array.of(2)), refusal('bad_argument', /neither 0 nor 1/));
+  assert.throws(() => world.setTriangles(handle, new Float32Array(6)), refusal('bad_mesh', /three points/));
+  assert.throws(() => world.setTriangles(handle, new Float32Array(5)), refusal('bad_argument', /5 numbers of corners/));
+  const options = { occlusion: 'automatic' };
+  assert.throws(() => culler.cull(world, view, { occlusion: 'some' }), refusal('bad_argument', /expected none or automatic/));
+  assert.throws(() => culler.cull(world, view, { ...options, costs: { node: NaN } }), refusal('bad_argument', /cost is negative/));
+  assert.throws(() => culler.cull(world, view, { ...options, costs: { cube: 1 } }), refusal('bad_argument', /named cube/));
+  const buffer = new OcclusionBuffer();
+  buffer.begin(view);
+  assert.throws(() => culler.cull(world, { ...view, occlusion: buffer }, options), refusal('bad_argument', /brings a buffer/));
+  assert.throws(() => culler.reportFrameTime(-1), refusal('bad_argument', /time is negative/));
+  assert.equal(culler.cull(world, view, options).ids.length, 1);
 });
 
 test('rays meet the nearest box', async () => {

@@ -97,14 +97,16 @@ void require(const Status& status) {
   if (!status) std::fprintf(stderr, "%s\n", status.message()), std::exit(1);
 }
 
-void write_cull(Life& life, Writer& out, std::span<const CullView> views) {
+CullResult write_cull(Life& life, Writer& out, std::span<const CullView> views,
+                      const CullOptions& options = {}) {
   std::vector<std::uint32_t> ids(cull_capacity(life.world));
   std::vector<std::uint8_t> masks(ids.size());
-  const auto culled = life.culler.cull(life.world, views, {}, {ids, masks});
+  const auto culled = life.culler.cull(life.world, views, options, {ids, masks});
   require(culled.error());
   ids.resize(culled->count), masks.resize(culled->count);
   out.one(static_cast<std::uint32_t>(culled->count));
   out.all(ids), out.all(masks);
+  return *culled;
 }
 
 void write_views(Life& life, Writer& out) {
@@ -185,6 +187,70 @@ void write_change(Life& life, Writer& out) {
   life.handles.insert(life.handles.end(), handles.begin(), handles.end());
 }
 
+// A unit cube in three words: a box, triangles, and a ball inside it.
+std::vector<OccluderId> add_cubes(World& world) {
+  Occluder box, shell;
+  box.boxes = {{{0, 0, 0}, {1, 1, 1}}};
+  for (int i = 0; i < 8; ++i)
+    shell.positions.push_back(
+        {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2 & 1)});
+  shell.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                   2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+  shell.sides = {Sides::front};
+  shell.solid_triangles = 12;
+  const Sphere ball{{0.5f, 0.5f, 0.5f}, 0.5f};
+  std::vector<OccluderId> cubes;
+  for (const auto& added :
+       {world.add_occluder(box), world.add_occluder(shell), world.add_occluder({}, {&ball, 1})}) {
+    require(added.error());
+    cubes.push_back(*added);
+  }
+  return cubes;
+}
+
+Mat4 cube_to(const WorldBox& box, const WorldPoint& origin) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  Mat4 m;
+  m.m[0] = f(box.max.x - box.min.x), m.m[5] = f(box.max.y - box.min.y), m.m[10] = f(box.max.z - box.min.z);
+  m.m[12] = f(box.min.x - origin.x), m.m[13] = f(box.min.y - origin.y), m.m[14] = f(box.min.z - origin.z);
+  return m;
+}
+
+// Frames with automatic occlusion: walls that carry occluders, some of which are switched off in the third
+// frame; a box that is one triangle from the fourth frame on; a camera that goes on.
+void write_automatic(Life& life, Writer& out) {
+  const std::vector<WorldBox> walls = boxes_in(life.random, life.place, 9, life.place.reach * 0.1);
+  std::vector<Handle> handles(walls.size());
+  require(life.world.insert(walls, handles));
+  const std::vector<OccluderId> cubes = add_cubes(life.world);
+  std::vector<OccluderPlacement> placements;
+  for (std::size_t i = 0; i < walls.size(); ++i)
+    placements.push_back({cubes[i % 3], cube_to(walls[i], life.place.centre), life.place.centre});
+  require(life.world.set_occluders(handles, placements));
+  out.all(walls);
+  for (const OccluderPlacement& placement : placements) out.one(placement.transform);
+  out.one(life.place.centre);
+
+  std::vector<CullView> views(1 + life.random.below(2));
+  for (CullView& view : views) view.view = view_in(life.random, life.place);
+  out.one(static_cast<std::uint32_t>(views.size()));
+  CullOptions options;
+  options.occlusion = Occlusion::automatic;
+  options.costs.object = static_cast<float>(life.random.below(3)) * 20'000;  // 0: what frames teach
+  out.one(options.costs.object);
+  const std::vector<std::uint8_t> on{0, 1, 0, 1, 0, 1, 0, 1, 0};
+  const Vec3 triangle[] = {{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (int frame = 0; frame < 6; ++frame) {
+    for (CullView& view : views) view.view.origin.x += 0.1, out.one(view.view);
+    if (frame == 2)
+      require(life.world.set_occluding(handles, Strided<const std::uint8_t>(on.data(), on.size())));
+    if (frame == 3) require(life.world.set_triangles(handles[8], triangle, views[0].view.origin));
+    const CullResult culled = write_cull(life, out, views, options);
+    out.one(static_cast<double>(culled.culled_occlusion)), out.one(culled.cost), out.one(culled.frustum_cost);
+    require(life.culler.report_frame_time(1e5 + 3e3 * static_cast<double>(culled.count)));
+  }
+}
+
 void write_world(std::uint64_t seed, Writer& out) {
   Life life{Random(seed), {}, {}, {}, {}, {}, {}};
   const double reaches[] = {60, 400, 9000};
@@ -200,6 +266,7 @@ void write_world(std::uint64_t seed, Writer& out) {
   for (int frame = 0; frame < 3; ++frame) write_views(life, out), write_change(life, out);
   out.one(static_cast<std::uint32_t>(life.boxes.size()));
   write_flat(life, out);
+  write_automatic(life, out);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The package answers as the library does natively: the same ids and masks in the same order, over 1,000 random worlds that
-// live, with layers, contribution and occlusion; flat culling and rays, too, to the bit. test/native_worlds.cpp says how the
+// live, with layers, contribution and occlusion, drawn by hand and by the library itself; flat culling and rays, too, to the bit. test/native_worlds.cpp says how the
 // file is laid out.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -75,13 +75,42 @@ function flat(reader, { bvh, out }) {
   objects.dispose(), distances.dispose();
 }
 
+const cube = {
+  positions: Float32Array.from({ length: 24 }, (_, i) => (Math.floor(i / 3) >> i % 3) & 1),
+  indices: Uint32Array.of(0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6),
+  sides: Uint8Array.of(1), solidTriangles: 12 };
+
+// As write_automatic() there.
+function automatic(reader, world) {
+  const walls = reader.many(Float64Array, 6 * 9), transforms = reader.many(Float32Array, 16 * 9);
+  const origin = reader.many(Float64Array, 3), handles = world.insert(walls), culler = new Culler();
+  const cubes = [world.addOccluder({ boxes: Float32Array.of(0, 0, 0, 1, 1, 1) }), world.addOccluder(cube),
+    world.addOccluder({ spheres: Float32Array.of(0.5, 0.5, 0.5, 0.5) })];
+  world.setOccluders(handles, Uint32Array.from(handles, (_, i) => cubes[i % 3]), transforms, [...origin]);
+  const count = reader.integer(), costs = { object: reader.many(Float32Array, 1)[0] };
+  let hidden = 0;
+  for (let frame = 0; frame < 6; ++frame) {
+    const views = Array.from({ length: count }, () => reader.view());
+    if (frame === 2) world.setOccluding(handles, Uint8Array.of(0, 1, 0, 1, 0, 1, 0, 1, 0));
+    if (frame === 3) world.setTriangles(handles[8], Float32Array.of(-1, 0, 0, 1, 0, 0, 0, 1, 0), views[0].origin);
+    const culled = culler.cull(world, views, { occlusion: 'automatic', costs });
+    const { culledOcclusion, cost, frustumCost } = culled;
+    const drawn = expectCull(reader, culled);
+    assert.deepEqual(Float64Array.of(culledOcclusion, cost, frustumCost), reader.many(Float64Array, 3));
+    culler.reportFrameTime(1e5 + 3e3 * drawn);
+    hidden += culledOcclusion;
+  }
+  culler.dispose();
+  return hidden;
+}
+
 test('1,000 random worlds are culled as natively', async () => {
   await ready;
   const reader = new Reader(readFileSync(file));
   const worlds = reader.integer();
   assert.equal(worlds, 1000);
   const shared = { culler: new Culler(), buffer: new OcclusionBuffer(), bvh: new BoxBvh(), out: integers(4096) };
-  let occluded = 0;
+  let occluded = 0, automatically = 0;
   for (let w = 0; w < worlds; ++w) {
     const boxes = reader.many(Float64Array, 6 * reader.integer());
     const world = new World();
@@ -92,8 +121,10 @@ test('1,000 random worlds are culled as natively', async () => {
       change(reader, { world }, handles);
     }
     flat(reader, shared);
+    automatically += automatic(reader, world);
     world.dispose();
   }
   assert.equal(reader.left, 0);
   assert.ok(occluded > 1000, `occlusion culled ${occluded}`);
+  assert.ok(automatically > 1000, `automatic occlusion culled ${automatically}`);
 });

@@ -1,54 +1,16 @@
 // The module `core`: boxes that move and their cull, and flat culling.
 #include <algorithm>
 #include <cstdlib>
-#include <unordered_set>
 #include <vector>
 
 #include <sightline/frustum.hpp>
-#include <sightline/world.hpp>
 
 #include "web/wasm/glue.hpp"
+#include "web/wasm/web_world.hpp"
 
 namespace sightline::web {
 
 namespace {
-
-// A handle is one number in JavaScript: 31 bits of index below 22 of generation, which a double holds.
-constexpr double kIndices = 2147483648.0;
-constexpr std::uint32_t kLastGeneration = (1u << 22) - 1;
-
-double number_of(const Handle& handle) noexcept {
-  return handle.generation * kIndices + handle.index;
-}
-
-Handle handle_of(double number) noexcept {
-  if (!(number >= 0 && number < 9007199254740992.0)) return {};
-  const auto generation = static_cast<std::uint32_t>(number / kIndices);
-  const Handle handle{static_cast<ObjectId>(number - generation * kIndices), generation};
-  return number_of(handle) == number ? handle : Handle{};  // a fraction names nothing
-}
-
-// A world, and the ids whose generations are spent: their objects stay in it, in no layer, so that no handle
-// of theirs is ever given out again.
-struct WebWorld {
-  World world;
-  std::unordered_set<ObjectId> retired;
-  std::vector<Handle> handles;  // of the call that is running
-
-  const std::vector<Handle>& read(const double* numbers, std::size_t count) {
-    handles.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Handle handle = handle_of(numbers[i]);
-      handles[i] = retired.contains(handle.index) ? Handle{} : handle;
-    }
-    return handles;
-  }
-};
-
-struct WebCuller {
-  Culler culler;
-  std::vector<std::uint8_t> mask_of;  // by value, while sorting
-};
 
 Status last;
 
@@ -68,11 +30,14 @@ Status remove(WebWorld& web, const double* numbers, std::size_t count) {
   std::erase_if(all, is_spent);
   const std::vector<std::uint32_t> none(spent.size());
   if (const Status status = web.world.set_layers(spent, none); !status) return status;
+  if (take_occluders) take_occluders(web.world, spent);
   for (const Handle& handle : spent) web.retired.insert(handle.index);
   return web.world.remove(all);
 }
 
 }  // namespace
+
+TakeOccluders take_occluders = nullptr;
 
 std::uint32_t keep(const Status& status) noexcept {
   last = status;
@@ -89,6 +54,10 @@ SIGHTLINE_WEB(release) void release(void* memory) {
 }
 SIGHTLINE_WEB(message) const char* message() {
   return last.message();
+}
+/// Of a call that returns no code.
+SIGHTLINE_WEB(last_code) std::uint32_t last_code() {
+  return static_cast<std::uint32_t>(last.code());
 }
 /// Which element was refused, or -1.
 SIGHTLINE_WEB(refused_index) double refused_index() {
@@ -178,6 +147,7 @@ SIGHTLINE_WEB(world_value) std::uint32_t world_value(WebWorld* web, double numbe
 static_assert(sizeof(WorldView) == 160 && offsetof(WorldView, origin) == 136);
 static_assert(sizeof(CullView) == 176 && offsetof(CullView, occlusion) == 160);
 static_assert(offsetof(CullView, layers) == 164 && offsetof(CullView, min_area) == 168);
+static_assert(sizeof(CullCosts) == 36 && offsetof(CullCosts, occludee) == 32);
 
 SIGHTLINE_WEB(culler_create) WebCuller* culler_create() {
   return new WebCuller;
@@ -189,23 +159,33 @@ SIGHTLINE_WEB(cull_capacity) std::size_t capacity(const WebWorld* web) {
   return cull_capacity(web->world);
 }
 
-/// Writes count, tested, nodes visited and culled by occlusion to `result`.
+/// Writes count, tested, nodes visited, culled by occlusion and the two costs to `result`. Occlusion is
+/// automatic where there are costs.
 SIGHTLINE_WEB(cull)
 std::uint32_t cull(WebCuller* culler, const WebWorld* web, const CullView* views, std::size_t view_count,
-                   bool values_for_ids, std::uint32_t* ids, std::uint8_t* masks, std::size_t capacity,
-                   double* result) {
+                   bool values_for_ids, const CullCosts* costs, std::uint32_t* ids, std::uint8_t* masks,
+                   std::size_t capacity, double* result) {
   CullOptions options;
   options.values_for_ids = values_for_ids;
+  if (costs) options.occlusion = Occlusion::automatic, options.costs = *costs;
   CullOutput output{{ids, capacity}, {}};
   if (masks) output.masks = {masks, capacity};
   const auto culled = culler->culler.cull(web->world, {views, view_count}, options, output);
   if (culled) {
-    const double numbers[] = {static_cast<double>(culled->count), static_cast<double>(culled->tested),
+    const double numbers[] = {static_cast<double>(culled->count),
+                              static_cast<double>(culled->tested),
                               static_cast<double>(culled->nodes_visited),
-                              static_cast<double>(culled->culled_occlusion)};
+                              static_cast<double>(culled->culled_occlusion),
+                              culled->cost,
+                              culled->frustum_cost};
     std::copy(std::begin(numbers), std::end(numbers), result);
   }
   return keep(culled.error());
+}
+
+SIGHTLINE_WEB(report_frame_time)
+std::uint32_t report_frame_time(WebCuller* culler, double nanoseconds) {
+  return keep(culler->culler.report_frame_time(nanoseconds));
 }
 
 /// Puts numbers below `limit`, all different, and their masks, none 0, in ascending order.

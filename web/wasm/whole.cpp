@@ -71,8 +71,10 @@ SIGHTLINE_WEB(occlusion_create) OcclusionBuffer* occlusion_create() {
 SIGHTLINE_WEB(occlusion_destroy) void occlusion_destroy(OcclusionBuffer* buffer) {
   delete buffer;
 }
-SIGHTLINE_WEB(occlusion_begin) std::uint32_t occlusion_begin(OcclusionBuffer* buffer, const WorldView* view) {
-  return keep(buffer->begin(*view));
+SIGHTLINE_WEB(occlusion_begin)
+std::uint32_t occlusion_begin(OcclusionBuffer* buffer, const WorldView* view, std::uint32_t coverage,
+                              std::uint32_t scale) {
+  return keep(buffer->begin(*view, {static_cast<Coverage>(coverage), scale}));
 }
 SIGHTLINE_WEB(occlusion_draw_boxes)
 std::uint32_t occlusion_draw_boxes(OcclusionBuffer* buffer, Layout layout, const void* first,
