@@ -9,7 +9,8 @@ import { join } from 'node:path';
 import { InstancedMesh2 } from '@three.ez/instanced-mesh';
 import * as THREE from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
-import { BoxBvh, bytes, Culler, cullBoxes, floats, integers, OcclusionBuffer, ready, World } from 'sightline-culling';
+import { BoxBvh, bytes, Culler, cullBoxes, floats, integers, noObject, OcclusionBuffer, ready, World } from 'sightline-culling';
+import { RaySet } from 'sightline-culling/webgpu';
 import { writeRows } from './csv.mjs';
 
 const started = performance.now();
@@ -55,20 +56,37 @@ for (let i = 0; i < count; ++i) place(i);
 mesh.computeBVH({ margin: 0 });
 console.log(`InstancedMesh2: built in ${((performance.now() - buildStarted) / 1000).toFixed(1)} s`);
 
-const hundredth = count / 100, moved = new Float64Array(hundredth), to = new Float32Array(6 * hundredth);
-const matrices = Array.from({ length: hundredth }, () => new THREE.Matrix4());
-// Where a hundredth goes next: not timed.
-const goOn = () => {
-  const array = boxes.array;
-  for (let k = 0; k < hundredth; ++k) {
-    const i = k * 100, { min, max } = three[i];
-    for (const axis of [0, 3]) array[6 * i + axis] += 0.125;
-    min.x += 0.125, (max.x += 0.125);
-    moved[k] = handles[i];
-    for (let c = 0; c < 6; ++c) to[6 * k + c] = array[6 * i + c];
-    matrices[k].makeScale(max.x - min.x, max.y - min.y, max.z - min.z).setPosition((min.x + max.x) / 2, (min.y + max.y) / 2, (min.z + max.z) / 2);
+// A hundredth moves: the same things frame after frame, or others each time.
+class Movers {
+  constructor(others) {
+    this.others = others, (this.frame = 0);
+    this.indices = Uint32Array.from({ length: count / 100 }, (_, k) => 100 * k);
+    this.handles = new Float64Array(count / 100), (this.to = new Float32Array(6 * (count / 100)));
+    this.matrices = Array.from(this.indices, () => new THREE.Matrix4());
   }
-};
+  // Where they go next: not timed.
+  goOn() {
+    const array = boxes.array;
+    if (this.others) this.frame = (this.frame + 37) % 100;
+    for (let k = 0; k < this.indices.length; ++k) {
+      const i = (this.indices[k] = 100 * k + this.frame), { min, max } = three[i];
+      for (const axis of [0, 3]) array[6 * i + axis] += 0.125;
+      min.x += 0.125, (max.x += 0.125);
+      this.handles[k] = handles[i];
+      for (let c = 0; c < 6; ++c) this.to[6 * k + c] = array[6 * i + c];
+      this.matrices[k].makeScale(max.x - min.x, max.y - min.y, max.z - min.z).setPosition((min.x + max.x) / 2, (min.y + max.y) / 2, (min.z + max.z) / 2);
+    }
+  }
+  move() {
+    world.move(this.handles, this.to);
+    return culler.cull(world, view).ids.length;
+  }
+  moveTheirs() {
+    for (let k = 0; k < this.indices.length; ++k) mesh.setMatrixAt(this.indices[k], this.matrices[k]), mesh.bvh.move(this.indices[k]);
+    return theirs();
+  }
+}
+const same = new Movers(false), others = new Movers(true);
 const theirs = () => {
   let seen = 0;
   mesh.bvh.frustumCulling(projection, () => ++seen);
@@ -92,9 +110,11 @@ for (let i = 0; i < some; ++i) {
 }
 const triangles = new THREE.BufferGeometry().setAttribute('position', new THREE.Float32BufferAttribute(position, 3));
 triangles.setIndex(index);
-const meshBvh = new MeshBVH(triangles), threeRays = [];
+// The same rays for all: through the middles of 100 x 100 parts of a view's image.
+const meshBvh = new MeshBVH(triangles), threeRays = [], set = new RaySet(boxes.array.slice(0, 6 * some));
+set.aim({ ...view, eyeToClip: [1.2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1, -1, 0, 0, -0.1, 0] }, 100, 100);
 for (let r = 0; r < rays; ++r) {
-  const direction = new THREE.Vector3(((r % 100) - 49.5) / 60, (Math.floor(r / 100) - 49.5) / 100, -1);
+  const direction = new THREE.Vector3(((r % 100) - 49.5) / 60, (49.5 - Math.floor(r / 100)) / 100, -1);
   threeRays.push(new THREE.Ray(camera.position.clone(), direction.normalize()));
   rayData.array.set([...camera.position, ...direction, Infinity], 7 * r);
 }
@@ -105,7 +125,12 @@ const castTheirs = () => {
 };
 const castOurs = () => {
   bvh.cast(rayData, objects, distances);
-  return objects.array.reduce((hits, object) => hits + (object === 0xffffffff ? 0 : 1), 0);
+  return hitsIn(objects.array);
+};
+const hitsIn = (all) => {
+  let hits = 0;
+  for (let r = 0; r < rays; ++r) if (all[r] !== noObject) ++hits;
+  return hits;
 };
 
 // --- a loop by hand, in a module of its own ---
@@ -140,42 +165,49 @@ function runNative() {
   }
 }
 
-const rows = {
+// Nothing has moved yet; then a hundredth does.
+const still = {
   'World.cull': () => culler.cull(world, view).ids.length,
   cullBoxes: () => cullBoxes(view, { data: columns, layout: 'columns' }, out),
   'by-hand': byHand,
   'three-intersectsBox': three_loop,
   'InstancedMesh2-bvh': theirs,
-  'World-move': () => (world.move(moved, to), culler.cull(world, view).ids.length),
-  'InstancedMesh2-move': () => {
-    for (let k = 0; k < hundredth; ++k) mesh.setMatrixAt(k * 100, matrices[k]), mesh.bvh.move(k * 100);
-    return theirs();
-  },
+  'wide-rays': () => hitsIn(set.cast('wide-rays').objects),
   'BoxBvh.cast': castOurs,
   'three-mesh-bvh': castTheirs,
   occluders: drawWalls,
   queries: askBoxes,
 };
-const times = Object.fromEntries(Object.keys(rows).map((name) => [name, []])), answers = {};
-// A sample is the mean of as many calls, one after another, as take some 20 ms, for both sides alike: what the processor and the
-// compilers keep warm in a program that culls every frame is warm here. What moves moves once a sample.
-const rounds = 9, warm = 2;
-for (let round = 0; round < rounds; ++round) {
-  if (existsSync(native) && round >= warm && round % 2 === 0) runNative();
-  goOn();
-  for (const [name, run] of Object.entries(rows)) {
-    let calls = 0;
-    const start = performance.now();
-    do answers[name] = run(), ++calls;
-    while (performance.now() - start < 20 && !name.endsWith('-move'));
-    if (round >= warm) times[name].push((performance.now() - start) / calls);
+const moving = {
+  'World-move': () => same.move(),
+  'InstancedMesh2-move': () => same.moveTheirs(),
+  'World-move-others': () => others.move(),
+  'InstancedMesh2-move-others': () => others.moveTheirs(),
+};
+const times = {}, answers = {}, rounds = 9, warm = 2, movedBefore = 80;
+// A sample is the mean of as many calls, one after another, as take `least` ms, for both sides alike: what the processor and the
+// compilers keep warm in a program that culls every frame is warm here.
+function measure(rows, least, before) {
+  for (const name of Object.keys(rows)) times[name] = [];
+  for (let round = 0; round < rounds; ++round) {
+    before(round);
+    for (const [name, run] of Object.entries(rows)) {
+      let calls = 0;
+      const start = performance.now();
+      do answers[name] = run(), ++calls;
+      while (performance.now() - start < least);
+      if (round >= warm) times[name].push((performance.now() - start) / calls);
+    }
   }
 }
+measure(still, 20, (round) => existsSync(native) && round >= warm && round % 2 === 0 && runNative());
+for (let frame = 0; frame < movedBefore; ++frame) same.goOn(), same.move(), same.moveTheirs();
+measure(moving, 0, () => (same.goOn(), others.goOn())); // a call a frame
 rmSync(folder, { recursive: true });
 
 const beside = { 'World.cull': ['native-World.cull', 'three-intersectsBox', 'InstancedMesh2-bvh'],
   cullBoxes: ['by-hand', 'native-cullBoxes'], 'World-move': ['InstancedMesh2-move'],
-  'BoxBvh.cast': ['three-mesh-bvh'], occluders: ['native-occluders'], queries: ['native-queries'] };
+  'World-move-others': ['InstancedMesh2-move-others'], 'wide-rays': ['three-mesh-bvh', 'BoxBvh.cast'], occluders: ['native-occluders'], queries: ['native-queries'] };
 for (const [name, all] of Object.entries(natively)) times[`native-${name}`] = all;
 times['first-cull'] = [first];
 writeRows('node', times, beside, answers);

@@ -6,7 +6,7 @@ import { add, look, places, random } from '../scenes/city.mjs';
 window.time = async (kind, count, aerial, frames) => {
   await ready;
   const renderer = new THREE.WebGLRenderer({ antialias: true });
-  renderer.setSize(640, 360);
+  renderer.setSize(256, 144);
   const scene = new THREE.Scene(), { all, side } = places(count);
   const move = add(scene, kind, all, new THREE.MeshBasicMaterial());
   const camera = new THREE.PerspectiveCamera(60, 16 / 9, 0.1, aerial ? 20000 : 1000), next = random(3);

@@ -123,7 +123,7 @@ export class SightlineTilesPlugin {
     const eye = eyeOf(camera, Math.min(Math.round(width), 8192), 8192);
     if (!isRigid(eye)) return undefined;
     const buffer = (this.#buffers[index] ??= new OcclusionBuffer());
-    buffer.begin(eye);
+    buffer.begin(eye, { coverage: 'area' }); // for antialiasing, and canvases of another size
     const place = new Vector3(...(eye.origin as [number, number, number])).applyMatrix4(group.matrixWorldInverse);
     const near = [...visibleTiles].filter(({ engineData }) => engineData.scene)
       .map((tile) => ({ scene: tile.engineData.scene!, distance: tile.engineData.boundingVolume.distanceToPoint(place) }))

@@ -33,6 +33,23 @@ test('without SIMD it says so, and never loads', () => {
   assert.match(said, /^false unsupported: .*no WebAssembly with SIMD.*draw without culling\nunsupported: .*draw without culling\n$/);
 });
 
+test('without SIMD a three.js scene is drawn whole, and the console says so once', () => {
+  const said = execFileSync(process.execPath, ['--input-type=module', '-e', `
+    WebAssembly.validate = () => false;
+    console.warn = (words) => console.log('warned: ' + words);
+    const { Mesh, PerspectiveCamera, Scene } = await import('three');
+    const { ready, SightlineCuller } = await import('sightline-culling/three');
+    const scene = new Scene().add(new Mesh()), { children } = scene;
+    new SightlineCuller(scene), new SightlineCuller(scene);
+    await ready.catch(() => {});
+    for (let frame = 0; frame < 3; ++frame) {
+      scene.onBeforeRender({ sortObjects: true }, scene, new PerspectiveCamera(), null);
+      console.log(scene.children === children && children.length === 1);
+      scene.onAfterRender({ sortObjects: true }, scene, new PerspectiveCamera());
+    }`], { encoding: 'utf8', cwd: new URL('..', import.meta.url).pathname });
+  assert.match(said, /^(warned: Sightline draws without culling: .*no WebAssembly with SIMD.*\n){2}(true\n){3}$/); // each of the two
+});
+
 test('objects in view are seen, in all layouts', async () => {
   await ready;
   const at = [[0, 0, -10], [0, 0, 10], [3, 1, -20]];

@@ -41,7 +41,10 @@ test("the page's models are the native ones", async () => {
   for (const { model, boxes } of read(natively())) {
     const plan = models.plan(model, triangles || undefined);
     for (let piece = 0; piece < plan.count; ++piece) models.make(piece);
-    assert.deepEqual(models.centre().boxes, boxes, `model ${model}`);
+    const made = models.centre().boxes;
+    let differing = Math.abs(made.length - boxes.length);
+    boxes.forEach((x, i) => (differing += made[i] === x ? 0 : 1));
+    assert.equal(differing, 0, `model ${model}: ${differing} of ${boxes.length} numbers of its boxes differ`);
   }
 });
 
