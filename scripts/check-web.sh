@@ -22,4 +22,5 @@ worlds=("regular?columns=40&rows=40" "forest?trees=2000&size=150" "city?objects=
 [ -z "${SIGHTLINE_FULL:-}" ] || { worlds=(regular irregular forest city foliage) world_views=300; }
 "$build/web/sightline_web_scenes" $world_views build/web/scenes.bin "${worlds[@]}"
 cd web
-node --test --test-reporter=spec test/*.test.mjs
+# Two files at a time: browsers wait a good deal.
+node --test --test-concurrency=2 --test-reporter=spec test/*.test.mjs
