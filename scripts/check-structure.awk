@@ -27,6 +27,7 @@ function folder_of(path,    part, header) {
   if (path ~ /^examples\/method\//) return "examples/method"
   if (path ~ /^examples\//) return "examples"
   if (path ~ /^web\/paper\//) return "web/paper"
+  if (path ~ /^web\/scenes\//) return "web/scenes"
   if (path ~ /^web\//) return "web"
   if (path ~ /^(library|workbench|apps|bindings)\//) return part[1] "/" part[2]
   header = path

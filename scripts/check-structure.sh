@@ -37,6 +37,7 @@ examples: face bindings/c
 examples/method: face workbench/methods
 web: face
 web/paper: web workbench/methods library/rays
+web/scenes: web workbench/methods workbench/oracle workbench/camera
 "
 
 # The public headers that each folder owns. Those of the library everybody above it may include.
@@ -85,6 +86,6 @@ packages="glm/ hwy/ roaring/ zstd.h sys/mman.h sightline_mutants.h"
   echo "[includes]"
   grep -rnoP --include='*.[hc]pp' --include='*.[hc]' --include='*.comp' --include='*.vert' --include='*.frag' \
     --include='*.geom' --include='*.glsl' '^\s*#\s*include\s*["<]\K[^">]+' \
-    include library workbench apps bindings examples $(ls -d web/wasm web/test web/paper 2>/dev/null) || true
+    include library workbench apps bindings examples $(ls -d web/wasm web/test web/paper web/scenes 2>/dev/null) || true
 } | awk -v whole="${arrows_only:-yes}" -f "$here/check-structure.awk"
 [ -n "$arrows_only" ] || "$here/check-headers.sh" .

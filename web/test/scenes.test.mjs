@@ -1,5 +1,5 @@
 // No object that shows is lost to the package's occlusion: generated worlds, random views of them, and who is visible in
-// truth, as test/native_scenes.cpp wrote them.
+// truth, as scenes/native_scenes.cpp wrote them.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
