@@ -121,9 +121,9 @@ struct TriangleBlock {
 };
 /// Of blocks that are soon asked for the first, if there is one.
 void prefetch(std::span<const TriangleBlock> blocks) noexcept;
-/// The same of the first `count` triangles of whole blocks.
-bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
-                     std::size_t count) noexcept;
+/// The same of the first `count` triangles of whole blocks, which may be seen from these sides.
+bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks, std::size_t count,
+                     Sides sides = Sides::both) noexcept;
 
 }  // namespace sightline::occlusion
 

@@ -35,18 +35,7 @@ constexpr float kCut = 2;
 // Which way triangles turn whose image is not known, by the side of their planes that the eye is on; 0 where
 // that is unsure.
 HWY_INLINE VF turn_by_plane(const DepthTiles& tiles, const Corners& corners) {
-  const F f;
-  const PixelRays& rays = tiles.rays;
-  const bool orthographic = tiles.projection.orthographic;
-  const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
-  const VF along = orthographic ? dot(normal, rays.forward) : dot(normal, corners[0]);
-  const VF least = orthographic
-                       ? hn::Set(f, static_cast<float>(kEdgeOnSine))
-                       : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
-                                 hn::Set(f, static_cast<float>(kEdgeOnDistance)));
-  const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));
-  const VF to_right = hn::Set(f, rays.turns_right ? 1.0f : -1.0f);
-  return hn::IfThenElseZero(sure, hn::IfThenElse(hn::Lt(along, hn::Zero(f)), to_right, hn::Neg(to_right)));
+  return hn::Mul(side_of_planes(tiles, corners), hn::Set(F(), tiles.rays.turns_right ? 1.0f : -1.0f));
 }
 
 // Not a number counts as behind.
