@@ -23,8 +23,8 @@ enum class Coverage : std::uint8_t {
   centres,  ///< pixel centres, where rasterisers and rays take their one sample by default
   /// Any place on the image: multisampling, jitter, upscaling, another renderer's pixels. An occluder counts
   /// only in pixels that it covers whole. Triangles of a mesh that share an edge cover a pixel together, but
-  /// those that are less than half a pixel wide or cut by the near plane count as missing. Meshes cost two to
-  /// three times as much to draw.
+  /// those that are less than half a pixel wide count as missing. Meshes cost two to three times as much to
+  /// draw.
   area,
 };
 

@@ -7,6 +7,7 @@
 #define SIGHTLINE_OCCLUSION_MESH_SETUP_INL
 #endif
 
+#include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/depth_raster-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -182,25 +183,52 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   return out;
 }
 
-// Found when first asked for. Where a pixel's margin counts, those that the near plane cuts and those seen
-// edge on are as if they were not there: the mesh ends at them.
+// Triangle 16·group + i of the mesh in double precision.
+inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
+                                  const RowTransform& transform, std::size_t group, std::size_t i) {
+  ExactCorners out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
+    out[k] = about_eye(e, transform, {from[0], from[kGroup], from[2 * kGroup]});
+  }
+  return out;
+}
+
+// Of those of a group that the near plane cuts, which count where a pixel's margin does.
+HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                           std::size_t group) {
+  float* facing = &tiles.mesh.facing[group * kGroup];
+  for (std::size_t i = 0; i < kGroup; ++i) {
+    if (std::fabs(facing[i]) != kCut) continue;
+    const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i));
+    tiles.mesh.slant[group * kGroup + i] = its.slant;
+    if (!its.counts) facing[i] = 0;
+  }
+}
+
+// Found when first asked for. Where a pixel's margin counts, those seen edge on are as if they were not
+// there: the mesh ends at them.
 void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                  std::size_t group) {
   const F f;
   MeshScratch& s = tiles.mesh;
   if (s.known[group] == s.turn) return;
   s.known[group] = s.turn;
+  std::uint32_t cut = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
     Candidates c = candidates_of(tiles, mesh, transform, group, lane);
     if (tiles.margin > 0) {
       find_nearness(tiles.projection, c);
       const TrianglePlanes planes = planes_of(tiles, c);
-      c.facing = hn::IfThenElseZero(planes.sound, c.facing);
+      const auto is_cut = hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut));
+      cut |= bits_of(f, is_cut);
+      c.facing = hn::IfThenElseZero(hn::Or(planes.sound, is_cut), c.facing);
       const VF slant = hn::Add(hn::Abs(planes.across), hn::Abs(planes.down));
       hn::Store(hn::IfThenElseZero(planes.sound, slant), f, &s.slant[group * kGroup + lane]);
     }
     hn::Store(c.facing, f, &s.facing[group * kGroup + lane]);
   }
+  if (cut != 0) know_cut(tiles, mesh, transform, group);
 }
 
 HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {
