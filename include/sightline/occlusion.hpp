@@ -23,8 +23,8 @@ enum class Coverage : std::uint8_t {
   centres,  ///< pixel centres, where rasterisers and rays take their one sample by default
   /// Any place on the image: multisampling, jitter, upscaling, another renderer's pixels. An occluder counts
   /// only in pixels that it covers whole. Triangles of a mesh that share an edge cover a pixel together, but
-  /// those that are less than half a pixel wide or cut by the near plane count as missing. Meshes cost two to
-  /// three times as much to draw.
+  /// those that are less than half a pixel wide count as missing. Meshes cost two to three times as much to
+  /// draw.
   area,
 };
 
@@ -54,10 +54,14 @@ public:
 
   /// Takes all objects anew: of object o the next triangles_per_object[o] triangles of `corners`, three
   /// points each in metres, about the origin of the views that will ask. A triangle with a corner that is not
-  /// finite is always seen. Errors: bad_mesh where corners.size() is not three times the sum; too_many beyond
-  /// 2³² - 2 objects or blocks. Cost: a copy of the corners. Allocates: for all objects.
-  Status assign(std::span<const Vec3> corners, std::span<const std::uint32_t> triangles_per_object);
-  /// Gives one object, which has moved, new corners: 3 · triangles(object) of them.
+  /// finite is always seen. `sides` has one entry an object, or one for all of them; without any, both sides
+  /// may be seen. Of Sides::front a triangle is never seen from behind, which is the cheapest answer of all,
+  /// and the only one for surfaces that meet an outline from behind. Errors: bad_mesh where corners.size() is
+  /// not three times the sum, and for another number of sides; too_many beyond 2³² - 2 objects or blocks.
+  /// Cost: a copy of the corners. Allocates: for all objects.
+  Status assign(std::span<const Vec3> corners, std::span<const std::uint32_t> triangles_per_object,
+                std::span<const Sides> sides = {});
+  /// Gives one object, which has moved, new corners: 3 · triangles(object) of them. Its sides stay.
   /// Errors: bad_argument where there is no such object; bad_mesh for another number of corners. Cost: a
   /// copy.
   Status set(std::uint32_t object, std::span<const Vec3> corners);

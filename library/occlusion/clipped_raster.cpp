@@ -21,8 +21,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-void draw_convex(DepthTiles& tiles, const Convex& polygon) {
-  draw_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom));
+void draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
+  draw_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom),
+               without);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE
@@ -141,10 +142,11 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
   }
 }
 
-// A polygon that lies on the plane, if it turns that way; 0: whichever way it turns. `seams` by the numbers
-// of its edges.
+// A polygon that lies on the plane, if it turns that way; 0: whichever way it turns. Seams by the numbers of
+// its edges.
 void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way,
-                  std::span<const SeamLine> seams) {
+                  const Surroundings& around) {
+  const std::array<SeamLine, 3>& seams = around.seams;
   if (!clip_to_view(tiles, 0, polygon)) return;
   if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
   const Outline outline = outline_of(tiles.projection, polygon);
@@ -162,7 +164,8 @@ void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, fl
     else
       add_edge(outline, i, area > 0, inset, out);
   }
-  HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out);
+  out.at -= tiles.margin * std::max(0.0f, around.slant - (std::fabs(out.across) + std::fabs(out.down)));
+  HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, around.without);
 }
 
 }  // namespace
@@ -188,22 +191,22 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
   }
 }
 
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners, float way,
-                           const std::array<SeamLine, 3>& seams) noexcept {
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
+                           const Surroundings& around) noexcept {
   Polygon polygon;
-  for (const auto& c : corners) {
+  for (const glm::dvec3& c : corners) {
     polygon.edge[polygon.count] = static_cast<std::uint8_t>(polygon.count);
-    polygon.points[polygon.count++] = {c[0], c[1], c[2]};
+    polygon.points[polygon.count++] = c;
   }
-  std::array<SeamLine, 3> lines = seams;
+  Surroundings its = around;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (lines[k].kind == SeamLine::Kind::through_near)
-      lines[k] = line_through(tiles.projection, polygon.points[k], polygon.points[(k + 1) % 3]);
+    if (its.seams[k].kind == SeamLine::Kind::through_near)
+      its.seams[k] = line_through(tiles.projection, polygon.points[k], polygon.points[(k + 1) % 3]);
   }
   const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
   const glm::dvec3 normal = glm::cross(q - p, r - p);
   const double length = glm::length(normal);
-  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way, lines);
+  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way, its);
 }
 
 }  // namespace sightline::occlusion

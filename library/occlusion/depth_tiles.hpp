@@ -1,6 +1,8 @@
 // The memory of an OcclusionBuffer.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "library/geometry/aligned_vector.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/geometry/linear.hpp"
+#include "library/occlusion/convex.hpp"
 #include "library/occlusion/eye_projection.hpp"
 #include "library/occlusion/occluder_topology.hpp"
 
@@ -93,10 +96,17 @@ struct SeamLine {
   Kind kind = Kind::none;
   float at = 0, slope = 0;
 };
+/// What lies around a triangle: edge k goes from corner k to the next. Where a pixel's margin counts, the
+/// bands in which the mesh ends, and the slant of the steepest.
+struct Surroundings {
+  std::array<SeamLine, 3> seams;
+  Bands without;
+  float slant = 0;
+};
 /// A triangle that crosses the near plane, about the eye; drawn only if it turns that way on the image, 1 or
-/// -1, or whichever way it turns for 0. Edge k goes from corner k to the next.
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<std::array<double, 3>, 3>& corners, float way,
-                           const std::array<SeamLine, 3>& seams) noexcept;
+/// -1, or whichever way it turns for 0.
+void draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
+                           const Surroundings& around) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// What drawing may cost of a mesh that is drawn in parts: groups of 16 triangles, near ones first, those
@@ -138,9 +148,9 @@ struct TriangleBlock {
 };
 /// Of blocks that are soon asked for the first, if there is one.
 void prefetch(std::span<const TriangleBlock> blocks) noexcept;
-/// The same of the first `count` triangles of whole blocks.
-bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
-                     std::size_t count) noexcept;
+/// The same of the first `count` triangles of whole blocks, which may be seen from these sides.
+bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks, std::size_t count,
+                     Sides sides = Sides::both) noexcept;
 
 }  // namespace sightline::occlusion
 

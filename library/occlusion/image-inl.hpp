@@ -41,6 +41,22 @@ HWY_INLINE VF reach_of(const Corners& corners) {
   return larger_of(larger_of(largest(corners[0]), largest(corners[1])), largest(corners[2]));
 }
 
+// Which side of the triangles' planes the eye is on: 1 in front, where corners turn counter-clockwise, -1
+// behind; 0 where that is unsure.
+HWY_INLINE VF side_of_planes(const DepthTiles& tiles, const Corners& corners) {
+  const F f;
+  const bool orthographic = tiles.projection.orthographic;
+  const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+  const VF along = orthographic ? dot(normal, tiles.rays.forward) : dot(normal, corners[0]);
+  const VF least = orthographic
+                       ? hn::Set(f, static_cast<float>(kEdgeOnSine))
+                       : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
+                                 hn::Set(f, static_cast<float>(kEdgeOnDistance)));
+  const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));
+  const VF front = hn::Set(f, 1.0f);
+  return hn::IfThenElseZero(sure, hn::IfThenElse(hn::Lt(along, hn::Zero(f)), front, hn::Neg(front)));
+}
+
 // Corners on the image. Equal corners of different triangles give equal bits.
 struct OnImage {
   VF x[3], y[3], w[3], over_w[3];

@@ -23,20 +23,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-// Triangle 16·group + i of the mesh in double precision.
-std::array<std::array<double, 3>, 3> exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
-                                                   const RowTransform& transform, std::size_t group,
-                                                   std::size_t i) {
-  std::array<std::array<double, 3>, 3> out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
-    const Vec3 at = transform_point(transform, {from[0], from[kGroup], from[2 * kGroup]});
-    out[k] = {double{at.x} - e.eye_high.x - e.eye_low.x, double{at.y} - e.eye_high.y - e.eye_low.y,
-              double{at.z} - e.eye_high.z - e.eye_low.z};
-  }
-  return out;
-}
-
 // Adds the first `count` edges of triangle i.
 HWY_INLINE void add_edges(const ReadyTriangles& ready, int i, std::size_t count, Convex& out) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -165,6 +151,22 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
   return out;
 }
 
+// Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
+// draw_with_margin() has it.
+HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                           std::size_t group, const ReadyTriangles& ready, std::size_t i) {
+  const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, group, i);
+  const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh.front : 0;
+  if (tiles.margin == 0) return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), {}, 0});
+  const std::size_t t = group * kGroup + i;
+  Convex image;
+  image.right = static_cast<float>(tiles.width), image.bottom = static_cast<float>(tiles.height);
+  Rim rim;
+  add_rim(tiles, mesh, transform, t, image, rim);
+  if (rim.known) draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), rim.bands, rim.slant});
+  if (!rim.known || rim.slant > tiles.mesh.slant[t]) draw_clipped_triangle(tiles, corners, way, {});
+}
+
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group) {
   ReadyTriangles ready;
@@ -190,10 +192,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   }
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    const bool one_sided = mesh.groups[group].one_sided >> i & 1;
-    draw_clipped_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i),
-                          one_sided ? tiles.mesh.front : 0,
-                          tiles.margin > 0 ? std::array<SeamLine, 3>{} : seams_of(ready, i));
+    draw_cut(tiles, mesh, transform, group, ready, i);
   }
 }
 

@@ -12,6 +12,9 @@
 #define SIGHTLINE_OCCLUSION_MESH_RIM_INL
 #endif
 
+#include <optional>
+
+#include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/mesh_setup-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,20 +25,39 @@ struct Rim {
   Bands bands;      // the mesh ends there
   float slant = 0;  // of the steepest triangle
   bool known = true;
+  std::array<std::uint32_t, Bands::kMost> cut;  // triangles that the near plane cuts
+  std::size_t cuts = 0;
 };
 
-// Where a vertex before the near plane lies on the image.
-inline std::array<float, 2> on_image(const EyeProjection& e, const Vec3& p) {
-  const Vec3 q{p.x - e.eye_high.x - e.eye_low.x, p.y - e.eye_high.y - e.eye_low.y,
-               p.z - e.eye_high.z - e.eye_low.z};
+// Where a point about the eye that is before the near plane lies on the image.
+inline std::array<float, 2> on_image(const EyeProjection& e, const Vec3& q) {
   const auto row = [&](const Vec4& r) { return r.x * q.x + r.y * q.y + r.z * q.z + r.w; };
   const float over_w = 1 / row(e.w);
   return {row(e.x) * over_w, row(e.y) * over_w};
 }
 
+// What the image shows of an edge; nothing of one behind the near plane.
+inline std::optional<ImageSegment> edge_on_image(const DepthTiles& tiles, const OccluderTopology& mesh,
+                                                 const RowTransform& transform,
+                                                 const OccluderTopology::CornerEdge& edge) {
+  const EyeProjection& e = tiles.projection;
+  const Vec4& near = tiles.rays.near_plane;
+  std::array<Vec3, 2> at;
+  bool whole = true;
+  for (std::size_t end = 0; end < 2; ++end) {
+    const Vec3 p = transform_point(transform, mesh.positions[end == 0 ? edge.a : edge.b]);
+    at[end] = {p.x - e.eye_high.x - e.eye_low.x, p.y - e.eye_high.y - e.eye_low.y,
+               p.z - e.eye_high.z - e.eye_low.z};
+    whole = whole && near.x * at[end].x + near.y * at[end].y + near.z * at[end].z + near.w >= 0;
+  }
+  if (whole) return ImageSegment{on_image(e, at[0]), on_image(e, at[1])};
+  return in_view(tiles, about_eye(e, transform, mesh.positions[edge.a]),
+                 about_eye(e, transform, mesh.positions[edge.b]));
+}
+
 // Adds an edge, if it comes near the rectangle of `beside`.
-inline void add_band(const std::array<float, 2>& a, const std::array<float, 2>& b, float margin,
-                     const Convex& beside, Rim& out) {
+inline void add_band(const ImageSegment& segment, float margin, const Convex& beside, Rim& out) {
+  const auto& [a, b] = segment;
   const float widest = std::max(std::max(std::fabs(a[0]), std::fabs(a[1])),
                                 std::max(std::fabs(b[0]), std::fabs(b[1]))),
               inset = margin + kInset + kInsetGrowth * widest;
@@ -61,10 +83,31 @@ inline void add_band(const std::array<float, 2>& a, const std::array<float, 2>& 
 inline bool ends_at(const DepthTiles& tiles, const OccluderTopology& mesh,
                     const OccluderTopology::CornerEdge& edge) {
   const float* facing = tiles.mesh.facing.data();
-  if (edge.other < OccluderTopology::kShared) return facing[edge.triangle] != facing[edge.other];
-  if (facing[edge.triangle] == 0) return false;
+  const float its = facing[edge.triangle];
+  if (edge.other < OccluderTopology::kShared) {
+    const float others = facing[edge.other];
+    return (its != 0 || others != 0) && !(its * others > 0);
+  }
+  if (its == 0) return false;
   return edge.other == OccluderTopology::kNone ||
          !goes_on_along(tiles, mesh, mesh.shared[edge.other - OccluderTopology::kShared]);
+}
+
+// Adds where the near plane cuts a triangle, once.
+inline void add_near_edge(const DepthTiles& tiles, const OccluderTopology& mesh,
+                          const RowTransform& transform, std::uint32_t triangle, const Convex& beside,
+                          Rim& out) {
+  if (std::fabs(tiles.mesh.facing[triangle]) != kCut) return;
+  const auto end = out.cut.begin() + static_cast<std::ptrdiff_t>(out.cuts);
+  if (std::find(out.cut.begin(), end, triangle) != end) return;
+  if (out.cuts == out.cut.size()) {
+    out.known = false;
+    return;
+  }
+  out.cut[out.cuts++] = triangle;
+  const ExactCorners corners =
+      exact_corners(tiles.projection, mesh, transform, triangle / kGroup, triangle % kGroup);
+  if (const auto segment = near_edge(tiles, corners)) add_band(*segment, tiles.margin, beside, out);
 }
 
 // Adds what lies around triangle t of the mesh, whose rectangle `beside` holds.
@@ -78,13 +121,20 @@ inline void add_rim(const DepthTiles& tiles, const OccluderTopology& mesh, const
   out.slant = std::max(out.slant, slant[t]);
   for (std::uint32_t i = mesh.first_around[t]; i < mesh.first_around[t + 1] && out.known; ++i) {
     const OccluderTopology::CornerEdge& edge = mesh.around[i];
-    out.slant = std::max(out.slant, slant[edge.triangle]);
-    if (edge.other < OccluderTopology::kShared) out.slant = std::max(out.slant, slant[edge.other]);
-    if (!ends_at(tiles, mesh, edge)) continue;
-    const auto place = [&](std::uint32_t vertex) {
-      return on_image(tiles.projection, transform_point(transform, mesh.positions[vertex]));
+    const auto add = [&](std::uint32_t triangle) {
+      out.slant = std::max(out.slant, slant[triangle]);
+      add_near_edge(tiles, mesh, transform, triangle, beside, out);
     };
-    add_band(place(edge.a), place(edge.b), tiles.margin, beside, out);
+    add(edge.triangle);
+    if (edge.other < OccluderTopology::kShared) {
+      add(edge.other);
+    } else if (edge.other != OccluderTopology::kNone) {
+      const OccluderTopology::SharedEdge& shared = mesh.shared[edge.other - OccluderTopology::kShared];
+      for (std::uint32_t o = shared.first; o < shared.end; ++o) add(mesh.others[o] / 4);
+    }
+    if (!ends_at(tiles, mesh, edge)) continue;
+    if (const auto segment = edge_on_image(tiles, mesh, transform, edge))
+      add_band(*segment, tiles.margin, beside, out);
   }
 }
 

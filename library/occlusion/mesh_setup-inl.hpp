@@ -7,6 +7,7 @@
 #define SIGHTLINE_OCCLUSION_MESH_SETUP_INL
 #endif
 
+#include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/depth_raster-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,18 +36,7 @@ constexpr float kCut = 2;
 // Which way triangles turn whose image is not known, by the side of their planes that the eye is on; 0 where
 // that is unsure.
 HWY_INLINE VF turn_by_plane(const DepthTiles& tiles, const Corners& corners) {
-  const F f;
-  const PixelRays& rays = tiles.rays;
-  const bool orthographic = tiles.projection.orthographic;
-  const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
-  const VF along = orthographic ? dot(normal, rays.forward) : dot(normal, corners[0]);
-  const VF least = orthographic
-                       ? hn::Set(f, static_cast<float>(kEdgeOnSine))
-                       : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
-                                 hn::Set(f, static_cast<float>(kEdgeOnDistance)));
-  const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));
-  const VF to_right = hn::Set(f, rays.turns_right ? 1.0f : -1.0f);
-  return hn::IfThenElseZero(sure, hn::IfThenElse(hn::Lt(along, hn::Zero(f)), to_right, hn::Neg(to_right)));
+  return hn::Mul(side_of_planes(tiles, corners), hn::Set(F(), tiles.rays.turns_right ? 1.0f : -1.0f));
 }
 
 // Not a number counts as behind.
@@ -193,25 +183,52 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   return out;
 }
 
-// Found when first asked for. Where a pixel's margin counts, those that the near plane cuts and those seen
-// edge on are as if they were not there: the mesh ends at them.
+// Triangle 16·group + i of the mesh in double precision.
+inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
+                                  const RowTransform& transform, std::size_t group, std::size_t i) {
+  ExactCorners out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
+    out[k] = about_eye(e, transform, {from[0], from[kGroup], from[2 * kGroup]});
+  }
+  return out;
+}
+
+// Of those of a group that the near plane cuts, which count where a pixel's margin does.
+HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                           std::size_t group) {
+  float* facing = &tiles.mesh.facing[group * kGroup];
+  for (std::size_t i = 0; i < kGroup; ++i) {
+    if (std::fabs(facing[i]) != kCut) continue;
+    const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i));
+    tiles.mesh.slant[group * kGroup + i] = its.slant;
+    if (!its.counts) facing[i] = 0;
+  }
+}
+
+// Found when first asked for. Where a pixel's margin counts, those seen edge on are as if they were not
+// there: the mesh ends at them.
 void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                  std::size_t group) {
   const F f;
   MeshScratch& s = tiles.mesh;
   if (s.known[group] == s.turn) return;
   s.known[group] = s.turn;
+  std::uint32_t cut = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
     Candidates c = candidates_of(tiles, mesh, transform, group, lane);
     if (tiles.margin > 0) {
       find_nearness(tiles.projection, c);
       const TrianglePlanes planes = planes_of(tiles, c);
-      c.facing = hn::IfThenElseZero(planes.sound, c.facing);
+      const auto is_cut = hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut));
+      cut |= bits_of(f, is_cut);
+      c.facing = hn::IfThenElseZero(hn::Or(planes.sound, is_cut), c.facing);
       const VF slant = hn::Add(hn::Abs(planes.across), hn::Abs(planes.down));
       hn::Store(hn::IfThenElseZero(planes.sound, slant), f, &s.slant[group * kGroup + lane]);
     }
     hn::Store(c.facing, f, &s.facing[group * kGroup + lane]);
   }
+  if (cut != 0) know_cut(tiles, mesh, transform, group);
 }
 
 HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {

@@ -1,4 +1,5 @@
 // Objects' triangles in the blocks that queries read, and the queries.
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct OccludeeTriangles::State {
   std::vector<TriangleBlock> blocks;       // object by object
   std::vector<std::uint32_t> first_block;  // one an object, and the end
   std::vector<std::uint32_t> triangles;
+  std::vector<Sides> sides;
 
   [[nodiscard]] std::span<TriangleBlock> of(std::uint32_t object) noexcept {
     if (object >= triangles.size()) return {};
@@ -44,7 +46,8 @@ OccludeeTriangles& OccludeeTriangles::operator=(OccludeeTriangles&& other) noexc
 }
 
 Status OccludeeTriangles::assign(std::span<const Vec3> corners,
-                                 std::span<const std::uint32_t> triangles_per_object) {
+                                 std::span<const std::uint32_t> triangles_per_object,
+                                 std::span<const Sides> sides) {
   constexpr std::uint64_t kMost = 0xfffffffeu;
   std::uint64_t triangles = 0, blocks = 0;
   for (const std::uint32_t count : triangles_per_object)
@@ -52,7 +55,11 @@ Status OccludeeTriangles::assign(std::span<const Vec3> corners,
   if (triangles_per_object.size() > kMost || blocks > kMost)
     return {StatusCode::too_many, "occludees: expected at most 2^32 - 2 objects and blocks of 16 triangles"};
   if (corners.size() != 3 * triangles) return kExpectedCorners;
+  if (sides.size() > 1 && sides.size() != triangles_per_object.size())
+    return {StatusCode::bad_mesh, "occludees: expected sides for each object, one for all, or none"};
   State& s = *state_;
+  s.sides.assign(triangles_per_object.size(), sides.empty() ? Sides::both : sides[0]);
+  if (sides.size() > 1) std::ranges::copy(sides, s.sides.begin());
   s.triangles.assign(triangles_per_object.begin(), triangles_per_object.end());
   s.first_block.assign(1, 0);
   for (const std::uint64_t count : s.triangles)
@@ -85,7 +92,7 @@ std::uint32_t OccludeeTriangles::triangles(std::uint32_t object) const noexcept 
 bool OcclusionBuffer::may_see(const OccludeeTriangles& triangles, std::uint32_t object) const noexcept {
   if (object >= triangles.objects() || !state_->begun) return true;
   return occlusion::query_triangles(*state_, triangles.state_->of(object),
-                                    triangles.state_->triangles[object]);
+                                    triangles.state_->triangles[object], triangles.state_->sides[object]);
 }
 
 std::size_t OcclusionBuffer::keep_seen(const OccludeeTriangles& triangles,

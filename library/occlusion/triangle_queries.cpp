@@ -171,8 +171,8 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i);
 
 // A vector of triangles, parts of the triangles `whole`; of those beyond `count` nothing is said.
 template <bool kMayClip>
-HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole,
-                          std::size_t count) {
+HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole, std::size_t count,
+                          std::uint32_t asked) {
   const F f;
   const VF reach = reach_of(whole);
   const Projected p = project(tiles, q, reach);
@@ -180,7 +180,7 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corne
   answer(tiles, {p.bounds, p.nearest, p.before}, count, visible.data());
   std::uint32_t rest = 0;
   for (std::size_t i = 0; i < count; ++i) rest |= std::uint32_t{visible[i]} << i;
-  rest &= ~bits_of(f, p.behind);
+  rest &= asked & ~bits_of(f, p.behind);
   if (rest == 0) return false;
   std::uint32_t clipped = rest & ~bits_of(f, p.placed);
   if (clipped != 0) {
@@ -251,12 +251,20 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) 
       part[k] = {hn::Load(f, in[3 * k].data()), hn::Load(f, in[3 * k + 1].data()),
                  hn::Load(f, in[3 * k + 2].data())};
     }
-    if (some_seen<false>(tiles, part, its, std::min(hn::Lanes(f), triangles - first))) return true;
+    const std::size_t count = std::min(hn::Lanes(f), triangles - first);
+    if (some_seen<false>(tiles, part, its, count, (1u << count) - 1)) return true;
   }
   return false;
 }
 
-bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, std::size_t triangles) {
+// Triangles that the eye surely sees from behind, by the side of their planes that it is on. Of one with a
+// corner that is no number nothing is sure.
+HWY_INLINE std::uint32_t turned_away(const DepthTiles& tiles, const Corners& corners) {
+  return bits_of(F(), hn::Lt(side_of_planes(tiles, corners), hn::Zero(F())));
+}
+
+bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, std::size_t triangles,
+                         Sides sides) {
   const F f;
   for (std::size_t first = 0; first < triangles; first += hn::Lanes(f)) {
     const auto& from = blocks[first / TriangleBlock::kSize].corners;
@@ -266,7 +274,10 @@ bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, s
       q[k] = about_eye(tiles.projection, {hn::Load(f, &from[k][0][lane]), hn::Load(f, &from[k][1][lane]),
                                           hn::Load(f, &from[k][2][lane])});
     }
-    if (some_seen<true>(tiles, q, q, std::min(hn::Lanes(f), triangles - first))) return true;
+    const std::size_t count = std::min(hn::Lanes(f), triangles - first);
+    std::uint32_t asked = (1u << count) - 1;
+    if (sides == Sides::front) asked &= ~turned_away(tiles, q);
+    if (asked != 0 && some_seen<true>(tiles, q, q, count, asked)) return true;
   }
   return false;
 }
@@ -294,9 +305,9 @@ void prefetch(std::span<const TriangleBlock> blocks) noexcept {
   for (std::size_t at = 0; at < bytes.size(); at += 64) hwy::Prefetch(&bytes[at]);
 }
 
-bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks,
-                     std::size_t count) noexcept {
-  return HWY_DYNAMIC_DISPATCH(query_all_triangles)(tiles, blocks.data(), count);
+bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks, std::size_t count,
+                     Sides sides) noexcept {
+  return HWY_DYNAMIC_DISPATCH(query_all_triangles)(tiles, blocks.data(), count, sides);
 }
 
 bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept {
@@ -304,7 +315,8 @@ bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noe
   TriangleBlock block;
   for (std::size_t first = 0; first < triangles; first += TriangleBlock::kSize) {
     block.take(corners, first);
-    if (query_triangles(tiles, {&block, 1}, std::min(TriangleBlock::kSize, triangles - first))) return true;
+    if (query_triangles(tiles, {&block, 1}, std::min(TriangleBlock::kSize, triangles - first), Sides::both))
+      return true;
   }
   return false;
 }

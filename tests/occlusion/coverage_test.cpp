@@ -222,6 +222,45 @@ TEST(Coverage, OfMeshesIsSafeAtAnyPlaceAndClosedWhereTrianglesMeet) {
   }
 }
 
+// From inside or close above, so that the near plane cuts triangles at every edge of the image and within it.
+TEST(Coverage, OfMeshesThatTheNearPlaneCutsIsSafeAtAnyPlaceAndClosed) {
+  struct Case {
+    const char* name;
+    scene::Shape shape;
+    Box eyes;
+    double least;
+  };
+  const Case cases[] = {{"room",
+                         test::fine_box({{-2, -1, -2}, {2, 1, 2}}, 1),
+                         {{-1.8f, -0.8f, -1.8f}, {1.8f, 0.8f, 1.8f}},
+                         0.95},
+                        {"fine room",
+                         test::fine_box({{-2, -1, -2}, {2, 1, 2}}, 2),
+                         {{-1.8f, -0.8f, -1.8f}, {1.8f, 0.8f, 1.8f}},
+                         0.95},
+                        {"hills", test::ground(3), {{0.1f, 0.1f, 0.1f}, {0.9f, 1, 0.9f}}, 0.7}};
+  Random random(35);
+  for (const auto& [name, shape, eyes, least] : cases) {
+    SCOPED_TRACE(name);
+    const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
+    Held held;
+    for (int round = 0; round < 6; ++round) {
+      Camera camera;
+      camera.eye = random.inside(eyes);
+      camera.forward = random.direction();
+      camera.near_plane = random.between(0.02f, 0.5f);
+      const View view = *make_view(camera, 40, 30);
+      const ExactRays rays(view);
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}, round % 3 == 0 ? kHalf : kArea));
+      ASSERT_TRUE(buffer.draw_mesh(mesh));
+      hold_pixels(
+          random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape); }, held);
+    }
+    EXPECT_GT(static_cast<double>(held.drawn), least * static_cast<double>(held.whole));
+  }
+}
+
 // Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
 TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   Random random(34);

@@ -3,6 +3,8 @@
 #include <array>
 #include <numeric>
 
+#include <glm/glm.hpp>
+
 #include <sightline/occlusion.hpp>
 
 #include "support/small_scenes.hpp"
@@ -67,12 +69,50 @@ TEST(OccludeeTriangles, RefuseWhatDoesNotFitAndStayAsTheyAre) {
   const std::array<std::uint32_t, 2> counts{1, 1}, more{1, 2};
   ASSERT_TRUE(occludees.assign(corners, counts));
   EXPECT_FALSE(occludees.assign(corners, more));
+  const std::array sides{Sides::front, Sides::both, Sides::front};
+  EXPECT_EQ(occludees.assign(corners, counts, sides).code(), StatusCode::bad_mesh);
   EXPECT_EQ(occludees.objects(), 2u);
   EXPECT_EQ(occludees.triangles(1), 1u);
   EXPECT_FALSE(occludees.set(0, corners));
   EXPECT_FALSE(occludees.set(2, std::span(corners).first(3)));
   EXPECT_TRUE(occludees.set(1, std::span(corners).first(3)));
   EXPECT_EQ(occludees.triangles(2), 0u);
+}
+
+// Triangles seen from all around, some of them across the near plane: from behind those with a front are not
+// there, from the front it makes no difference.
+TEST(OccludeeTriangles, OfOneSideAreNotSeenFromBehind) {
+  Random random(25);
+  std::size_t behind = 0, before = 0;
+  for (int round = 0; round < 200; ++round) {
+    OcclusionBuffer buffer;
+    const View view = test::small_view(random);
+    ASSERT_TRUE(buffer.begin({view, {}}, {round % 2 == 0 ? Coverage::centres : Coverage::area}));
+    ASSERT_TRUE(buffer.draw_boxes(std::array{test::box_of(random, 6.0f)}));
+    const std::vector<Vec3> corners = corners_of(random, 8);
+    const std::vector<std::uint32_t> counts(8, 1);
+    OccludeeTriangles both, fronts, mixed;
+    ASSERT_TRUE(both.assign(corners, counts));
+    ASSERT_TRUE(fronts.assign(corners, counts, std::array{Sides::front}));
+    ASSERT_TRUE(mixed.assign(corners, counts,
+                             std::vector<Sides>{Sides::both, Sides::front, Sides::both, Sides::front,
+                                                Sides::both, Sides::front, Sides::both, Sides::front}));
+    for (std::uint32_t o = 0; o < 8; ++o) {
+      const Vec3 *p = &corners[3 * o], eye = eye_position(view), ahead = view_direction(view);
+      const auto in_double = [](const Vec3& v) { return glm::dvec3(v.x, v.y, v.z); };
+      const glm::dvec3 normal =
+          glm::cross(in_double(p[1]) - in_double(p[0]), in_double(p[2]) - in_double(p[0]));
+      const bool flat = view.eye_to_clip.m[11] == 0;
+      const double side =
+          flat ? -glm::dot(normal, in_double(ahead)) : glm::dot(normal, in_double(eye) - in_double(p[0]));
+      const bool seen = buffer.may_see(both, o);
+      EXPECT_EQ(buffer.may_see(fronts, o), seen && side > 0) << "round " << round << " triangle " << o;
+      EXPECT_EQ(buffer.may_see(mixed, o), seen && (side > 0 || o % 2 == 0));
+      behind += seen && side < 0, before += seen && side > 0;
+    }
+  }
+  EXPECT_GT(behind, 100u);
+  EXPECT_GT(before, 100u);
 }
 
 TEST(OccludeeTriangles, ThatDoNotExistMayBeSeen) {

@@ -100,11 +100,13 @@ void SceneOccluders::append_corners(ObjectId o) {
 
 bool SceneOccluders::take_triangles() {
   std::vector<std::uint32_t> counts;
+  std::vector<Sides> sides;
   for (ObjectId o = 0; o < scene_.size(); ++o) {
     append_corners(o);
     counts.push_back(static_cast<std::uint32_t>(scene_.triangles(o)));
+    sides.push_back(sides_of(o));
   }
-  return static_cast<bool>(occludees_.assign(corners_, counts));
+  return static_cast<bool>(occludees_.assign(corners_, counts, sides));
 }
 
 // All opaque objects that never moved, in world space, so that their seams are joined across objects.
