@@ -3,14 +3,8 @@
 # and a level, judged by rays and by a device's item buffer, at pixel centres and, with Coverage::area, anywhere in a pixel,
 # nor along the paths near, far and rising, and walks through levels. A few views each; with --full 1,000 of larger worlds and
 # ten levels.
-set -euo pipefail
-build=$(realpath "$1")
-full=${2:-}
-cd "$(dirname "$0")/.."
-folder=$build/automatic
-mkdir -p "$folder"
+. "$(dirname "$0")/scene-check.sh" automatic "$@"
 
-level() { echo "pak1-maps.pk3:maps/$1.bsp"; }
 scenes=('world:regular?columns=40&rows=40&detail=0' 'world:irregular?spheres=2000&detail=0'
   'world:forest?trees=200&size=80' 'world:foliage?plants=100&hedges=20&grates=20&boxes=200' 'world:city?objects=1500'
   'world:forest?trees=60&size=300')  # the last an open field

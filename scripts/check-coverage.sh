@@ -2,12 +2,7 @@
 # check-coverage.sh BUILD [--full]: masked?coverage=area loses nothing at 8 random places of every pixel, at full, half and
 # quarter resolution: 20 views of each test scene; with --full 1,000 views of each and of six levels. It says beside that
 # how many objects are kept by area, by centres, and seen.
-set -euo pipefail
-build=$(realpath "$1")
-full=${2:-}
-cd "$(dirname "$0")/.."
-folder=$build/coverage
-mkdir -p "$folder"
+. "$(dirname "$0")/scene-check.sh" coverage "$@"
 
 scenes=('world:regular?columns=40&rows=40&detail=0' 'world:irregular?spheres=3000&detail=0'
   'world:forest?trees=300&size=100' 'world:city?objects=800' 'world:soup?triangles=2000&size=60')
@@ -16,7 +11,7 @@ methods='masked?coverage=area,masked?coverage=area&resolution=half,masked?covera
 if [ "$full" = --full ]; then
   views=1000
   for name in oasago2 islandctf ctf_inyard czest2ctf czest3ctf oa_dm4; do
-    scenes+=("pak1-maps.pk3:maps/$name.bsp")
+    scenes+=("$(level $name)")
   done
 fi
 failed=0

@@ -3,12 +3,7 @@
 # surfaces, on the CPU and on a Vulkan device, still and with a tenth of the objects moving; and pictures are those of
 # everything drawn. 300 views each and 60 while things move; a thousand with --full, which adds other worlds, two far from
 # the origin, levels, and what exact methods on the CPU have a device draw.
-set -euo pipefail
-build=$(realpath "$1")
-full=${2:-}
-cd "$(dirname "$0")/.."
-folder=$build/surfaces
-mkdir -p "$folder"
+. "$(dirname "$0")/scene-check.sh" surfaces "$@"
 
 still=300 moving=60 forms=
 scenes=(world:foliage)
@@ -16,8 +11,7 @@ for show in leaves grate sides; do
   "$build/sightline" generate "world:cards?show=$show" --output "$folder/$show.glb" >/dev/null
   scenes+=("$folder/$show.glb")
 done
-level() { scenes+=("pak1-maps.pk3:maps/$1.bsp"); }
-level islandctf
+scenes+=("$(level islandctf)")
 if [ "$full" = --full ]; then
   still=1000 moving=1000
   # Worlds that move are divided anew by a score of methods every other view, so they are no larger than that allows.
@@ -31,7 +25,7 @@ if [ "$full" = --full ]; then
     forms+=${forms:+,}simple-$structure'?least=0&cells=printed',drawcall-wise-$structure'?least=0&cells=printed'
     forms+=,drawcall-wise-$structure'?occlusion=masked',zhang-$structure'?planes=xy',zhang-$structure'?planes=both'
   done
-  for name in oasago2 oa_dm1 kaos2 ce1m7 wrackdm17 ctf_inyard czest2ctf; do level $name; done
+  for name in oasago2 oa_dm1 kaos2 ce1m7 wrackdm17 ctf_inyard czest2ctf; do scenes+=("$(level $name)"); done
 fi
 
 ways=("--views $still" "--views $moving --moving 0.1" "--views $still --device any"
