@@ -1,6 +1,7 @@
 #include <sightline/projection.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numbers>
 
@@ -58,24 +59,27 @@ Projector make_projector(const View& view, const Box& extent) noexcept {
 
 Rect projected_rect(const Projector& p, const Box& box) noexcept {
   if (!holds(p.extent, box)) return kWholePlane;
-  Rect ndc{kInfinity, kInfinity, -kInfinity, -kInfinity};
-  float widest = 0;
-  for (int corner = 0; corner < 8; ++corner) {
+  // One corner a lane, and no way out of the loop, for the compiler to do several at once.
+  std::array<float, 8> x, y, w, widest;
+  for (unsigned corner = 0; corner < 8; ++corner) {
     const Vec3 at{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                   corner & 4 ? box.max.z : box.min.z};
-    const float w = dot(p.rows[3], at);
-    if (!(w > 2 * p.coordinate_error)) return kWholePlane;
-    const float x = dot(p.rows[0], at) / w, y = dot(p.rows[1], at) / w;
+    w[corner] = dot(p.rows[3], at);
+    x[corner] = dot(p.rows[0], at) / w[corner];
+    y[corner] = dot(p.rows[1], at) / w[corner];
     // |d(x/w)| <= (|dx| + |x/w|·|dw|) / |w - dw|
-    const float error = 2 * p.coordinate_error / w;
-    widest = std::max(widest, error * (1 + std::max(std::fabs(x), std::fabs(y))));
-    ndc = {std::min(ndc.min_x, x), std::min(ndc.min_y, y), std::max(ndc.max_x, x), std::max(ndc.max_y, y)};
+    const float error = 2 * p.coordinate_error / w[corner];
+    widest[corner] = error * (1 + std::max(std::fabs(x[corner]), std::fabs(y[corner])));
   }
+  if (!(std::ranges::min(w) > 2 * p.coordinate_error)) return kWholePlane;
+  const float most = std::ranges::max(widest);
   // The second term covers the pixel mapping's own rounding and the rasteriser's 8-bit subpixel grid.
-  const float slack_x = widest * 0.5f * p.width + kSubpixelSlack,
-              slack_y = widest * 0.5f * p.height + kSubpixelSlack;
-  return {(ndc.min_x + 1) * 0.5f * p.width - slack_x, (1 - ndc.max_y) * 0.5f * p.height - slack_y,
-          (ndc.max_x + 1) * 0.5f * p.width + slack_x, (1 - ndc.min_y) * 0.5f * p.height + slack_y};
+  const float slack_x = most * 0.5f * p.width + kSubpixelSlack,
+              slack_y = most * 0.5f * p.height + kSubpixelSlack;
+  return {(std::ranges::min(x) + 1) * 0.5f * p.width - slack_x,
+          (1 - std::ranges::max(y)) * 0.5f * p.height - slack_y,
+          (std::ranges::max(x) + 1) * 0.5f * p.width + slack_x,
+          (1 - std::ranges::min(y)) * 0.5f * p.height + slack_y};
 }
 
 bool covers_sample(const Projector& p, const Rect& rect) noexcept {

@@ -80,6 +80,7 @@ SceneBuffers::SceneBuffers(Device& device, const Scene& scene)
   const std::vector<ObjectId> order = sort_objects(scene);
   mesh_data = upload(device, make_table(scene, order), "meshes");
   slot_objects = upload(device, order, "the order of drawing");
+  object_slots = upload(device, slots_, "places in the order of drawing");
 
   std::vector<shared::ObjectData> data(objects);
   std::vector<shared::BoxData> boxes(objects);

@@ -25,7 +25,7 @@ struct SceneBuffers {
   Buffer vertices, indices;
   Buffer object_data, box_data;              ///< by object
   Buffer mesh_data;                          ///< by batch, one after the last, then by mesh
-  Buffer slot_objects;                       ///< object of each slot
+  Buffer slot_objects, object_slots;         ///< object of each slot, slot of each object
   Buffer coordinates, images, alpha, looks;  ///< what cut-outs are tested by, and shared::LookBuffer
 
   SceneBuffers(Device& device, const Scene& scene);

@@ -29,8 +29,16 @@ std::uint32_t block_count(const SceneBuffers& scene) {
   return scene.ordered / kBlockSlots + 1;
 }
 
+std::uint64_t word_count(const SceneBuffers& scene) {
+  return std::uint64_t{scene.ordered} / 32 + 1;
+}
+
 std::uint64_t done_at(const SceneBuffers& scene) {
-  return 2 * (2 * (std::uint64_t{scene.ordered} / 32 + 1) + block_count(scene));
+  return 2 * (2 * word_count(scene) + block_count(scene));
+}
+
+std::uint64_t candidates_at(const SceneBuffers& scene) {
+  return done_at(scene) + 5;
 }
 
 Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& frame, vk::DeviceAddress flags,
@@ -62,8 +70,9 @@ Push push_of(const SceneBuffers& scene, const Buffer& scan, const Recorder& fram
 VisibleDraws::VisibleDraws(Device& device, const SceneBuffers& scene)
     : scene_(scene),
       scan_blocks_(device, kScanBlocks),
+      scan_candidates_(device, kScanBlocks, std::array{1u}),
       scan_write_(device, kScanWrite),
-      scan_(device, (done_at(scene) + 5) * 4, Memory::device, "prefix sums") {
+      scan_(device, (candidates_at(scene) + word_count(scene)) * 4, Memory::device, "prefix sums") {
   device.run([&](const vk::raii::CommandBuffer& commands) {
     commands.fillBuffer(scan_.handle(), 0, VK_WHOLE_SIZE, 0);
     full_barrier(commands);
@@ -93,10 +102,14 @@ Recorder::Groups VisibleDraws::listed() const noexcept {
   return {scan_, (done_at(scene_) + 1) * 4};
 }
 
+vk::DeviceAddress VisibleDraws::candidates() const noexcept {
+  return scan_.address() + candidates_at(scene_) * 4;
+}
+
 void VisibleDraws::build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
-                         vk::DeviceAddress transparent_order, const List* second) const {
+                         vk::DeviceAddress transparent_order, const List* second, Among among) const {
   const Push push = push_of(scene_, scan_, frame, flags, first, transparent_order, second);
-  frame.run(scan_blocks_, push, groups(), 1);
+  frame.run(among == Among::candidates ? scan_candidates_ : scan_blocks_, push, groups(), 1);
   frame.run(scan_write_, push, groups(), push.list_count);
 }
 

@@ -38,11 +38,14 @@ public:
     Condition solid, rest;
     const DrawBuffers* out;
   };
+  /// Which slots are looked at.
+  enum class Among : std::uint8_t { all, candidates };
   /// Lists the objects that meet a condition; into a second list, where there is one, solid objects alone.
   /// `transparent_order` holds all transparent objects as they are to be drawn; 0 leaves the transparent
   /// commands as they were.
   void build(const Recorder& frame, vk::DeviceAddress flags, const List& first,
-             vk::DeviceAddress transparent_order, const List* second = nullptr) const;
+             vk::DeviceAddress transparent_order, const List* second = nullptr,
+             Among among = Among::all) const;
   void build(const Recorder& frame, vk::DeviceAddress flags, Condition condition,
              vk::DeviceAddress transparent_order, const DrawBuffers& out) const {
     build(frame, flags, List{condition, condition, &out}, transparent_order);
@@ -51,6 +54,8 @@ public:
   /// finds 0.
   void build_where(const Recorder& frame, vk::DeviceAddress flags, const List& list,
                    const Recorder::Groups& groups) const;
+  /// A bit a slot: who may be listed by the next build among candidates, which takes all of them back.
+  [[nodiscard]] vk::DeviceAddress candidates() const noexcept;
   /// How many groups each step takes for one list.
   [[nodiscard]] std::uint32_t groups() const noexcept;
   /// Of the first list built last: groups of 64 over its solid objects; then in a word how many they are.
@@ -63,7 +68,7 @@ public:
 
 private:
   const SceneBuffers& scene_;
-  ComputePipeline scan_blocks_, scan_write_;
+  ComputePipeline scan_blocks_, scan_candidates_, scan_write_;
   Buffer scan_;
 };
 

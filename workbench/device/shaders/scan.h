@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform Push {
   WordBuffer flags, slot_objects;
   // A list: two a word of 32 slots, which of them are listed and how many before it in its block; one a
   // block, how many before it. After both: groups done, 0 between dispatches; a VkDispatchIndirectCommand
-  // over the solid objects of the first list, and how many they are.
+  // over the solid objects of the first list, and how many they are; a bit a slot, who is a candidate.
   SharedWords scan;
   MeshBuffer meshes;
   ObjectBuffer objects;
@@ -42,6 +42,10 @@ uint done_at() {
 }
 uint listed_at() {
   return done_at() + 1;
+}
+
+uint candidate_at(uint word) {
+  return listed_at() + 4 + word;
 }
 
 uint meets(uint object, uvec2 condition) {

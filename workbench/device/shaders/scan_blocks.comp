@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 // the blocks and writes the commands: one a batch, then one a transparent object. What costs
 // on llvmpipe is a workgroup with barriers, whatever their number, so all that needs them is done here.
 const uint kRow = 8;  // lanes, and rows of lanes
+layout(constant_id = 0) const bool kAmongCandidates = false;
 shared uvec2 of_lane[kLanes], of_row[kRow];
 shared uint rank;
 
@@ -51,12 +52,22 @@ void write_command(uint list, CommandBuffer commands, WordBuffer objects_of, uin
   objects_of.at[ordered + i] = object;
 }
 
+// A bit a slot of a word, of those to look at. Candidates stand but once.
+uint taken(uint word) {
+  if (word >= word_count()) return 0;
+  const uint last = min(kEach, ordered - word * kEach);
+  if (!kAmongCandidates) return last == kEach ? ~0u : (1u << last) - 1;
+  const uint bits = scan.at[candidate_at(word)];
+  scan.at[candidate_at(word)] = 0;
+  return bits;
+}
+
 void main() {
-  const uint lane = gl_LocalInvocationID.x, block = gl_WorkGroupID.x;
-  const uint word = block * kLanes + lane, first = word * kEach, last = min(first + kEach, ordered);
+  const uint lane = gl_LocalInvocationID.x, block = gl_WorkGroupID.x, word = block * kLanes + lane;
   uvec2 met = uvec2(0);  // a bit a slot
-  for (uint slot = first; slot < last; ++slot) {
-    const uint flag = flags.at[slot_objects.at[slot]], bit = 1u << slot - first;
+  for (uint left = taken(word); left != 0; left &= left - 1) {
+    const uint slot = word * kEach + findLSB(left), bit = left & -left;
+    const uint flag = flags.at[slot_objects.at[slot]];
     const bool is_solid = slot < solid;
     const uvec2 condition = is_solid ? condition_of[0] : rest_condition;
     if ((flag & condition.x) == condition.y) met.x |= bit;

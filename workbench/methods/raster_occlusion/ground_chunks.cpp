@@ -24,7 +24,7 @@ bool contributes(const submission::Contribution& contribution, const Projector& 
 }  // namespace
 
 GroundChunks::GroundChunks(const Scene& scene, std::uint32_t depth)
-    : extent_(extent(scene)), map_({extent_, depth}) {
+    : extent_(sightline::extent(scene)), map_({extent_, depth}) {
   map_.insert_all(scene.bounds);
 }
 

@@ -25,6 +25,8 @@ public:
   [[nodiscard]] world::ChunkMap& map() noexcept { return map_; }
   [[nodiscard]] std::span<const std::uint32_t> inside() const noexcept { return walk_.inside; }
   [[nodiscard]] std::span<const std::uint32_t> crossing() const noexcept { return walk_.crossing; }
+  /// What holds all objects.
+  [[nodiscard]] const Box& extent() const noexcept { return extent_; }
   [[nodiscard]] std::uint64_t nodes_visited() const noexcept { return walk_.nodes_visited; }
 
 private:

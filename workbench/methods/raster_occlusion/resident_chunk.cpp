@@ -1,8 +1,15 @@
 // Beyond Lee & Shin 2023: the chunks stay on the GPU. Each frame sends only which chunks are in and what
 // moved; chunks, and of those that may show objects, are tested in compute; at most the three faces that look
 // at the eye are restored; objects that were visible last frame are drawn once, before the test.
+#include <algorithm>
 #include <cstring>
+#include <numeric>
+#include <span>
+#include <utility>
 
+#include <sightline/projection.hpp>
+
+#include "library/geometry/box_math.hpp"
 #include "library/geometry/mutant.h"
 #include "workbench/methods/raster_occlusion/ground_chunks.hpp"
 #include "workbench/methods/raster_occlusion/two_phase.hpp"
@@ -35,8 +42,10 @@ constexpr std::uint32_t kParts = (world::ChunkMap::kCapacity + kPart - 1) / kPar
 constexpr std::uint32_t kWhollyIn = 0x80000000u;
 
 struct ResidentPush {
-  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, parts, tiles, list, test;
+  vk::DeviceAddress boxes, state, chunks_in, chunk_objects, parts, tiles, slots, candidates, list, test;
   std::uint32_t stamp, chunks, widest;
+  std::array<std::uint32_t, 4> blocks;  ///< the first, and how many across and down
+  std::uint32_t ordered;
 };
 
 /// A chunk that is in.
@@ -56,6 +65,60 @@ static_assert(sizeof(TestData) == 48);
 struct FacesPush {
   vk::DeviceAddress boxes, state, list;
   std::uint32_t across_edge;
+};
+
+/// The blocks of which tiles are worth making: those that chunks touch, but for chunks that fill much of the
+/// picture, which are hardly ever hidden. Chunks that come one after the other are near each other: of most
+/// runs of them one look shows that they touch no more than those before.
+class BlocksToMake {
+public:
+  BlocksToMake(const View& view, const Box& extent) : projector_(make_projector(view, extent)) {}
+
+  void add(const Box& box) {
+    run_[length_] = box;
+    if (++length_ == run_.size()) end_run();
+  }
+
+  /// The first, and how many across and down.
+  [[nodiscard]] std::array<std::uint32_t, 4> blocks() {
+    end_run();
+    if (!(touched_.min_x < touched_.max_x && touched_.min_y < touched_.max_y)) return {};
+    const auto block = [](float at) { return static_cast<std::uint32_t>(at) / (kBlock * kDepthTile); };
+    const std::uint32_t column = block(touched_.min_x), row = block(touched_.min_y);
+    return {column, row, block(touched_.max_x) - column + 1, block(touched_.max_y) - row + 1};
+  }
+
+private:
+  static constexpr float kMuch = 0.25f;
+
+  void end_run() {
+    const std::span run = std::span(run_).first(std::exchange(length_, 0));
+    const Box all = std::accumulate(run.begin(), run.end(), geometry::kEmptyBox, geometry::united);
+    if (run.empty() || with(touched_, image_of(all)) == touched_) return;
+    for (const Box& box : run) {
+      const Rect image = image_of(box);
+      const float area = (image.max_x - image.min_x) * (image.max_y - image.min_y);
+      if (area < kMuch * projector_.width * projector_.height) touched_ = with(touched_, image);
+    }
+  }
+
+  // Its image, of what lies in the picture.
+  [[nodiscard]] Rect image_of(const Box& box) const {
+    const Rect rect = projected_rect(projector_, box);
+    const float right = projector_.width - 1, bottom = projector_.height - 1;
+    return {std::clamp(rect.min_x, 0.0f, right), std::clamp(rect.min_y, 0.0f, bottom),
+            std::clamp(rect.max_x, 0.0f, right), std::clamp(rect.max_y, 0.0f, bottom)};
+  }
+
+  static Rect with(const Rect& a, const Rect& b) {
+    return {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x),
+            std::max(a.max_y, b.max_y)};
+  }
+
+  Projector projector_;
+  std::array<Box, 8> run_;
+  std::size_t length_ = 0;
+  Rect touched_{1e9f, 1e9f, -1e9f, -1e9f};
 };
 
 constexpr std::array kResidentChunkParameters{submission::kContributionParameter,
@@ -125,29 +188,36 @@ private:
     });
   }
 
-  /// Writes which chunks are in; returns how many.
-  std::uint32_t enter_chunks(const View& view) {
+  struct Entered {
+    std::uint32_t chunks;
+    std::array<std::uint32_t, 4> blocks;
+  };
+  /// Writes which chunks are in.
+  Entered enter_chunks(const View& view) {
+    BlocksToMake blocks(view, chunks_.extent());
     chunks_.select(view, contribution_);
     auto* const first = chunks_in_.mapped<ChunkIn>();
     auto* entry = first;
     const auto enter = [&](std::uint32_t chunk, std::uint32_t mark) {
       const std::uint32_t parts = (chunks_.map().chunk(chunk).count + kPart - 1) / kPart;
-      *entry++ = {device::box_data(chunks_.map().chunk_bounds(chunk), 0), chunk | mark, parts};
+      const Box bounds = chunks_.map().chunk_bounds(chunk);
+      blocks.add(bounds);
+      *entry++ = {device::box_data(bounds, 0), chunk | mark, parts};
     };
     for (const std::uint32_t chunk : chunks_.inside()) enter(chunk, kWhollyIn);
     for (const std::uint32_t chunk : chunks_.crossing()) enter(chunk, 0);
-    return static_cast<std::uint32_t>(entry - first);
+    return {static_cast<std::uint32_t>(entry - first), blocks.blocks()};
   }
 
   void test(device::Recorder& frame) override {
-    const std::uint32_t count = enter_chunks(frame.view);
+    const auto [count, blocks] = enter_chunks(frame.view);
     if (count == 0) return;
     const TestData nothing{{vk::DrawIndirectCommand{0, 1, 0, 0},
                             vk::DrawIndirectCommand{0, 1, kFaceVertices * renderer_.buffers().objects, 0}},
                            {0, 1, 1},
                            0};
     frame.commands.updateBuffer<TestData>(test_.handle(), 0, nothing);
-    const std::uint32_t blocks = make_room(frame.targets.depth.width(), frame.targets.depth.height());
+    make_room(frame.targets.depth.width(), frame.targets.depth.height());
     frame.targets.depth.begin_reading(frame.commands);
     const vk::DeviceAddress boxes = renderer_.buffers().box_data.address();
     const ResidentPush push{boxes,
@@ -156,13 +226,17 @@ private:
                             resident_.address(),
                             parts_.address(),
                             farthest_.address(),
+                            renderer_.buffers().object_slots.address(),
+                            renderer_.draws().candidates(),
                             list_.address(),
                             test_.address(),
                             stamp_,
                             count,
-                            frame.widest_dispatch()};
+                            frame.widest_dispatch(),
+                            blocks,
+                            renderer_.buffers().ordered};
     // What lies behind whole tiles of depth needs no raster test, by far the dearer one.
-    frame.dispatch(tiles_, push, blocks * kBlock * kBlock, kBlock * kBlock);
+    frame.dispatch(tiles_, push, blocks[2] * blocks[3] * kBlock * kBlock, kBlock * kBlock);
     frame.dispatch(coarse_, push, count, kPart);
     frame.dispatch(objects_, push, {test_, offsetof(TestData, part_groups)});
     frame.targets.depth.end_reading(frame.commands);
@@ -175,14 +249,16 @@ private:
     frame.end_rendering();
   }
 
-  /// Room for the tiles of a picture; returns how many blocks they are.
-  std::uint32_t make_room(std::uint32_t width, std::uint32_t height) {
-    const auto across = [](std::uint32_t all, std::uint32_t each) { return (all + each - 1) / each; };
-    const std::uint32_t columns = across(width, kDepthTile), rows = across(height, kDepthTile);
-    const std::uint64_t bytes = std::uint64_t{4} * columns * rows;
+  [[nodiscard]] device::VisibleDraws::Among listed_among() const noexcept override {
+    return device::VisibleDraws::Among::candidates;
+  }
+
+  /// Room for the tiles of a picture.
+  void make_room(std::uint64_t width, std::uint64_t height) {
+    const auto tiles = [](std::uint64_t pixels) { return (pixels + kDepthTile - 1) / kDepthTile; };
+    const std::uint64_t bytes = 4 * tiles(width) * tiles(height);
     if (farthest_.size() < bytes)
       farthest_ = device::Buffer(renderer_.device(), bytes, device::Memory::device, "depth tiles");
-    return across(columns, kBlock) * across(rows, kBlock);
   }
 
   void count(CullStats& stats) override {

@@ -110,7 +110,7 @@ void TwoPhase::list_what_is_new(device::Recorder& frame) {
   const VisibleDraws::Condition seen = among(stamp_, kSeen, kSeen);
   const VisibleDraws::List late{among(stamp_, kDrawnEarly | kSeen, kSeen), seen, &late_},
       next{seen, kNever, &next_};
-  draws.build(frame, state_.address(), late, renderer_.transparent_order(), &next);
+  draws.build(frame, state_.address(), late, renderer_.transparent_order(), &next, listed_among());
   // Where nothing new is solid, what follows has no groups to run.
   const device::Recorder::Groups fresh = draws.listed(), equal_depth{follow_up_, kEqualDepthGroups},
                                  scan{follow_up_, kScanGroups};

@@ -20,6 +20,10 @@ protected:
   /// Sets the state (state.h) of every object that is in view, and whether the depth so far leaves it seen.
   virtual void test(device::Recorder& frame) = 0;
   virtual void count(CullStats& stats) = 0;
+  /// Whether test() names as candidates whom it leaves seen, or asks the rasteriser about.
+  [[nodiscard]] virtual device::VisibleDraws::Among listed_among() const noexcept {
+    return device::VisibleDraws::Among::all;
+  }
 
   device::Renderer& renderer_;
   submission::Contribution contribution_;

@@ -3,7 +3,6 @@
 
 #include "workbench/device/shaders/view.h"
 
-#include "library/geometry/mutant.h"
 #include "resident.h"
 #include "workbench/device/shaders/frame_depth.h"
 layout(local_size_x = kBlock * kBlock) in;
@@ -13,8 +12,8 @@ layout(local_size_x = kBlock * kBlock) in;
 // sampler repeats it.
 void main() {
   const uvec2 size = tiles_in_image();
-  const uint lane = gl_LocalInvocationID.x, across = (size.x + kBlock - 1) / kBlock;
-  const uvec2 block = uvec2(workgroup() % across, workgroup() / across);
+  const uint lane = gl_LocalInvocationID.x;
+  const uvec2 block = blocks.xy + uvec2(workgroup() % blocks.z, workgroup() / blocks.z);
   const uvec2 tile = kBlock * block + uvec2(lane % kBlock, lane / kBlock);
   if (any(greaterThanEqual(tile, size))) return;
   // Four texels about each point, which lies where they meet.
@@ -23,8 +22,5 @@ void main() {
   const vec4 b = textureGather(frame_depth, (first + vec2(3, 1)) * scale);
   const vec4 c = textureGather(frame_depth, (first + vec2(1, 3)) * scale);
   const vec4 d = textureGather(frame_depth, (first + vec2(3, 3)) * scale);
-  const vec4 low = min(min(a, b), min(c, d)), high = max(max(a, b), max(c, d));
-  const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-  const float highest = max(max(high.x, high.y), max(high.z, high.w));
-  tiles.at[tile.y * size.x + tile.x] = (SIGHTLINE_MUTANT(tiles_of_the_nearest) ? view.reversed == 0 : view.reversed != 0) ? lowest : highest;
+  tiles.at[tile.y * size.x + tile.x] = farthest(vec4(farthest(a), farthest(b), farthest(c), farthest(d)));
 }

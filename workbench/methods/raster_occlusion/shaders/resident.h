@@ -1,5 +1,7 @@
 // What the steps of resident-chunk's test share: depth tiles are made of the picture so far, chunks in view
 // are held against them, and of the chunks that they leave the objects.
+#include "library/geometry/mutant.h"
+
 const uint kParts = 3, kWords = 97;  // parts of a chunk that a workgroup takes; words of a chunk
 const uint kFaceVertices = 18;
 const uint kGroup = 32;     // lanes, an object or a chunk each
@@ -35,9 +37,13 @@ layout(push_constant, scalar) uniform Push {
   WordBuffer chunk_objects;  // 97 words a chunk: how many, ids
   WordBuffer parts;  // that the tiles leave: three times the chunk's number and the part's, or kWhollyIn
   FloatBuffer tiles;
+  WordBuffer slots,
+      candidates;   // the object's place in the order of drawing; a bit a slot, who may be listed
   WordBuffer list;  // boxes for the raster test
   TestBuffer test;
   uint frame, chunks, widest;  // chunks in; widest: workgroups that fit side by side
+  uvec4 blocks;                // those of which tiles are made: the first, and how many across and down
+  uint ordered;                // slots that have candidates
 };
 
 // In pixels, in tiles.
@@ -46,4 +52,10 @@ uvec2 image_size() {
 }
 uvec2 tiles_in_image() {
   return (image_size() + kDepthTile - 1) / kDepthTile;
+}
+// Of four depths.
+float farthest(vec4 depths) {
+  const float low = min(min(depths.x, depths.y), min(depths.z, depths.w));
+  const float high = max(max(depths.x, depths.y), max(depths.z, depths.w));
+  return (SIGHTLINE_MUTANT(tiles_of_the_nearest) ? view.reversed == 0 : view.reversed != 0) ? low : high;
 }

@@ -46,13 +46,23 @@ bool pixels_leave_open(Footprint print) {
   const uvec2 edge = image_size() - 1;
   const uvec2 first = min(uvec2(max(print.low, vec2(0))), edge);
   const uvec2 last = min(uvec2(max(print.high, vec2(0))), edge), span = last - first + 1;
+  const vec2 scale = 1 / vec2(image_size());
   bool open = print.whole || span.x * span.y > kMostPixels;
-  for (uvec2 at = first; at.y <= last.y && !open;) {
-    open = !hides(texelFetch(frame_depth, ivec2(at), 0).x, print.nearest);
-    const bool ends = at.x == last.x;
-    at = uvec2(ends ? first.x : at.x + 1, ends ? at.y + 1 : at.y);
+  // Two rows and columns at a time, of an odd number the last ones once more.
+  const uvec2 end = max(last, first + 1) - 1;
+  uvec2 at = first;
+  for (bool more = !open; more;) {
+    open = !hides(farthest(textureGather(frame_depth, vec2(at + 1) * scale)), print.nearest);
+    more = !open && at != end;
+    const bool ends = at.x == end.x;
+    at = uvec2(ends ? first.x : min(at.x + 2, end.x), ends ? min(at.y + 2, end.y) : at.y);
   }
   return open;
+}
+
+void name_candidate(uint object) {
+  const uint slot = slots.at[object];
+  if (slot < ordered) atomicOr(candidates.at[slot / 32], 1u << slot % 32);
 }
 
 // Boxes wholly in the picture are listed from the front, those across its edge from the back.
@@ -83,6 +93,7 @@ void main() {
   // What is drawn early for the second time was seen with all else there: whether it still shows is asked in one
   // frame of four (Mattausch, Bittner & Wimmer 2008).
   const bool rests = drawn && (before & kDrawnEarly) != 0 && (SIGHTLINE_MUTANT(drawn_early_for_ever) ? true : (object + frame) % 4 != 0);
+  bool asked = false;
   bool seen = SIGHTLINE_MUTANT(resident_chunk_by_frustum) ? true : rests || reaches_near_plane(centre, half_extent);
   if (!seen) {
     const Footprint print = footprint(centre, half_extent);
@@ -90,8 +101,10 @@ void main() {
       const bool large = !print.whole && all(greaterThan(print.high - print.low, vec2(kLarge)));
       const bool inside = !print.whole && all(greaterThan(print.low, vec2(0))) && all(lessThan(print.high, vec2(image_size())));
       seen = large && shows_somewhere(centre, half_extent);
-      if (!seen) rasterise(object, inside);
+      asked = !seen;
+      if (asked) rasterise(object, inside);
     }
   }
+  if (seen || (SIGHTLINE_MUTANT(asked_boxes_no_candidates) ? false : asked)) name_candidate(object);
   state.at[object] = state_word(frame, seen ? bits | kSeen : bits);
 }

@@ -7,7 +7,8 @@ bool hides(float depth, float nearest) {
 // Of a box that touches more, looking costs more than what it spares.
 const uint kMostTiles = 1024;
 
-// Whether some tile of the footprint leaves it open, or nobody knows. Beside the picture there are none.
+// Whether some tile of the footprint leaves it open, or nobody knows, as where tiles are not made. Beside the
+// picture there are none.
 bool tiles_leave_open(Footprint print) {
   const vec2 image = vec2(image_size());
   if (print.whole) return true;
@@ -16,7 +17,9 @@ bool tiles_leave_open(Footprint print) {
   const uvec2 first = min(uvec2(max(print.low, vec2(0))) / kDepthTile, edge);
   const uvec2 last = min(uvec2(min(print.high, image)) / kDepthTile, edge), span = last - first + 1;
   const uint columns = tiles_in_image().x;
-  bool open = span.x * span.y > kMostTiles;
+  const bool made = all(greaterThanEqual(first, kBlock * blocks.xy)) &&
+                    all(lessThan(last, kBlock * (blocks.xy + blocks.zw)));
+  bool open = span.x * span.y > kMostTiles || !made;
   for (uvec2 tile = first; tile.y <= last.y && !open;) {
     open = !hides(tiles.at[tile.y * columns + tile.x], print.nearest);
     const bool ends = tile.x == last.x;
