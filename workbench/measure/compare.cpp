@@ -1,5 +1,10 @@
 #include "workbench/measure/compare.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/measure/mover.hpp"
@@ -69,20 +74,19 @@ void take(Samples& samples, const device::FrameTimes& times, bool drawn, device:
   if (drawn) samples.frame.push_back(times.frame_ms);
 }
 
-/// All subjects of one view by turns; each keeps its last answer.
-std::vector<Samples> take_times(Bench& bench, const View& view, std::size_t turn,
-                                const MeasureOptions& options, Mover& mover) {
+/// Subjects of one view by turns, each of which keeps its last answer.
+void take_times(Bench& bench, std::span<const std::size_t> who, const View& view, std::size_t turn,
+                const MeasureOptions& options, Mover& mover, std::span<Samples> samples) {
   using Timed = device::Timed;
   const auto subjects = bench.subjects();
   const bool drawn = bench.renderer() != nullptr;
-  std::vector<Samples> samples(subjects.size());
   const std::size_t whole_frames = options.warm_up + options.repeats,
                     frames = whole_frames + (drawn ? options.timed_passes : 0);
   for (std::size_t repeat = 0; repeat < frames; ++repeat) {
     const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
     if (options.moving > 0) bench.update(mover.move());
-    for (std::size_t k = 0; k < subjects.size(); ++k) {
-      const std::size_t m = (k + turn + repeat) % subjects.size();
+    for (std::size_t k = 0; k < who.size(); ++k) {
+      const std::size_t m = who[(k + turn + repeat) % who.size()];
       const bool counts = repeat >= options.warm_up;
       // Where objects move, every frame is another answer.
       const bool enough = !drawn && options.moving == 0 && samples[m].spent > options.patience_ms;
@@ -92,7 +96,6 @@ std::vector<Samples> take_times(Bench& bench, const View& view, std::size_t turn
       if (counts) take(samples[m], times, drawn, timed);
     }
   }
-  return samples;
 }
 
 Row row_of(Bench& bench, Subject& subject, const View& view, std::size_t index, Samples& samples) {
@@ -116,7 +119,43 @@ Row row_of(Bench& bench, Subject& subject, const View& view, std::size_t index, 
   return row;
 }
 
+/// What finalists' frames took, theirs and those before.
+void run_finals(Bench& bench, MeasureOptions options, Mover& mover,
+                std::vector<std::vector<Samples>>& samples, Comparison& result) {
+  const std::vector<std::size_t> who = finalists(result);
+  if (who.size() < 2) return;
+  options.repeats = options.finals, options.timed_passes = 0;
+  for (std::size_t v = 0; v < samples.size(); ++v) {
+    const View view = or_throw(make_view(result.cameras[v], options.width, options.height));
+    take_times(bench, who, view, v, options, mover, samples[v]);
+    for (const std::size_t m : who) {
+      Row& row = result.rows[v * result.methods.size() + m];
+      row.cull = timing_of(samples[v][m].cpu), row.frame = timing_of(samples[v][m].frame);
+    }
+  }
+}
+
 }  // namespace
+
+std::vector<std::size_t> finalists(const Comparison& so_far) {
+  constexpr double kClose = 1.3;  // a few frames among many methods' tell no closer
+  constexpr std::size_t kMost = 8;
+  const std::size_t methods = so_far.methods.size();
+  std::vector<double> frame(methods);
+  for (std::size_t i = 0; i < so_far.rows.size(); ++i) {
+    const Row& row = so_far.rows[i];
+    const bool safe =
+        row.lost_objects == 0 && row.guarantee != Guarantee::approximate && row.method != kLimit;
+    frame[i % methods] += safe ? row.frame->median : std::numeric_limits<double>::infinity();
+  }
+  std::vector<std::size_t> order(methods);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t m) { return frame[m]; });
+  const double most = kClose * frame[order.front()];
+  std::erase_if(order, [&](std::size_t m) { return !(frame[m] <= most) || std::isinf(frame[m]); });
+  order.resize(std::min(order.size(), kMost));
+  return order;
+}
 
 Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOptions& options,
                    const Progress& progress) {
@@ -133,14 +172,18 @@ Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOp
   result.cameras = path.cameras;
   for (const Subject& subject : bench.subjects()) result.methods.push_back(subject.name);
   Mover mover(bench.scene(), options.moving, 1);
+  std::vector<std::size_t> all(result.methods.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector samples(path.cameras.size(), std::vector<Samples>(all.size()));
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], options.width, options.height));
     if (limit) limit->look(view);
-    std::vector<Samples> samples = take_times(bench, view, v, options, mover);
-    for (std::size_t m = 0; m < samples.size(); ++m)
-      result.rows.push_back(row_of(bench, bench.subjects()[m], view, v, samples[m]));
+    take_times(bench, all, view, v, options, mover, samples[v]);
+    for (const std::size_t m : all)
+      result.rows.push_back(row_of(bench, bench.subjects()[m], view, v, samples[v][m]));
     if (progress) progress(v + 1, path.cameras.size());
   }
+  if (bench.renderer() && options.finals > 0) run_finals(bench, options, mover, samples, result);
   return result;
 }
 

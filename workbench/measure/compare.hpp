@@ -52,6 +52,8 @@ struct MeasureOptions {
   /// On a device: frames of each method and view that tell what their passes took on the GPU, and nothing
   /// else: they are the slower for it.
   std::size_t timed_passes = 5;
+  /// On a device: frames more of each view of those that may be the quickest, by turns among themselves.
+  std::size_t finals = 0;
   double moving = 0;  ///< share of the objects that move before every frame
   /// One more subject, kLimit: what the item buffer sees and nothing else, found for nothing. No culling of
   /// whole objects leaves less to draw. Not where objects move.
@@ -61,8 +63,13 @@ struct MeasureOptions {
 inline constexpr std::string_view kLimit = "(limit)";
 
 /// For each view, all methods by turns in an order that rotates, so that drift of the machine hits all alike;
-/// then the oracle. Throws Error for a camera that makes no view and for an impossible visible set.
+/// then the oracle. The finals come last. Throws Error for a camera that makes no view and for an impossible
+/// visible set.
 Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOptions& options,
                    const Progress& progress = {});
+
+/// Who may be the quickest, quickest first: of the methods that lost nothing and promise so, up to eight
+/// whose frames came close, as places in `methods`. Of a comparison whose frames were drawn.
+std::vector<std::size_t> finalists(const Comparison& so_far);
 
 }  // namespace sightline::measure

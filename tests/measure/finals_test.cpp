@@ -1,0 +1,88 @@
+// The finals of compare: those that may be the quickest take turns once more.
+#include "device/fixtures.hpp"
+#include "workbench/measure/compare.hpp"
+#include "workbench/submission/draw_list.hpp"
+
+namespace sightline {
+namespace {
+
+struct Entrant {
+  const char* method;
+  double frame_ms;
+  std::uint64_t lost = 0;
+  Guarantee guarantee = Guarantee::exact;
+};
+
+measure::Comparison comparison_of(std::span<const Entrant> entrants) {
+  measure::Comparison out;
+  out.device = "some device";
+  for (const Entrant& entrant : entrants) out.methods.emplace_back(entrant.method);
+  for (std::size_t view = 0; view < 2; ++view) {
+    for (const Entrant& entrant : entrants) {
+      measure::Row row;
+      row.method = entrant.method;
+      row.guarantee = entrant.guarantee;
+      row.lost_objects = view == 1 ? entrant.lost : 0;
+      row.frame = measure::Timing{entrant.frame_ms, entrant.frame_ms, entrant.frame_ms};
+      out.rows.push_back(row);
+    }
+  }
+  return out;
+}
+
+TEST(Finals, AreForThoseWhoLostNothingAndCameClose) {
+  const std::vector<Entrant> entrants{{"slow", 14},
+                                      {"close", 12},
+                                      {"lossy", 5, 3},
+                                      {"best", 10},
+                                      {"approximate", 6, 0, Guarantee::approximate},
+                                      {"(limit)", 2}};
+  EXPECT_EQ(measure::finalists(comparison_of(entrants)), (std::vector<std::size_t>{3, 1}));
+  const std::vector<Entrant> many(20, {"one of many", 10});
+  EXPECT_EQ(measure::finalists(comparison_of(many)).size(), 8u);
+  const std::vector<Entrant> none{{"lossy", 5, 3}};
+  EXPECT_TRUE(measure::finalists(comparison_of(none)).empty());
+}
+
+/// Draws all, and counts how often.
+class Counted final : public Method {
+public:
+  Counted(const Scene& scene, Guarantee guarantee, std::size_t& frames)
+      : Method(scene), draw_list_(scene), guarantee_(guarantee), frames_(frames) {}
+  [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_; }
+  void do_update(std::span<const ObjectId>) override {}
+  void do_record(FrameContext& context) override {
+    ++frames_;
+    context.output.clear();
+    for (ObjectId o = 0; o < scene_.size(); ++o) context.output.visible.push_back(o);
+    draw_list_.build(scene_, context.view, context.output);
+  }
+
+private:
+  submission::DrawList draw_list_;
+  Guarantee guarantee_;
+  std::size_t& frames_;
+};
+
+using FinalsTest = DeviceTest;
+
+TEST_F(FinalsTest, AreFramesMore) {
+  Scene scene = generate_world("irregular?spheres=300&size=40&detail=1");
+  measure::Bench bench(scene, {}, &device());
+  std::array<std::size_t, 3> frames{};
+  bench.add("a", std::make_unique<Counted>(scene, Guarantee::exact, frames[0]));
+  bench.add("b", std::make_unique<Counted>(scene, Guarantee::exact, frames[1]));
+  bench.add("c", std::make_unique<Counted>(scene, Guarantee::approximate, frames[2]));
+  measure::MeasureOptions options;
+  options.width = 96, options.height = 64;
+  options.warm_up = 1, options.repeats = 2, options.timed_passes = 0, options.finals = 5;
+  const measure::Comparison result = measure::compare(bench, camera::make_path(scene, "near", 2), options);
+  const std::size_t without = 2 * (1 + 2), with = without + 2 * (1 + 5);
+  EXPECT_EQ(frames[2], without);
+  EXPECT_EQ(frames[0], frames[1]);
+  EXPECT_TRUE(frames[0] == without || frames[0] == with) << frames[0];
+  ASSERT_EQ(result.rows.size(), 6u);
+}
+
+}  // namespace
+}  // namespace sightline
