@@ -21,6 +21,9 @@ test('three.js draws the same with the culler, and less', async () => {
     judge(await compare(full ? 2000 : Number(process.env.VIEWS ?? 500), { lit: false, antialias: true }), 0.7);
     judge(await compare(full ? 200 : Number(process.env.VIEWS ?? 40), { lit: true, antialias: true }), 0.9);
     assert.deepEqual(await tab.evaluate(() => window.changes()), { bad: [], own: 2, left: 0 });
+    const { differing, own, whole, street } = await tab.evaluate(() => window.above());
+    assert.deepEqual({ differing, whole }, { differing: 0, whole: 12 });
+    assert.ok(own >= 10 && street < 0.5, `${own} frames left to three; at the street ${street} drawn`);
   });
 });
 
