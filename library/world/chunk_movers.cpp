@@ -1,10 +1,9 @@
 // Moving at little cost: within a chunk's bounds a move touches nothing but its box; what leaves them, or
 // moves frame after frame, stands in chunks of movers, in the order in which it came, until it rests.
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <bit>
 
+#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_math.hpp"
 #include "library/world/chunk_map.hpp"
 
@@ -84,7 +83,7 @@ void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& bo
 
 void ChunkMap::prefetch_chunk(ObjectId object) const noexcept {
   const std::uint32_t chunk = (*locations_)[object].chunk;
-  if (chunk < chunks_.size()) hwy::Prefetch(&chunks_[chunk]);
+  if (chunk < chunks_.size()) ask_ahead(&chunks_[chunk]);
 }
 
 void ChunkMap::prefetch_lanes(ObjectId object, bool many) const noexcept {
@@ -92,8 +91,8 @@ void ChunkMap::prefetch_lanes(ObjectId object, bool many) const noexcept {
   if (at.chunk >= chunks_.size()) return;
   const Chunk& c = chunks_[at.chunk];
   if (at.slot() >= c.capacity) return;
-  if (many && c.pool == kStill) return hwy::Prefetch(ids(c) + at.slot());  // it will leave
-  for (std::uint32_t side = 0; side < 6; ++side) hwy::Prefetch(lanes(c, side) + at.slot());
+  if (many && c.pool == kStill) return ask_ahead(ids(c) + at.slot());  // it will leave
+  for (std::uint32_t side = 0; side < 6; ++side) ask_ahead(lanes(c, side) + at.slot());
 }
 
 void ChunkMap::make_dirty(std::uint32_t chunk) {

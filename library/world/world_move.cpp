@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_runs.hpp"
 #include "library/world/world_state.hpp"
@@ -29,6 +30,7 @@ public:
     for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
     begin_sector(s_.objects[ids_[0]].sector);
     const bool inside = read_boxes(count);
+    if (geometry::kAsksByReading && !map_->is_mover(ids_[0])) ask_for_block(count);
     for (std::uint32_t i = 0; i < count;) {
       if (inside && run_chunk_ != ChunkMap::kNone && patience_ == 0) {
         const std::uint32_t moved =
@@ -38,7 +40,7 @@ public:
         if (moved > 0) continue;
       }
       patience_ -= patience_ > 0;
-      prefetch(first + i);
+      if (!geometry::kAsksByReading) ask_ahead(first + i);
       move_one(i++, inside);
     }
   }
@@ -68,12 +70,18 @@ private:
   }
 
   // What objects need is asked for in three steps, each when the one before has arrived.
-  void prefetch(std::size_t at) const {
+  void ask_ahead(std::size_t at) const {
     constexpr std::size_t kLanes = 8, kChunk = 16, kObject = 32;
     if (at + kObject >= handles_.size()) return;
-    hwy::Prefetch(&s_.objects[handles_[at + kObject].index]);
+    geometry::ask_ahead(&s_.objects[handles_[at + kObject].index]);
     map_->prefetch_chunk(handles_[at + kChunk].index);
     map_->prefetch_lanes(handles_[at + kLanes].index, moving_.many);
+  }
+  void ask_for_block(std::uint32_t count) const {
+    const std::span<const ObjectId> ids(ids_.data(), count);
+    for (const ObjectId id : ids) geometry::ask_ahead(&s_.objects[id]);
+    for (const ObjectId id : ids) map_->prefetch_chunk(id);
+    for (const ObjectId id : ids) map_->prefetch_lanes(id, moving_.many);
   }
 
   void move_one(std::uint32_t i, bool inside) {

@@ -5,14 +5,14 @@
 import { withPage } from '../test/browser/chromium.mjs';
 import { writeRows } from './csv.mjs';
 
-const [count = 100_000, frames = 9] = process.argv.slice(2).filter((word) => /^\d+$/.test(word)).map(Number);
+const [count = 100_000, frames = 21] = process.argv.slice(2).filter((word) => /^\d+$/.test(word)).map(Number);
 const given = ['instanced', 'batched', 'meshes'].filter((kind) => process.argv.includes(kind));
 const kinds = given.length > 0 ? given : ['instanced', 'batched', 'meshes'], times = {}, beside = {};
 await withPage(new URL('city.page.mjs', import.meta.url).pathname, async (tab) => {
   await tab.waitForFunction(() => window.time);
   for (const aerial of [false, true]) {
     for (const kind of kinds) {
-      const result = await tab.evaluate((given) => window.time(...given), [kind, count, aerial, aerial ? Math.min(frames, 5) : frames]);
+      const result = await tab.evaluate((given) => window.time(...given), [kind, count, aerial, aerial ? Math.min(frames, 7) : frames, aerial ? 2 : 8]);
       const name = `${aerial ? 'above' : 'street'}-${kind}`;
       times[name] = result.without, (times[`${name}-culled`] = result.with), (beside[name] = [`${name}-culled`]);
       // Until it is drawn, the GPU's part included.

@@ -1,6 +1,9 @@
 // `sightline-culling/three` in a browser: the same pictures to the bit, fewer triangles.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import * as THREE from 'three';
+import { ready, SightlineCuller } from 'sightline-culling/three';
+import { add, look, places, random } from '../scenes/city.mjs';
 import { withPage } from './browser/chromium.mjs';
 
 const full = Boolean(process.env.SIGHTLINE_FULL);
@@ -21,6 +24,9 @@ test('three.js draws the same with the culler, and less', async () => {
     judge(await compare(full ? 2000 : Number(process.env.VIEWS ?? 500), { lit: false, antialias: true }), 0.7);
     judge(await compare(full ? 200 : Number(process.env.VIEWS ?? 40), { lit: true, antialias: true }), 0.9);
     assert.deepEqual(await tab.evaluate(() => window.changes()), { bad: [], own: 2, left: 0 });
+    const { differing, own, whole, street } = await tab.evaluate(() => window.above());
+    assert.deepEqual({ differing, whole }, { differing: 0, whole: 12 });
+    assert.ok(own >= 10 && street < 0.5, `${own} frames left to three; at the street ${street} drawn`);
   });
 });
 
@@ -32,4 +38,37 @@ test('WebGPURenderer draws the same with the culler', async () => {
     assert.equal(result.differing, 0, JSON.stringify(result));
     assert.ok(result.hidden > 0.2 * result.objects && result.shown > 30, JSON.stringify(result));
   });
+});
+
+// What a batch hands to WebGL: start, count and instance of each draw.
+function listed(batch) {
+  const { _multiDrawStarts: starts, _multiDrawCounts: counts, _indirectTexture: { image: { data } } } = batch;
+  return Array.from({ length: batch._multiDrawCount }, (_, i) => `${starts[i]} ${counts[i]} ${data[i]}`);
+}
+
+test('instances of a batch are drawn in the order that three draws them in', async () => {
+  await ready;
+  const scene = new THREE.Scene(), { all: where, side } = places(4000), next = random(3), renderer = { isWebGLRenderer: true, sortObjects: true };
+  for (let i = 0; i < where.length; i += 7) where[i] = where[0]; // equally far
+  add(scene, 'batched', where, new THREE.MeshBasicMaterial());
+  const [batch] = scene.children, { material } = batch, camera = new THREE.PerspectiveCamera(60, 1.5, 0.1, 500);
+  const culler = new SightlineCuller(scene, { occlusion: false }), byIndex = (list) => list.sort((a, b) => b.index - a.index);
+  await new Promise((loaded) => setTimeout(loaded, 10));
+  const draw = () => batch.onBeforeRender(renderer, scene, camera, batch.geometry, material);
+  draw(); // three's first list is of another eye: making spheres, it writes over it
+  for (const [sorts, transparent, custom] of [[true, false], [true, true], [false, false], [true, false, byIndex]]) {
+    Object.assign(batch, { sortObjects: sorts, customSort: custom ?? null }), (material.transparent = transparent);
+    for (let view = 0; view < 20; ++view) {
+      look(camera, next, side), camera.updateMatrixWorld(), scene.updateMatrixWorld();
+      draw();
+      const theirs = listed(batch);
+      scene.onBeforeRender(renderer, scene, camera, null), draw(), scene.onAfterRender(renderer, scene, camera, null);
+      const ours = listed(batch), all = new Set(theirs), both = new Set(ours.filter((draws) => all.has(draws)));
+      const common = (list) => list.filter((draws) => both.has(draws)); // spheres and boxes let other things in at the edges
+      assert.deepEqual(common(ours), common(theirs));
+      assert.ok(both.size > 0.5 * theirs.length && both.size > 0.95 * ours.length, `${both.size} of ${ours.length}, ${theirs.length}`);
+    }
+  }
+  culler.dispose();
+  assert.deepEqual(Object.keys(batch).filter((name) => /^(set|add|delete|optimize)/.test(name)), []);
 });

@@ -1,6 +1,7 @@
 // The module `core`: boxes that move and their cull, and flat culling.
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include <sightline/frustum.hpp>
@@ -192,14 +193,20 @@ std::uint32_t report_frame_time(WebCuller* culler, double nanoseconds) {
 SIGHTLINE_WEB(sort_ids)
 void sort_ids(WebCuller* culler, std::uint32_t* ids, std::uint8_t* masks, std::size_t count,
               std::size_t limit) {
+  using Eight = std::uint64_t;  // masks looked at together: most are 0
   std::vector<std::uint8_t>& mask_of = culler->mask_of;
-  if (mask_of.size() < limit) mask_of.resize(limit);
+  if (mask_of.size() < limit + sizeof(Eight)) mask_of.resize(limit + sizeof(Eight));
   for (std::size_t i = 0; i < count; ++i) mask_of[ids[i]] = masks[i];
   std::size_t out = 0;
-  for (std::size_t id = 0; id < limit && out < count; ++id) {
-    if (mask_of[id] == 0) continue;
-    ids[out] = static_cast<std::uint32_t>(id), masks[out] = mask_of[id];
-    mask_of[id] = 0, ++out;
+  for (std::size_t first = 0; out < count; first += sizeof(Eight)) {
+    Eight eight;
+    std::memcpy(&eight, &mask_of[first], sizeof(Eight));
+    if (eight == 0) continue;
+    for (std::size_t id = first; id < first + sizeof(Eight); ++id) {
+      if (mask_of[id] == 0) continue;
+      ids[out] = static_cast<std::uint32_t>(id), masks[out] = mask_of[id];
+      mask_of[id] = 0, ++out;
+    }
   }
 }
 

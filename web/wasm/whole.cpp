@@ -1,7 +1,7 @@
 // What the whole module has beside `core`: occlusion and rays.
 #include <algorithm>
-#include <cmath>
-#include <vector>
+
+#include <hwy/highway.h>
 
 #include <sightline/occlusion.hpp>
 #include <sightline/rays.hpp>
@@ -10,38 +10,7 @@
 
 namespace sightline::web {
 
-namespace {
-
-// How far from a pixel's centre a sample of it can lie, in metres, at a depth along the view.
-class PixelReach {
-public:
-  explicit PixelReach(const WorldView& view) noexcept
-      : view_(view.view), constant_(is_orthographic(view.view)) {
-    const float wide = 1 / (std::fabs(view_.eye_to_clip.m[0]) * static_cast<float>(view_.width));
-    const float high = 1 / (std::fabs(view_.eye_to_clip.m[5]) * static_cast<float>(view_.height));
-    per_metre_ = std::sqrt(wide * wide + high * high) * 1.001f;  // which rounding does not eat up
-  }
-
-  /// Anywhere in a box, in metres about the view's origin.
-  [[nodiscard]] double of(const WorldBox& box) const noexcept {
-    if (constant_) return per_metre_;
-    const auto& m = view_.world_to_eye.m;
-    const double depth = -(farthest(m[2], box.min.x, box.max.x) + farthest(m[6], box.min.y, box.max.y) +
-                           farthest(m[10], box.min.z, box.max.z) + m[14]);
-    return std::max(depth, 0.0) * per_metre_;
-  }
-
-private:
-  static double farthest(float row, double low, double high) noexcept {
-    return std::min(row * low, row * high);
-  }
-
-  View view_;
-  bool constant_;
-  float per_metre_;
-};
-
-}  // namespace
+namespace hn = hwy::HWY_NAMESPACE;
 
 extern "C" {
 
@@ -102,40 +71,22 @@ std::uint32_t occlusion_read_nearness(const OcclusionBuffer* buffer, float* pixe
   return keep(buffer->read_nearness({pixels, count}));
 }
 
-/// Takes `bit` out of the masks of what no sample anywhere in a pixel can see, given that occluders were
-/// drawn smaller by a sample's reach: the box of ids[i], minimum and maximum at 6 · ids[i], grows by it, so
-/// that it holds, for each point of it that a sample might see, one at the same depth before the pixel's
-/// centre. Returns how many were hidden.
-SIGHTLINE_WEB(occlusion_hide)
-std::size_t occlusion_hide(const OcclusionBuffer* buffer, const double* boxes, const std::uint32_t* ids,
-                           std::uint8_t* masks, std::size_t count, std::uint32_t bit) {
-  constexpr std::size_t kBatch = 256;
-  const PixelReach reach(buffer->view());
-  const WorldPoint& origin = buffer->view().origin;
-  WorldBox batch[kBatch];
-  std::size_t at[kBatch];
-  std::uint8_t seen[kBatch];
-  std::size_t waiting = 0, hidden = 0;
-  const auto ask = [&] {
-    if (!buffer->may_see(BoxView(std::span(batch, waiting)), {seen, waiting})) return;
-    for (std::size_t k = 0; k < waiting; ++k) {
-      if (seen[k]) continue;
-      masks[at[k]] &= static_cast<std::uint8_t>(~bit);
-      ++hidden;
-    }
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(masks[i] & bit)) continue;
-    const double* b = boxes + std::size_t{6} * ids[i];
-    const WorldBox box{{b[0] - origin.x, b[1] - origin.y, b[2] - origin.z},
-                       {b[3] - origin.x, b[4] - origin.y, b[5] - origin.z}};
-    const double by = reach.of(box);
-    batch[waiting] = {{b[0] - by, b[1] - by, b[2] - by}, {b[3] + by, b[4] + by, b[5] + by}};
-    at[waiting++] = i;
-    if (waiting == kBatch) ask(), waiting = 0;
+/// Takes over to `known` which of `count` matrices, of 16 numbers, are others bit for bit; writes their
+/// indices to `moved` and returns how many.
+SIGHTLINE_WEB(moved_matrices)
+std::size_t moved_matrices(const std::uint32_t* now, std::uint32_t* known, std::size_t count,
+                           std::uint32_t* moved) {
+  constexpr std::size_t kNumbers = 16;
+  const hn::Full128<std::uint32_t> d;
+  const auto differ = [&](std::size_t k) { return hn::Xor(hn::Load(d, now + k), hn::Load(d, known + k)); };
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; ++i, now += kNumbers, known += kNumbers) {
+    const auto other = hn::Or(hn::Or(differ(0), differ(4)), hn::Or(differ(8), differ(12)));
+    if (hn::AllFalse(d, hn::Ne(other, hn::Zero(d)))) continue;
+    std::copy(now, now + kNumbers, known);
+    moved[found++] = static_cast<std::uint32_t>(i);
   }
-  ask();
-  return hidden;
+  return found;
 }
 
 // --- rays ---

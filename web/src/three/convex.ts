@@ -1,7 +1,8 @@
 // Occluders out of meshes: closed convex ones, which can be drawn a pixel smaller than they are, so that what they hide is
 // hidden at every sample of a pixel and at any resolution.
 import type { BufferGeometry } from 'three';
-import type { Batch } from './things.js';
+import type { Batch } from './batches.js';
+import { pointsOf, type Points } from './bounds.js';
 import { OccluderMesh } from '../occlusion.js';
 
 export interface Convex {
@@ -12,15 +13,26 @@ export interface Convex {
 }
 
 const mostTriangles = 200;
-const known = new WeakMap<BufferGeometry, Map<number, Convex | null>>();
+interface Parts { points: Points; versions: number; made: Map<number, Convex | null> }
+const known = new WeakMap<BufferGeometry, Parts>();
 
-// Of a geometry's vertices or indices from `start` on, made once.
+// Of a geometry's vertices or indices from `start` on, made once for as long as they stay.
 function part(geometry: BufferGeometry, start: number, corners: number): Convex | null {
+  const points = pointsOf(geometry), versions = points.version + (geometry.index?.version ?? 0);
   let parts = known.get(geometry);
-  if (!parts) known.set(geometry, (parts = new Map()));
-  let made = parts.get(start);
-  if (made === undefined) parts.set(start, (made = make(geometry, start, corners)));
+  if (!parts || parts.points !== points || parts.versions !== versions) {
+    forgetConvex(geometry);
+    known.set(geometry, (parts = { points, versions, made: new Map() }));
+  }
+  let made = parts.made.get(start);
+  if (made === undefined) parts.made.set(start, (made = make(geometry, start, corners)));
   return made;
+}
+
+/** What is known of a geometry holds no longer. */
+export function forgetConvex(geometry: BufferGeometry): void {
+  for (const made of known.get(geometry)?.made.values() ?? []) made?.mesh.dispose();
+  known.delete(geometry);
 }
 
 /** The geometry as an occluder; null where it is not closed and convex, or has more than 200 triangles. */

@@ -10,13 +10,15 @@ import { refuse } from '../errors.js';
 import '../index.js';
 import { floats } from '../memory.js';
 import { OcclusionBuffer } from '../occlusion.js';
-import { buffer as memory, ready, supported, wasm } from '../runtime.js';
+import { buffer as memory, ready, supported } from '../runtime.js';
 import { Culler, type CullView } from '../world.js';
 import { eyeOf, isRigid } from './eye.js';
 import { Inventory } from './inventory.js';
-import { fill, narrow, restore, type Range } from './instances.js';
+import { fill, narrow, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
+import { restore } from './restore.js';
 import type { Thing } from './things.js';
+import { Whole } from './whole.js';
 
 export { ready, supported };
 
@@ -46,12 +48,17 @@ interface Renderer {
 type BeforeRender = (renderer: Renderer, scene: Scene, camera: Camera, target: unknown) => void;
 type AfterRender = (renderer: Renderer, scene: Scene, camera: Camera, target?: unknown) => void;
 
+/** What three walks, and which of instances it draws. */
 interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
 interface Shadow { light: Light & { shadow: LightShadow }; viewport: number; pass: Pass }
 interface Frame { children: Object3D[]; restore: (() => void)[]; list: Object3D[]; count: number }
 
 const mostViews = 8;
 const restFrames = 16;
+/** What so few objects in view hide says nothing of the next frames. */
+const fewest = 64;
+/** Pixels of the occlusion buffer that an occluder covers at least. */
+const leastArea = 100;
 
 export class SightlineCuller {
   /** Whether it culls; the scene is drawn as three draws it while it does not. */
@@ -70,7 +77,9 @@ export class SightlineCuller {
   readonly #after: AfterRender;
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
   #drawn: Eye | undefined;
+  readonly #whole = new Whole();
   #rest = 0;
+  #left = new Uint32Array(0);
   #told = false;
 
   constructor(scene: Scene, options: SightlineOptions = {}) {
@@ -165,59 +174,68 @@ export class SightlineCuller {
   }
   #cull(renderer: Renderer, camera: Camera, frame: Frame, nested: boolean): void {
     const { inventory } = this.#inside!;
-    inventory.update();
-    if (inventory.slots === 0) return;
     const cameras = (camera as ArrayCamera).isArrayCamera ? (camera as ArrayCamera).cameras : [camera];
     if (cameras.length === 0 || cameras.length > mostViews) return;
-    const lights = renderer.isWebGLRenderer ? this.#shadowViews(renderer) : [];
-    const seen = this.#seen(cameras, camera, !renderer.clippingPlanes?.length);
+    const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
+    if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.slots);
+    inventory.update();
+    if (inventory.slots === 0) return;
+    const lights = this.#shadowViews(renderer);
+    const seen = this.#seen(eyes, camera, !renderer.clippingPlanes?.length);
+    const inLights = lights.map(({ view }) => this.#inView(view));
+    this.#whole.look(inventory, eyes[0]!, this.occlusion, [seen, ...inLights]);
     const main = this.#pass(seen);
-    const shadows = lights.map(({ light, viewport, view }): Shadow => ({ light, viewport, pass: this.#pass(this.#inView(view)) }));
+    const shadows = lights.map(({ light, viewport }, i): Shadow => ({ light, viewport, pass: this.#pass(inLights[i]!) }));
     frame.list = main.list;
     this.#swapForShadows(shadows, frame);
     for (const thing of new Set([main, ...shadows.map(({ pass }) => pass)].flatMap(({ ranges }) => [...ranges.keys()])))
       this.#narrow(thing, main, shadows, renderer, frame, nested);
     Object.assign(this.stats, { objects: inventory.slots, drawn: seen.length });
   }
-
-  // Slots that some of the cameras may see, ascending.
-  #seen(cameras: readonly Camera[], camera: Camera, whole: boolean): Uint32Array {
-    const { inventory, culler, buffer } = this.#inside!;
-    const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
-    const { count, ids, masks } = culler.cullSorted(inventory.world, eyes, inventory.slots);
-    const slots = new Uint32Array(memory(), ids, count);
-    Object.assign(this.stats, { hidden: 0, occluders: 0 });
+  #count(drawn: number): void {
     this.#drawn = undefined;
-    if (!this.occlusion || !whole || eyes.length > 1 || count < 64 || !isRigid(eyes[0]!)) return slots.slice();
-    if (this.#rest > 0) return --this.#rest, slots.slice();
-    const inView = slots.slice(), override = this.#scene.overrideMaterial as Material | null;
-    buffer.begin(eyes[0]!);
-    this.#drawn = eyes[0]!;
-    this.stats.occluders = drawOccluders(buffer, inventory, eyes[0]!, camera, override, inView,
-      (thing, instance) => this.#isDrawn(thing, instance));
-    if (this.stats.occluders === 0) return inView;
-    if (!this.#exempt(inView, new Uint8Array(memory(), masks, count), override)) return inView;
-    this.stats.hidden = wasm().occlusion_hide!(buffer.pointer, inventory.boxes.pointer, ids, masks, count, 1);
-    // Where next to nothing is hidden, it is not worth asking every frame.
-    if (this.stats.hidden < count / 32) this.#rest = restFrames;
-    const left = new Uint8Array(memory(), masks, count);
-    return inView.filter((_, i) => left[i] !== 0);
+    Object.assign(this.stats, { objects: drawn, drawn, hidden: 0, occluders: 0 });
   }
 
-  // Sets a bit that occlusion leaves for what shows through others; false where all may show through.
-  #exempt(slots: Uint32Array, masks: Uint8Array, override: Material | null): boolean {
-    const { inventory } = this.#inside!;
-    if (inventory.left.some(({ object }) => breaksDepth(object, override))) return false;
-    let last: Thing | undefined, exempt = false;
-    for (let i = 0; i < slots.length; ++i) {
-      const thing = inventory.thingOf[slots[i]!]!;
-      if (thing !== last) {
-        last = thing, (exempt = !canBeHidden(thing.mesh, override));
-        if (exempt && breaksDepth(thing.mesh, override)) return false;
-      }
-      if (exempt) masks[i]! |= 128;
+  // Slots that some of the eyes may see, ascending.
+  #seen(eyes: readonly Eye[], camera: Camera, whole: boolean): Uint32Array {
+    this.#count(0);
+    const [eye] = eyes as [Eye], { inventory: { world, slots } } = this.#inside!;
+    if (this.occlusion && whole && eyes.length === 1 && isRigid(eye)) {
+      if (this.#rest > 0) --this.#rest;
+      else if (this.#drawOccluders(eye, camera)) return this.#notHidden(eye);
     }
-    return true;
+    const { count, ids } = this.#inside!.culler.cullSorted(world, eyes, slots);
+    return new Uint32Array(memory(), ids, count).slice();
+  }
+  // Draws the occluders among what looks large; whether there were any.
+  #drawOccluders(eye: Eye, camera: Camera): boolean {
+    const { inventory, culler, buffer } = this.#inside!;
+    const large = culler.cull(inventory.world, { ...eye, minArea: leastArea }, { valuesForIds: true }).ids.slice().sort();
+    buffer.begin(eye, { coverage: 'area' });
+    this.#drawn = eye;
+    const override = this.#scene.overrideMaterial as Material | null;
+    this.stats.occluders = drawOccluders(buffer, inventory, eye, camera, override, large);
+    return this.stats.occluders > 0;
+  }
+  #notHidden(eye: Eye): Uint32Array {
+    const { inventory, culler, buffer } = this.#inside!, override = this.#scene.overrideMaterial as Material | null;
+    const { count, ids, masks } = culler.cullSorted(inventory.world, [eye, { ...eye, occlusion: buffer }], inventory.slots);
+    const inView = new Uint32Array(memory(), ids, count), maskOf = new Uint8Array(memory(), masks, count);
+    if (inventory.left.some(({ object }) => breaksDepth(object, override))) return inView.slice();
+    if (this.#left.length < count) this.#left = new Uint32Array(2 * count);
+    const left = this.#left;
+    let kept = 0, sound = true;
+    inventory.forEachShown(inView, ({ mesh }, from, to) => {
+      const all = !canBeHidden(mesh, override);
+      if (all && breaksDepth(mesh, override)) sound = false;
+      for (let i = from; i < to; ++i) if (all || maskOf[i]! & 2) left[kept++] = inView[i]!;
+    });
+    if (!sound) return inView.slice();
+    this.stats.hidden = count - kept;
+    // Where next to nothing is hidden, it is not worth asking every frame.
+    if (count > fewest && this.stats.hidden < count / 32) this.#rest = restFrames;
+    return left.slice(0, kept);
   }
 
   #inView(view: CullView): Uint32Array {
@@ -226,34 +244,22 @@ export class SightlineCuller {
     return new Uint32Array(memory(), ids, count).slice();
   }
 
-  #isDrawn(thing: Thing, instance: number): boolean {
-    return this.#inside!.inventory.nodes[thing.parent]!.shown &&
-      (thing.kind !== 'instanced' || instance < (thing.mesh as InstancedMesh).count);
-  }
-
   // What three is to walk for a view.
   #pass(slots: Uint32Array): Pass {
     const { inventory } = this.#inside!;
     const ranges = new Map<Thing, Range>(), list: Object3D[] = [];
     for (const { object, parent } of inventory.left) if (inventory.nodes[parent]!.shown) list.push(object);
-    for (let from = 0, to; from < slots.length; from = to) {
-      const thing = inventory.thingOf[slots[from]!]!, end = thing.first + thing.count;
-      for (to = from + 1; to < slots.length && slots[to]! < end; ) ++to;
-      if (!inventory.nodes[thing.parent]!.shown) continue;
-      let last = to;
-      const limit = thing.kind === 'instanced' ? thing.first + (thing.mesh as InstancedMesh).count : end;
-      while (last > from && slots[last - 1]! >= limit) --last;
-      if (last === from) continue;
-      ranges.set(thing, { slots, from, to: last });
+    inventory.forEachShown(slots, (thing, from, to) => {
+      if (thing.kind !== 'mesh') ranges.set(thing, { slots, from, to });
       list.push(thing.mesh);
-    }
+    });
     return { ranges, list };
   }
 
   // Every light's views of this frame.
-  #shadowViews(renderer: Renderer): { light: Shadow['light']; viewport: number; view: CullView }[] {
-    if (!shadowsOf(renderer)) return [];
-    const views: { light: Shadow['light']; viewport: number; view: CullView }[] = [];
+  #shadowViews(renderer: Renderer): { light: Shadow['light']; viewport: number; view: Eye }[] {
+    if (!renderer.isWebGLRenderer || !shadowsOf(renderer)) return [];
+    const views: { light: Shadow['light']; viewport: number; view: Eye }[] = [];
     for (const { object } of this.#inside!.inventory.left) {
       object.traverseVisible((each) => {
         const light = each as Shadow['light'];
@@ -295,23 +301,25 @@ export class SightlineCuller {
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
     if (instanced.boundingSphere === null) instanced.computeBoundingSphere();
-    const list = instancesOf(thing, main, shadows);
-    // Half of them copied would cost more than the other half drawn.
-    if (list.length === 0 || 2 * list.length > instanced.count) return;
+    const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn
+    const list = instancesOf(thing, main, shadows, most);
+    if (list.length === 0 || list.length > most) return;
     const range = main.ranges.get(thing);
     frame.restore.push(narrow(instanced, list, range ? range.to - range.from : 0));
   }
 }
 
-// Those that the camera sees, then those that only lights see.
-function instancesOf(thing: Thing, main: Pass, shadows: Shadow[]): Uint32Array {
+// Those that the camera sees, then those that only lights see; none where they are more than `most`.
+function instancesOf(thing: Thing, main: Pass, shadows: Shadow[], most: number): Uint32Array {
   const seen = new Set<number>();
   for (const { ranges } of [main, ...shadows.map(({ pass }) => pass)]) {
-    const range = ranges.get(thing);
-    for (let k = range?.from ?? 0; k < (range?.to ?? 0); ++k) seen.add(range!.slots[k]! - thing.first);
+    const { slots, from, to } = ranges.get(thing) ?? { slots: [], from: 0, to: 0 };
+    if (to - from > most) return new Uint32Array(0);
+    for (let k = from; k < to; ++k) seen.add(slots[k]! - thing.first);
   }
   return Uint32Array.from(seen);
 }
 
+const allViews = (eyes: readonly Eye[], lights: readonly { view: Eye }[]): Eye[] => [...eyes, ...lights.map(({ view }) => view)];
 const shadowsOf = ({ shadowMap }: Renderer): boolean =>
   shadowMap !== undefined && shadowMap.enabled && (shadowMap.autoUpdate || shadowMap.needsUpdate);

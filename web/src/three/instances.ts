@@ -2,12 +2,22 @@
 // BatchedMesh by listing those that are seen. What the user set stays as it is.
 import { InstancedBufferAttribute, Matrix4, Sphere, Vector3 } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material } from 'three';
-import type { Batch, Thing } from './things.js';
+import type { Batch } from './batches.js';
+import { orderOf } from './order.js';
+import { restore } from './restore.js';
+import type { Thing } from './things.js';
 
 /** A thing's slots in a pass: ascending, from … to - 1 of `slots`. */
 export interface Range { slots: Uint32Array; from: number; to: number }
 
-interface Copy { matrix: InstancedBufferAttribute; color: InstancedBufferAttribute | null; list: Uint32Array; versions: string }
+type Attribute = InstancedBufferAttribute;
+interface Copy {
+  matrix: Attribute;
+  color: Attribute | null;
+  list: Uint32Array;
+  /** What it was copied from, and the versions of those. */
+  from: (Attribute | number | null | undefined)[];
+}
 const copies = new WeakMap<InstancedMesh, Copy>();
 
 function copyOf(mesh: InstancedMesh, count: number): Copy {
@@ -16,13 +26,13 @@ function copyOf(mesh: InstancedMesh, count: number): Copy {
   if (!copy || copy.matrix.count < count || (copy.color?.itemSize ?? 0) !== room) {
     const size = Math.min(2 * count, mesh.instanceMatrix.count);
     const make = (items: number) => new InstancedBufferAttribute(new Float32Array(size * items), items);
-    copy = { matrix: make(16), color: room ? make(room) : null, list: new Uint32Array(0), versions: '' };
+    copy = { matrix: make(16), color: room ? make(room) : null, list: new Uint32Array(0), from: [] };
     copies.set(mesh, copy);
   }
   return copy;
 }
 
-function pick(from: { array: ArrayLike<number>; itemSize: number }, to: InstancedBufferAttribute, list: Uint32Array): void {
+function pick(from: Attribute, to: Attribute, list: Uint32Array): void {
   const { itemSize } = from, target = to.array;
   for (let k = 0; k < list.length; ++k) {
     const at = list[k]! * itemSize;
@@ -31,6 +41,7 @@ function pick(from: { array: ArrayLike<number>; itemSize: number }, to: Instance
   to.clearUpdateRanges();
   to.addUpdateRange(0, list.length * itemSize);
   to.needsUpdate = true;
+  from.clearUpdateRanges(); // what three does not send now it sends whole when it next does
 }
 
 const isSame = (a: Uint32Array, b: Uint32Array): boolean => a.length === b.length && a.every((x, i) => x === b[i]);
@@ -39,11 +50,11 @@ const isSame = (a: Uint32Array, b: Uint32Array): boolean => a.length === b.lengt
 export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): () => void {
   const { instanceMatrix, instanceColor, count } = mesh;
   const copy = copyOf(mesh, list.length);
-  const versions = `${instanceMatrix.version} ${instanceColor?.version} ${(instanceColor as { id?: number } | null)?.id}`;
-  if (copy.versions !== versions || !isSame(copy.list, list)) {
+  const from = [instanceMatrix, instanceMatrix.version, instanceColor, instanceColor?.version];
+  if (from.some((one, i) => one !== copy.from[i]) || !isSame(copy.list, list)) {
     pick(instanceMatrix, copy.matrix, list);
     if (instanceColor) pick(instanceColor, copy.color!, list);
-    copy.versions = versions, (copy.list = list);
+    copy.from = from, (copy.list = list);
   }
   const own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeShadow');
   const ownAfter = Object.getOwnPropertyDescriptor(mesh, 'onAfterShadow');
@@ -61,49 +72,83 @@ export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): ()
   };
 }
 
-/** Gives an object its own property back, or none. */
-export function restore(object: object, name: string, own: PropertyDescriptor | undefined): void {
-  if (own) Object.defineProperty(object, name, own);
-  else delete (object as Record<string, unknown>)[name];
-}
-
-const matrix = new Matrix4(), sphere = new Sphere(), eye = new Vector3(), forward = new Vector3();
-interface Item { start: number; count: number; z: number; index: number }
+const matrix = new Matrix4(), eye = new Vector3(), forward = new Vector3();
+// Of the instances that are being listed; larger than they are many.
+let instances = new Uint32Array(0), order = new Uint32Array(0), depths = new Float64Array(0);
 
 /** Lists what of a batch a pass sees, as three lists what its frustum holds: in the same order. */
 export function fill(thing: Thing, range: Range | undefined, camera: Camera, geometry: BufferGeometry,
   material: Material): void {
-  const batch = thing.mesh as unknown as Batch;
+  const batch = thing.mesh as Batch;
+  let count = collect(batch, thing.first, range);
   const bytes = geometry.index ? (geometry.index.array as Uint16Array).BYTES_PER_ELEMENT : 1;
-  const items: Item[] = [];
   if (batch.sortObjects) {
     matrix.copy(batch.matrixWorld).invert();
     eye.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(matrix);
     forward.set(0, 0, -1).transformDirection(camera.matrixWorld).transformDirection(matrix);
+    for (let k = 0; k < count; ++k) depths[k] = depthOf(batch, instances[k]!);
+    const customSort = batch.customSort as Sort | null;
+    if (customSort) count = sortBy(customSort, batch, camera, count);
+    else orderOf(depths, count, material.transparent, order);
+  } else {
+    for (let k = 0; k < count; ++k) order[k] = k;
   }
-  for (let k = range?.from ?? 0; k < (range?.to ?? 0); ++k) {
-    const index = range!.slots[k]! - thing.first, info = batch._instanceInfo[index];
-    if (!info?.visible || !info.active) continue;
-    const { start, count } = batch._geometryInfo[info.geometryIndex]!;
-    let z = 0;
-    if (batch.sortObjects) {
-      batch.getMatrixAt(index, matrix);
-      batch.getBoundingSphereAt(info.geometryIndex, sphere)!.applyMatrix4(matrix);
-      z = sphere.center.sub(eye).dot(forward);
-    }
-    items.push({ start, count, z, index });
+  list(batch, bytes, count);
+}
+
+// Those of a range that are shown.
+function collect({ _instanceInfo: infos }: Batch, first: number, range: Range | undefined): number {
+  if (!range) return 0;
+  const { slots, from, to } = range;
+  if (instances.length < to - from) {
+    instances = new Uint32Array(2 * (to - from)), (order = new Uint32Array(2 * (to - from)));
+    depths = new Float64Array(2 * (to - from));
   }
-  if (batch.sortObjects) {
-    const { customSort } = batch as unknown as { customSort: ((list: Item[], camera: Camera) => void) | null };
-    if (customSort) customSort.call(batch, items, camera);
-    else items.sort(material.transparent ? (a, b) => b.z - a.z : (a, b) => a.z - b.z);
+  let count = 0;
+  for (let k = from; k < to; ++k) {
+    const info = infos[slots[k]! - first];
+    if (info?.visible && info.active) instances[count++] = slots[k]! - first;
   }
-  items.forEach(({ start, count, index }, i) => {
-    batch._multiDrawStarts[i] = start * bytes;
-    batch._multiDrawCounts[i] = count;
-    batch._indirectTexture.image.data[i] = index;
+  return count;
+}
+
+interface Item { start: number; count: number; z: number; index: number }
+type Sort = (this: Batch, list: Item[], camera: Camera) => void;
+
+// The user's own order, of what three hands to it; how many it leaves.
+function sortBy(sort: Sort, batch: Batch, camera: Camera, count: number): number {
+  const items = Array.from(instances.subarray(0, count), (index, k): Item => {
+    const { start, count: corners } = shapeOf(batch, index);
+    return { start, count: corners, z: depths[k]!, index };
   });
-  batch._indirectTexture.needsUpdate = true;
-  batch._multiDrawCount = items.length;
+  sort.call(batch, items, camera);
+  items.forEach(({ index }, k) => ((instances[k] = index), (order[k] = k)));
+  return items.length;
+}
+
+const shapeOf = (batch: Batch, instance: number) => batch._geometryInfo[batch._instanceInfo[instance]!.geometryIndex]!;
+
+// How far in front of the eye the middle of an instance's sphere is, by the operations that three does it with.
+function depthOf(batch: Batch, instance: number): number {
+  const { x, y, z } = (shapeOf(batch, instance).boundingSphere ?? sphereOf(batch, instance)).center;
+  const e = batch._matricesTexture.image.data, at = 16 * instance;
+  const w = 1 / (e[at + 3]! * x + e[at + 7]! * y + e[at + 11]! * z + e[at + 15]!);
+  const dx = (e[at]! * x + e[at + 4]! * y + e[at + 8]! * z + e[at + 12]!) * w - eye.x;
+  const dy = (e[at + 1]! * x + e[at + 5]! * y + e[at + 9]! * z + e[at + 13]!) * w - eye.y;
+  const dz = (e[at + 2]! * x + e[at + 6]! * y + e[at + 10]! * z + e[at + 14]!) * w - eye.z;
+  return dx * forward.x + dy * forward.y + dz * forward.z;
+}
+const sphereOf = (batch: Batch, instance: number) =>
+  batch.getBoundingSphereAt(batch._instanceInfo[instance]!.geometryIndex, new Sphere())!;
+
+// Hands the instances to three in their order.
+function list(batch: Batch, bytes: number, count: number): void {
+  const { _multiDrawStarts: starts, _multiDrawCounts: counts, _indirectTexture: texture } = batch, { data } = texture.image;
+  for (let i = 0; i < count; ++i) {
+    const instance = instances[order[i]!]!, shape = shapeOf(batch, instance);
+    starts[i] = shape.start * bytes, (counts[i] = shape.count), (data[i] = instance);
+  }
+  texture.needsUpdate = true;
+  batch._multiDrawCount = count;
   batch._visibilityChanged = true; // so that three lists anew, should this be taken away
 }

@@ -1,8 +1,8 @@
 // What stands in a scene, kept up to date: things with boxes in a World, and what three draws by itself.
-import type { Mesh, Object3D, Scene } from 'three';
+import type { InstancedMesh, Mesh, Object3D, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
-import { classify, isOther, update, type Thing } from './things.js';
+import { classify, disposeOf, isOther, makeThing, update, type Known, type Thing } from './things.js';
 
 interface Node { object: Object3D; parent: number; shown: boolean }
 /** Something that is left to three, with all below it. */
@@ -11,6 +11,16 @@ export interface Left { object: Object3D; parent: number }
 /** Nodes that only hold others. */
 const isThrough = (object: Object3D): boolean =>
   (object.type === 'Object3D' || object.type === 'Group') && object.renderOrder === 0;
+
+// Where the first of ascending slots is that lies at or behind `slot`, from … to.
+function firstFrom(slots: Uint32Array, slot: number, from: number, to = slots.length): number {
+  while (from < to) {
+    const middle = (from + to) >> 1;
+    if (slots[middle]! < slot) from = middle + 1;
+    else to = middle;
+  }
+  return from;
+}
 
 export class Inventory {
   world = new World();
@@ -27,8 +37,9 @@ export class Inventory {
   readonly #thingOfMesh = new Map<Object3D, Thing>();
   readonly #free = new Map<number, number[]>();
   #handles = new Float64Array(0);
+  #matrices = new Float64Array(0);
   #changed = true;
-  #moved: number[] = [];
+  readonly #moved: number[] = [];
   readonly #added = (event: { child: Object3D; target: Object3D }) => this.#add(event.child, event.target);
   readonly #removed = (event: { child: Object3D }) => this.#remove(event.child);
 
@@ -47,20 +58,35 @@ export class Inventory {
     if (this.#changed) this.update();
   }
 
+  /** Visits the slots of each thing that is shown, from … to - 1 of ascending ones. */
+  forEachShown(slots: Uint32Array, visit: (thing: Thing, from: number, to: number) => void): void {
+    for (let from = 0, next; from < slots.length; from = next) {
+      const thing = this.thingOf[slots[from]!]!, { kind, first, count, parent } = thing;
+      next = kind === 'mesh' ? from + 1 : firstFrom(slots, first + count, from + 1);
+      if (!this.nodes[parent]!.shown) continue;
+      const to = kind === 'instanced' ? firstFrom(slots, first + (thing.mesh as InstancedMesh).count, from, next) : next;
+      if (to > from) visit(thing, from, to);
+    }
+  }
+
   dispose(): void {
     for (const { object } of this.nodes) this.#listen(object, false);
+    for (const thing of this.things) disposeOf(thing);
     this.world.dispose();
     this.boxes.dispose();
   }
 
   #scan(): void {
-    const boxes = this.boxes.array;
+    const known = this.#known();
     for (const thing of this.things) {
       if (isOther(thing)) this.#changed = true;
-      else update(thing, boxes, (slot) => this.#moved.push(slot));
+      else update(thing, known);
     }
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
+  }
+  #known(): Known {
+    return { boxes: this.boxes.array, matrices: this.#matrices, moved: this.#moved };
   }
 
   // Gives the world what #moved names.
@@ -79,6 +105,7 @@ export class Inventory {
   #rebuild(): void {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
+    for (const thing of this.things) disposeOf(thing);
     this.things.clear(), this.#thingOfMesh.clear(), this.#free.clear();
     this.slots = 0;
     this.world.dispose(), (this.world = new World());
@@ -102,9 +129,7 @@ export class Inventory {
   #thing(mesh: Mesh, parent: number, kind: Thing['kind'], count: number): Thing {
     const first = this.#free.get(count)?.pop() ?? this.slots;
     if (first === this.slots) this.slots += count;
-    const thing: Thing = {
-      mesh, kind, count, first, parent, geometry: mesh.geometry, matrix: new Float64Array(16), version: -1,
-      matrices: new Float32Array(kind === 'mesh' ? 0 : 16 * count), shapes: -1 };
+    const thing = makeThing(mesh, kind, first, count, parent);
     this.things.add(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
@@ -118,9 +143,11 @@ export class Inventory {
     const slots: number[] = [];
     for (const thing of found) {
       boxes.fill(0, 6 * thing.first, 6 * (thing.first + thing.count));
-      update(thing, boxes, () => {}, true);
+      this.#matrices.fill(NaN, 12 * thing.first, 12 * thing.first + 12);
+      update(thing, this.#known());
       for (let i = 0; i < thing.count; ++i) slots.push(thing.first + i);
     }
+    this.#moved.length = 0;
     if (slots.length === 0) return;
     const entered = new Float64Array(6 * slots.length), values = Uint32Array.from(slots);
     slots.forEach((slot, i) => entered.set(boxes.subarray(6 * slot, 6 * slot + 6), 6 * i));
@@ -138,6 +165,9 @@ export class Inventory {
       const larger = new Float64Array(2 * this.slots);
       larger.set(this.#handles);
       this.#handles = larger;
+      const matrices = new Float64Array(24 * this.slots);
+      matrices.set(this.#matrices);
+      this.#matrices = matrices;
     }
   }
 
@@ -153,6 +183,7 @@ export class Inventory {
     const thing = this.#thingOfMesh.get(child);
     if (this.#changed || !thing) return void (this.#changed = true);
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
+    disposeOf(thing);
     this.things.delete(thing), this.#thingOfMesh.delete(child);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
     const free = this.#free.get(thing.count);

@@ -2,13 +2,17 @@
 import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh, Object3D } from 'three';
 import type { OcclusionBuffer } from '../occlusion.js';
 import { convexOf, convexOfInstance, type Convex } from './convex.js';
+import type { Range } from './instances.js';
 import type { Inventory } from './inventory.js';
-import type { Batch, Thing } from './things.js';
+import type { Batch } from './batches.js';
+import type { Thing } from './things.js';
 
 /** Occluders a frame. */
 const most = 96;
 /** Of the image's height: what covers less does not occlude. */
 const least = 0.03;
+/** Pixels of the buffer by which occluders are drawn smaller: no GPU is off by as much at the edges of what it draws. */
+const margin = 0.7;
 
 // Surely draws every pixel that its triangles cover, with their depth. What a shader of one's own does is not known; a
 // mark says it: userData.occluder = true, or another geometry that lies inside.
@@ -38,16 +42,19 @@ export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
     !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap);
 }
 
-/** The shape that a thing occludes with; null where it does not. */
-function shapeOf(thing: Thing, instance: number, override: Material | null, camera: Camera): Convex | null {
-  const { mesh, kind } = thing;
-  const mark = mesh.userData.occluder as boolean | BufferGeometry | undefined;
-  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers)) return null;
-  const material = override ?? mesh.material;
-  if (!mark && (Array.isArray(material) || !isSolid(material))) return null;
+const markOf = (mesh: Mesh) => (mesh.userData.occluder ?? undefined) as boolean | BufferGeometry | undefined;
+
+function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
+  const mark = markOf(mesh), material = override ?? mesh.material;
+  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers)) return false;
+  return Boolean(mark) || (!Array.isArray(material) && isSolid(material));
+}
+
+/** The shape that a thing which may occludes with; null where it has none. */
+function shapeOf({ mesh, kind }: Thing, instance: number): Convex | null {
+  const mark = markOf(mesh);
   if (typeof mark === 'object') return convexOf(mark);
-  if (kind !== 'batched') return convexOf(mesh.geometry);
-  return convexOfInstance(mesh as unknown as Batch, instance);
+  return kind === 'batched' ? convexOfInstance(mesh as Batch, instance) : convexOf(mesh.geometry);
 }
 
 const scratch = new Float64Array(16);
@@ -80,40 +87,43 @@ export interface Eye {
   near: number;
 }
 
-/** Draws this frame's occluders among the slots in view; returns how many. */
+interface Found { slot: number; size: number }
+
+/** Draws this frame's occluders among the slots in view, ascending; returns how many. */
 export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, camera: Camera,
-  override: Material | null, slots: Uint32Array, isDrawn: (thing: Thing, instance: number) => boolean): number {
-  const found: { slot: number; size: number }[] = [];
-  const boxes = inventory.boxes.array, m = eye.worldToEye, flat = eye.eyeToClip[15] === 1;
-  const scale = Math.abs(eye.eyeToClip[5]!);
-  let last: Thing | undefined, lastShape: Convex | null = null;
-  for (const slot of slots) {
-    const thing = inventory.thingOf[slot]!;
-    if (thing !== last || thing.kind === 'batched')
-      lastShape = shapeOf((last = thing), slot - thing.first, override, camera);
-    if (!lastShape || !isDrawn(thing, slot - thing.first)) continue;
-    let nearest = -m[14]!, extent = 0;
-    for (let axis = 0; axis < 3; ++axis) {
-      const low = boxes[6 * slot + axis]! - eye.origin[axis]!, high = boxes[6 * slot + 3 + axis]! - eye.origin[axis]!;
-      const row = -m[4 * axis + 2]!;
-      nearest += row * (row > 0 ? low : high);
-      extent += (high - low) ** 2;
-    }
-    // One that is cut by the near plane is open to the eye.
-    if (!(nearest > 1.001 * eye.near)) continue;
-    const size = (Math.sqrt(extent) * scale) / (flat ? 1 : nearest) / 2;
-    if (size > least) found.push({ slot, size });
-  }
+  override: Material | null, slots: Uint32Array): number {
+  const found: Found[] = [], flat = eye.eyeToClip[15] === 1;
+  inventory.forEachShown(slots, (_, from, to) => findLarge(inventory.boxes.array, eye, { slots, from, to }, found));
   found.sort((a, b) => b.size - a.size || a.slot - b.slot);
-  let drawn = 0;
-  for (const { slot } of found.slice(0, most)) drawn += draw(buffer, inventory, eye, slot, flat, override, camera) ? 1 : 0;
+  let drawn = 0, tried = 0;
+  for (const { slot } of found) {
+    const thing = inventory.thingOf[slot]!;
+    const shape = mayOcclude(thing.mesh, override, camera) ? shapeOf(thing, slot - thing.first) : null;
+    if (!shape) continue;
+    if (draw(buffer, inventory, eye, slot, flat, shape)) ++drawn;
+    if (++tried === most) break;
+  }
   return drawn;
 }
 
-function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: number, flat: boolean, override: Material | null,
-  camera: Camera): boolean {
+// Slots that look large, and how large, in halves of the image's height.
+function findLarge(boxes: Float64Array, eye: Eye, { slots, from, to }: Range, found: Found[]): void {
+  const m = eye.worldToEye, flat = eye.eyeToClip[15] === 1, scale = Math.abs(eye.eyeToClip[5]!) / 2;
+  const [x, y, z] = [-m[2]!, -m[6]!, -m[10]!], [ox, oy, oz] = [eye.origin[0]!, eye.origin[1]!, eye.origin[2]!];
+  const [nx, ny, nz] = [x > 0 ? 0 : 3, y > 0 ? 1 : 4, z > 0 ? 2 : 5], near = 1.001 * eye.near;
+  for (let k = from; k < to; ++k) {
+    const slot = slots[k]!, at = 6 * slot;
+    const nearest = x * (boxes[at + nx]! - ox) + y * (boxes[at + ny]! - oy) + z * (boxes[at + nz]! - oz) - m[14]!;
+    // One that is cut by the near plane is open to the eye.
+    if (!(nearest > near)) continue;
+    const dx = boxes[at + 3]! - boxes[at]!, dy = boxes[at + 4]! - boxes[at + 1]!, dz = boxes[at + 5]! - boxes[at + 2]!;
+    const size = (Math.sqrt(dx * dx + dy * dy + dz * dz) * scale) / (flat ? 1 : nearest);
+    if (size > least) found.push({ slot, size });
+  }
+}
+
+function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: number, flat: boolean, shape: Convex): boolean {
   const thing = inventory.thingOf[slot]!;
-  const shape = shapeOf(thing, slot - thing.first, override, camera)!;
   const matrix = matrixOf(thing, slot - thing.first);
   // three turns a mirrored object's faces round, but not a mirrored instance's.
   if (thing.kind !== 'mesh' && determinantOf(matrix) * determinantOf(thing.mesh.matrixWorld.elements) <= 0) return false;
@@ -123,8 +133,8 @@ function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: num
     const row = -m[4 * axis + 2]!;
     farthest += row * (boxes[6 * slot + axis + (row > 0 ? 3 : 0)]! - eye.origin[axis]!);
   }
-  // A sample lies at most half a pixel's diagonal from its centre, which is so far at the farthest depth.
-  const reach = 1.001 * Math.hypot(1 / (eye.width * eye.eyeToClip[0]!), 1 / (eye.height * eye.eyeToClip[5]!)) *
+  // So wide is the margin at the farthest depth.
+  const reach = 2 * margin / Math.min(eye.width * Math.abs(eye.eyeToClip[0]!), eye.height * Math.abs(eye.eyeToClip[5]!)) *
     (flat ? 1 : farthest);
   // How far the nearest face is from the centre in the world: no less than by the matrix's smallest stretch.
   const stretch = smallestStretch(matrix);

@@ -1,23 +1,10 @@
 // What of a scene is culled: meshes, and the instances of instanced and batched ones, each with a range of slots.
-import type { BatchedMesh, Box3, BufferGeometry, InstancedMesh, Mesh, Object3D } from 'three';
-import { Box3 as Box } from 'three';
+import type { BufferGeometry, InstancedMesh, Mesh, Object3D } from 'three';
+import { Box3 } from 'three';
+import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
+import { boxOf, pointsOf, type Points } from './bounds.js';
 import { writeBox } from './boxes.js';
-
-/** What three keeps of a batch; without it (it may be named otherwise one day) a batch is drawn as three would. */
-export interface BatchInside {
-  _instanceInfo: { visible: boolean; active: boolean; geometryIndex: number }[];
-  _geometryInfo: { start: number; count: number }[];
-  _matricesTexture: { version: number; image: { data: Float32Array } };
-  _multiDrawStarts: Int32Array;
-  _multiDrawCounts: Int32Array;
-  _multiDrawCount: number;
-  _indirectTexture: { needsUpdate: boolean; image: { data: Uint32Array } };
-  _visibilityChanged: boolean;
-}
-export type Batch = BatchedMesh & BatchInside;
-
-const batchInside = ['_instanceInfo', '_geometryInfo', '_matricesTexture', '_multiDrawStarts', '_multiDrawCounts',
-  '_multiDrawCount', '_indirectTexture', '_visibilityChanged'];
+import { Matrices } from './matrices.js';
 
 export interface Thing {
   readonly mesh: Mesh;
@@ -27,15 +14,19 @@ export interface Thing {
   readonly count: number;
   /** Of the node above it, in Inventory.nodes. */
   readonly parent: number;
+  /** What its boxes were made of. */
   geometry: BufferGeometry;
-  readonly matrix: Float64Array;
+  points: Points;
+  pointsVersion: number;
+  /** Of its instances: their matrices, where those come from, in which version, and what a batch was told since. */
+  readonly matrices: Matrices | undefined;
+  source: unknown;
   version: number;
-  /** Of its instances, as their boxes were made. */
-  readonly matrices: Float32Array;
-  shapes: number;
+  readonly told: Told | undefined;
 }
 
-const local = new Box();
+/** What is known by slot, of instanced ones their mesh's matrix by the first; and the slots whose boxes have changed. */
+export interface Known { boxes: Float64Array; matrices: Float64Array; moved: number[] }
 
 const isPlain = (mesh: Mesh): boolean =>
   mesh.children.length === 0 && mesh.frustumCulled && !(mesh as { isSkinnedMesh?: boolean }).isSkinnedMesh &&
@@ -62,75 +53,104 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
   }
   if (!mesh.isBatchedMesh) return { kind: 'mesh', count: 1 };
   const batch = object as Batch;
-  if (!batchInside.every((name) => name in batch) || !batch.perObjectFrustumCulled) return undefined;
-  return { kind: 'batched', count: batch.maxInstanceCount };
+  return isKnownInside(batch) && batch.perObjectFrustumCulled ? { kind: 'batched', count: batch.maxInstanceCount } : undefined;
+}
+
+/** A thing, of which nothing is known yet. */
+export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
+  const { geometry } = mesh;
+  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1,
+    matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
+    told: kind === 'batched' ? listen(mesh as Batch) : undefined };
+}
+
+export function disposeOf({ mesh, matrices, told }: Thing): void {
+  matrices?.dispose();
+  if (told) unlisten(mesh as Batch, told);
 }
 
 /** Whether a thing is no longer what it was taken for. */
 export function isOther(thing: Thing): boolean {
   const { mesh, kind, count } = thing;
-  if (mesh.children.length > 0 || !mesh.frustumCulled) return true;
+  if (mesh.children.length > 0 || !mesh.frustumCulled || mesh.geometry?.attributes.position === undefined) return true;
+  if (kind === 'mesh') return false;
   if (kind === 'instanced') return (mesh as InstancedMesh).instanceMatrix.count !== count;
-  return kind === 'batched' && ((mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled);
+  return (mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled;
 }
 
-// Whether instance i has another matrix than its box was made of.
-function isMoved(thing: Thing, matrices: ArrayLike<number>, i: number): boolean {
-  const known = thing.matrices;
-  let moved = false;
-  for (let k = 16 * i; k < 16 * i + 15; ++k) {
-    if (known[k] !== matrices[k]) (moved = true), (known[k] = matrices[k]!);
-  }
-  return moved;
+/** Brings the boxes of what has moved up to date. */
+export function update(thing: Thing, known: Known): void {
+  const { mesh, kind } = thing, m = mesh.matrixWorld.elements;
+  const isMoved = moves(known.matrices, 12 * thing.first, m);
+  if (kind === 'batched') return updateBatch(thing, mesh as Batch, isMoved, known);
+  const isReshaped = reshapes(thing, mesh.geometry);
+  if (kind === 'instanced') return updateInstances(thing, mesh as InstancedMesh, isMoved || isReshaped, known);
+  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOf(mesh.geometry), m, 0)) known.moved.push(thing.first);
 }
 
-function boxOf(geometry: BufferGeometry): Box3 {
-  if (geometry.boundingBox === null) geometry.computeBoundingBox();
-  return geometry.boundingBox!;
+// Whether a mesh has other points than are known of it; takes them over.
+function reshapes(thing: Thing, geometry: BufferGeometry): boolean {
+  const points = pointsOf(geometry), { version } = points;
+  if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && geometry.boundingBox !== null)
+    return false;
+  thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version);
+  return true;
 }
 
-/** Brings the boxes of what has moved up to date, and tells their slots. */
-export function update(thing: Thing, boxes: Float64Array, moved: (slot: number) => void, anew = false): void {
-  const { mesh, kind, matrix } = thing;
-  const elements = mesh.matrixWorld.elements;
-  let changed = anew || mesh.geometry !== thing.geometry || mesh.geometry.boundingBox === null;
-  for (let i = 0; i < 15; ++i) if (elements[i] !== matrix[i]) (changed = true), (matrix[i] = elements[i]!);
-  thing.geometry = mesh.geometry;
-  if (kind === 'mesh') {
-    if (changed && writeBox(boxes, thing.first, boxOf(mesh.geometry), elements, 0)) moved(thing.first);
-  } else if (kind === 'instanced') {
-    updateInstances(thing, mesh as InstancedMesh, changed, boxes, moved);
-  } else {
-    updateBatch(thing, mesh as Batch, changed, boxes, moved);
-  }
+// Whether an affine matrix is another than the twelve numbers that are known of it; takes them over.
+function moves(known: Float64Array, at: number, m: readonly number[]): boolean {
+  if (known[at] === m[0] && known[at + 1] === m[1] && known[at + 2] === m[2] && known[at + 3] === m[4] &&
+    known[at + 4] === m[5] && known[at + 5] === m[6] && known[at + 6] === m[8] && known[at + 7] === m[9] &&
+    known[at + 8] === m[10] && known[at + 9] === m[12] && known[at + 10] === m[13] && known[at + 11] === m[14]) return false;
+  for (let column = 0; column < 4; ++column)
+    for (let row = 0; row < 3; ++row) known[at + 3 * column + row] = m[4 * column + row]!;
+  return true;
 }
 
-function updateInstances(thing: Thing, mesh: InstancedMesh, changed: boolean, boxes: Float64Array,
-  moved: (slot: number) => void): void {
-  const { version, array } = mesh.instanceMatrix;
-  if (!changed && version === thing.version) return;
-  thing.version = version;
+function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxes, moved }: Known): void {
+  const { instanceMatrix } = mesh, { version, array, updateRanges } = instanceMatrix, now = array as Float32Array;
+  const isOther = instanceMatrix !== thing.source;
+  if (!all && !isOther && version === thing.version) return;
   const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements;
-  for (let i = 0; i < thing.count; ++i) {
-    if (!isMoved(thing, array, i) && !changed) continue;
-    if (writeBox(boxes, thing.first + i, box, array, 16 * i, world)) moved(thing.first + i);
+  const write = (i: number) => {
+    if (writeBox(boxes, thing.first + i, box, now, 16 * i, world)) moved.push(thing.first + i);
+  };
+  if (all || isOther) {
+    thing.matrices!.takeAll(now);
+    for (let i = 0; i < thing.count; ++i) write(i);
+  } else if (version === thing.version + 1 && updateRanges.length > 0) {
+    // three itself draws nothing else anew.
+    for (const { start, count } of updateRanges)
+      thing.matrices!.compare(now, start >> 4, Math.min((start + count + 15) >> 4, thing.count), write);
+  } else {
+    thing.matrices!.compare(now, 0, thing.count, write);
   }
+  thing.source = instanceMatrix, (thing.version = version);
 }
 
-function updateBatch(thing: Thing, mesh: Batch, changed: boolean, boxes: Float64Array,
-  moved: (slot: number) => void): void {
-  const { _matricesTexture: matrices, _instanceInfo: all } = mesh;
-  let shapes = 0; // which geometry each instance has, of which three keeps no version
-  for (let i = 0; i < all.length; ++i) shapes = (Math.imul(shapes, 31) + (all[i]!.active ? all[i]!.geometryIndex : -1)) | 0;
-  if (shapes !== thing.shapes) (changed = true), (thing.shapes = shapes);
-  if (!changed && matrices.version === thing.version) return;
-  thing.version = matrices.version;
-  const world = mesh.matrixWorld.elements, data = matrices.image.data;
-  let known = -1;
-  for (let i = 0; i < all.length; ++i) {
-    const { active, geometryIndex } = all[i]!;
-    if (!active || (!isMoved(thing, data, i) && !changed)) continue;
-    if (known !== geometryIndex) mesh.getBoundingBoxAt((known = geometryIndex), local);
-    if (writeBox(boxes, thing.first + i, local, data, 16 * i, world)) moved(thing.first + i);
+function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved }: Known): void {
+  const { geometry, _matricesTexture: { version, image: { data } }, _instanceInfo: infos } = mesh, told = thing.told!;
+  const all = isMoved || told.all || data !== thing.source || geometry !== thing.geometry;
+  if (!all && told.instances.length === 0 && version === thing.version) return;
+  const world = mesh.matrixWorld.elements;
+  const write = (i: number) => {
+    const info = infos[i];
+    if (info?.active && writeBox(boxes, thing.first + i, boxInBatch(mesh, info.geometryIndex), data, 16 * i, world))
+      moved.push(thing.first + i);
+  };
+  if (all) {
+    thing.matrices!.takeAll(data);
+    for (let i = 0; i < infos.length; ++i) write(i);
+  } else {
+    for (const i of told.instances) thing.matrices!.take(data, i), write(i);
+    // Somebody has written there by themselves.
+    if (version !== thing.version + told.versions) thing.matrices!.compare(data, 0, infos.length, write);
   }
+  thing.source = data, (thing.version = version), (thing.geometry = geometry);
+  told.instances.length = told.versions = 0, (told.all = false);
+}
+
+const local = new Box3();
+function boxInBatch(batch: Batch, geometry: number): Box3 {
+  return batch._geometryInfo[geometry]!.boundingBox ?? batch.getBoundingBoxAt(geometry, local)!;
 }

@@ -124,6 +124,49 @@ window.compare = async (count, { lit, antialias, reach = 0.1, aerial = 4 }) => {
   return result;
 };
 
+function stretch(geometry, by) {
+  const { position } = geometry.attributes;
+  for (let i = 0; i < position.count; ++i) position.setY(i, by * position.getY(i));
+  position.needsUpdate = true, geometry.computeBoundingSphere();
+}
+// Lifts instances first … end - 1, as nothing in three is told.
+function raise(matrices, first, end) {
+  for (let i = first; i < end; ++i) matrices[16 * i + 13] += 15;
+}
+
+/** From where all is in view, three draws its own scene; from the street again less. */
+window.above = async () => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height);
+  const { scene, side, movers, all } = makeScene(false), own = scene.children;
+  const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 4000), next = random(5);
+  const culler = new SightlineCuller(scene, { occlusion: false }), result = { differing: 0, own: 0, whole: 0, street: 0 };
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  let listed;
+  scene.children[1].material.onBeforeRender = () => (listed = scene.children);
+  for (let v = 0; v < 12; ++v) {
+    camera.position.set(side / 2, 2 * side + v, side / 2), camera.lookAt(side / 2, 0, side / 2 + 1);
+    movers.forEach((move, k) => {
+      const i = 3 * Math.floor(next() * (all.length / 3)) + k;
+      // What leaves the box that all was in is drawn as well.
+      if (all[i].turn !== 0) move(Math.floor(i / 3), { ...all[i], at: [next() * side, v === 6 ? 90 : 1, next() * side] });
+    });
+    culler.enabled = false;
+    const before = pixels(renderer, scene, camera);
+    culler.enabled = true;
+    result.differing += differing(before, pixels(renderer, scene, camera));
+    result.own += listed === own ? 1 : 0;
+    result.whole += culler.stats.drawn === culler.stats.objects ? 1 : 0;
+  }
+  camera.position.set(12, 2, 45), camera.rotation.set(0, 0, 0);
+  pixels(renderer, scene, camera);
+  result.street = culler.stats.drawn / culler.stats.objects;
+  renderer.dispose(), renderer.forceContextLoss();
+  return result;
+};
+
 /** Things that come, go, hide and change, one step after another; the names of the steps whose pictures differ. */
 window.changes = async () => {
   await ready;
@@ -152,6 +195,24 @@ window.changes = async () => {
     'a hidden instance'() { batch.setVisibleAt(3, false); },
     'a deleted instance'() { batch.deleteInstance(5); },
     'another geometry'() { batch.setGeometryIdAt(7, 1); },
+    'a deformed geometry'() { stretch(group.children[0].geometry, 5); },
+    'a replaced geometry of the batch'() { batch.setGeometryAt(0, new THREE.BoxGeometry(1.1, 5, 1.1)); },
+    'a batch whose matrices somebody writes by themselves'() {
+      raise(batch._matricesTexture.image.data, 16, 30), (batch._matricesTexture.needsUpdate = true);
+    },
+    'instances written by hand'() { raise(instanced.instanceMatrix.array, 10, 60), (instanced.instanceMatrix.needsUpdate = true); },
+    'ranges of instances'() {
+      for (const i of [0, 80]) { // three is not shown the first of them
+        raise(instanced.instanceMatrix.array, i, i + 80);
+        instanced.instanceMatrix.clearUpdateRanges(), instanced.instanceMatrix.addUpdateRange(16 * i, 16 * 80);
+        instanced.instanceMatrix.needsUpdate = true;
+        pixels(renderer, scene, camera);
+      }
+    },
+    'other matrices of as many instances'() {
+      instanced.instanceMatrix = instanced.instanceMatrix.clone(), raise(instanced.instanceMatrix.array, 70, 90);
+      instanced.instanceMatrix.version = 0;
+    },
     'never culled'() { group.children[5].frustumCulled = false; },
     'a see-through house'() { group.children[0].material.transparent = true, (group.children[0].material.opacity = 0.3); },
     'depth written through walls'() { scene.getObjectByName('marker').material.depthWrite = true; },

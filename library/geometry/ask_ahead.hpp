@@ -1,0 +1,22 @@
+// Memory that is soon needed, asked for.
+#pragma once
+
+#include <hwy/cache_control.h>
+
+namespace sightline::geometry {
+
+#ifdef __wasm__
+/// WebAssembly has no instruction for it: there the memory is read, which pays for many places in a row, as
+/// the processor waits for several of them at once.
+inline constexpr bool kAsksByReading = true;
+inline void ask_ahead(const void* place) noexcept {
+  (void)*static_cast<const volatile char*>(place);
+}
+#else
+inline constexpr bool kAsksByReading = false;
+inline void ask_ahead(const void* place) noexcept {
+  hwy::Prefetch(static_cast<const char*>(place));
+}
+#endif
+
+}  // namespace sightline::geometry
