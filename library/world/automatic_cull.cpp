@@ -37,7 +37,7 @@ public:
         buffer_(options.buffer),
         costs_(costs),
         result_(result),
-        masks_(masks_of_caller(state)),
+        masks_(state.masks),
         before_(count_drawn(state, result.count)),
         purse_(state.account.allowance(result.frustum_cost)) {}
 
@@ -80,8 +80,8 @@ private:
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
       drawn_[d] =
-          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], {state_.out, result_.count},
-                                                 buffer_, costs_, share, purse_);
+          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
+                                                 {state_.out, result_.count}, buffer_, costs_, share, purse_);
       any = any || drawn_[d];
     }
     return any;
@@ -102,7 +102,7 @@ private:
 
   // What hidden chunks save for certain: known where masks tell views apart, or there is only one.
   [[nodiscard]] double saving(const ChunkTally& tally) const {
-    if (state_.filters_layers || (!masks_ && different_.count > 1)) return 0;
+    if (!masks_ && different_.count > 1) return 0;
     const int copies = masks_ ? 1 : std::popcount(different_.bits[0]);
     return static_cast<double>(tally.saved) / copies * double{costs_.object};
   }

@@ -55,22 +55,14 @@ struct CullerState {
   PassInput input;
   ObjectId* out = nullptr;
   std::uint8_t* masks = nullptr;
-  /// Of several views that layers tell apart, where the caller wants no masks.
-  std::vector<std::uint8_t> scratch_masks;
 
   const WorldState* world = nullptr;
-  std::array<std::uint32_t, kMaxViews> layers{};  ///< of the caller's views
-  bool filters_layers = false;
+  std::array<WorldPoint, kMaxViews> distance_eyes;  ///< of the caller's views that differ
 
   Account account;
   ObjectCost object_cost;
   std::unique_ptr<Hiding> hiding;
 };
-
-/// The masks that the caller gets, or null.
-inline std::uint8_t* masks_of_caller(CullerState& state) noexcept {
-  return state.masks == state.scratch_masks.data() ? nullptr : state.masks;
-}
 
 /// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;

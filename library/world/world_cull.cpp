@@ -45,7 +45,12 @@ void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> vi
 
 // Of the group that comes after the next, for by then it will have arrived.
 HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntry> entries, std::size_t e) {
-  if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
+  if (e + 2 >= entries.size()) return;
+  const EntryGroup next = group_of(input, entries[e + 2]);
+  prefetch_lines(next.group);
+  if (!input.columns) return;
+  if (!next.map.layer_summaries().empty()) prefetch_lines(next.map.layer_summaries()[next.number]);
+  if (!next.map.distance_summaries().empty()) prefetch_lines(next.map.distance_summaries()[next.number]);
 }
 
 // All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
@@ -74,6 +79,19 @@ HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, cons
   return kept;
 }
 
+// cull_chunk() of a chunk of which the columns leave a part.
+HWY_NOINLINE std::size_t cull_parted_chunk(const PassInput& input, const EntryGroup& at,
+                                           const ChunkMap::ChunkView& chunk, PlaneSet planes,
+                                           ObjectId* HWY_RESTRICT out) {
+  Corner corners[Frustum::sides];
+  ChunkViews seen;
+  seen.count = 1, seen.bits[0] = 1;
+  seen.seen[0] = test_objects(chunk, corners, corners_of(chunk, *at.views, planes, corners),
+                              [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
+  seen.seen[0].keep(input.columns->objects(at.map, at.group, chunk, *at.views));
+  return write_seen(chunk, 0, seen, 0, out, nullptr);
+}
+
 PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* end = out;
@@ -82,14 +100,18 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
     const GroupEntry& entry = entries[e];
     prefetch_group(input, entries, e);
     const EntryGroup at = group_of(input, entry);
-    const ChunkBits bits = classify_chunks(at.group, *at.views, entry.planes[0]);
+    ChunkBits bits = classify_chunks(at.group, *at.views, entry.planes[0]);
+    const std::uint32_t parted = drop_by_columns(input, at, *at.views, bits);
     counts.chunks += at.group.count;
     find_chunks(at, bits.kept, chunks);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       const ChunkMap::ChunkView& chunk = chunks[i];
       const PlaneSet planes = planes_of(bits, i, entry.planes[0]);
-      if (chunk.loose) {
+      if (parted >> i & 1) {
+        counts.tested += chunk.count;
+        end += cull_parted_chunk(input, at, chunk, planes, end);
+      } else if (chunk.loose) {
         if (const std::uint32_t later = rest & (rest - 1); at.group.pool != 0 && later != 0)
           prefetch_boxes(chunks[static_cast<std::uint32_t>(std::countr_zero(later))]);
         Corner corners[Frustum::sides];
@@ -140,18 +162,23 @@ HWY_INLINE std::array<std::uint8_t, 1 << kMaxViews> bits_of_views(const PassInpu
 struct GroupBits {
   std::array<ChunkBits, kMaxViews> bits;  // of the views that do not miss the group
   std::array<std::uint32_t, kMaxViews> whole{}, crossing{};
+  std::array<std::uint32_t, kMaxViews> parted{};  // by the columns; these count as crossing, too
+  std::uint32_t any_parted = 0;
 };
 
 // Returns the chunks that some view may see.
 HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry& entry, const EntryGroup& at,
                                         GroupBits& out) {
   std::uint32_t any = 0;
+  out.any_parted = 0;
   for (std::size_t v = 0; v < input.view_count; ++v) {
-    out.whole[v] = out.crossing[v] = 0;
+    out.whole[v] = out.crossing[v] = out.parted[v] = 0;
     if (entry.planes[v] == kOutside) continue;
     out.bits[v] = classify_chunks(at.group, at.views[v], entry.planes[v]);
+    out.any_parted |= out.parted[v] = drop_by_columns(input, at, at.views[v], out.bits[v]);
     any |= out.bits[v].kept;
-    out.crossing[v] = out.bits[v].crossing, out.whole[v] = out.bits[v].kept & ~out.bits[v].crossing;
+    out.crossing[v] = out.bits[v].crossing | out.parted[v];
+    out.whole[v] = out.bits[v].kept & ~out.crossing[v];
   }
   return any;
 }
@@ -160,13 +187,13 @@ HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry
 struct CrossedChunk {
   const PassInput& input;
   const GroupEntry& entry;
-  const SectorView* views;
+  const EntryGroup& at;
   const GroupBits& bits;
   const ChunkMap::ChunkView& chunk;
   std::uint32_t i;  // the chunk's place in the group
 
   HWY_INLINE std::size_t corners(int v, Corner* out) const {
-    return corners_of(chunk, views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
+    return corners_of(chunk, at.views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
   }
 
   // One view alone: its mask is the same for all.
@@ -187,8 +214,10 @@ struct CrossedChunk {
       Corner planes[Frustum::sides];
       const std::size_t count = corners(v, planes);
       out.bits[out.count] = input.bits[v];
-      out.seen[out.count++] =
-          test_objects(chunk, planes, count, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
+      ObjectBits& seen = out.seen[out.count++];
+      seen = test_objects(chunk, planes, count, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
+      if (bits.parted[static_cast<std::size_t>(v)] >> i & 1)
+        seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
     }
   }
 };
@@ -219,8 +248,8 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
         kept += write_whole(chunk, whole, kept, ids, masks);
         continue;
       }
-      const CrossedChunk crossing{input, entry, at.views, bits, chunk, i};
-      if (whole == 0 && std::has_single_bit(by)) {
+      const CrossedChunk crossing{input, entry, at, bits, chunk, i};
+      if (whole == 0 && std::has_single_bit(by) && (bits.any_parted >> i & 1) == 0) {
         counts.tested += chunk.count;
         kept += crossing.write_one(std::countr_zero(by), kept, ids, masks);
         continue;

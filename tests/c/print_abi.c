@@ -17,13 +17,15 @@ int main(void) {
   STRUCT(sightline_cull_options, costs);
   STRUCT(sightline_cull_output, capacity);
   STRUCT(sightline_cull_result, reserved);
-  STRUCT(sightline_cull_view, view);
+  STRUCT(sightline_cull_view, distance_view);
+  STRUCT(sightline_distance_range, max);
+  STRUCT(sightline_distances, count);
   STRUCT(sightline_error, message);
   STRUCT(sightline_frustum, origin);
   STRUCT(sightline_handle, generation);
   STRUCT(sightline_handles, count);
   STRUCT(sightline_jobs, reserved);
-  STRUCT(sightline_object_columns, values);
+  STRUCT(sightline_object_columns, distances);
   STRUCT(sightline_occluder_parts, box_count);
   STRUCT(sightline_occluder_placement, origin);
   STRUCT(sightline_pvs_cells, visible_count);
@@ -56,6 +58,7 @@ int main(void) {
   VALUE(SIGHTLINE_OCCLUSION_NONE);
   VALUE(SIGHTLINE_OCCLUSION_AUTOMATIC);
   VALUE(SIGHTLINE_NO_OCCLUDER);
+  VALUE(SIGHTLINE_OWN_VIEW);
   VALUE(SIGHTLINE_OUTSIDE);
   VALUE(SIGHTLINE_CROSSING);
   VALUE(SIGHTLINE_INSIDE);
