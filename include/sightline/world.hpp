@@ -86,7 +86,9 @@ public:
   /// (lengths, strides, pointers), bad_box (not min <= max within ±kWorldReach), too_many (beyond 2³¹
   /// objects). Cost: linear, some 200 ns an object. Allocates: about 60 bytes an object; less for ids used
   /// again.
-  Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns = {});
+  Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns);
+  /// The same of objects that have no columns. Errors, Cost, Allocates: the same.
+  Status insert(const BoxView& boxes, Strided<Handle> handles);
   /// Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with all
   /// that moved, or with nothing: what has come to rest is filed again a part a frame, by the first call
   /// after a cull. Listing objects in the same order each frame is fastest. Errors: bad_argument, bad_box,

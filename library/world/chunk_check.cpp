@@ -65,16 +65,15 @@ Status ChunkMap::check_columns(std::uint32_t chunk) const {
       return bad("chunk map: wrong distances of object", object);
   }
   const ChunkColumns all = columns_of(c);
-  const std::uint32_t i = c.index_in_group;
   if (columns_->has_layers) {
-    const LayerSummary& s = layer_summaries_[c.group];
-    if (s.some[i] != all.some || s.every[i] != all.every)
+    const std::uint32_t* row = layer_rows(c.group) + c.index_in_group;
+    if (row[LayerRows::kSome] != all.some || row[LayerRows::kEvery] != all.every)
       return bad("chunk map: wrong layers in the group of chunk", chunk);
   }
   if (columns_->has_distances) {
-    const DistanceSummary& s = distance_summaries_[c.group];
-    if (s.first_min[i] != all.first_min || s.last_min[i] != all.last_min || s.first_max[i] != all.first_max ||
-        s.last_max[i] != all.last_max)
+    const float* row = distance_rows(c.group) + c.index_in_group;
+    if (row[DistanceRows::kFirstMin] != all.first_min || row[DistanceRows::kLastMin] != all.last_min ||
+        row[DistanceRows::kFirstMax] != all.first_max || row[DistanceRows::kLastMax] != all.last_max)
       return bad("chunk map: wrong distances in the group of chunk", chunk);
   }
   return {};

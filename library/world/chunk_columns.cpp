@@ -50,22 +50,21 @@ void ChunkMap::note_columns(ObjectId object) {
 
 void ChunkMap::settle_columns() noexcept {
   if (!has_columns()) return;
-  if (columns_->has_layers) layer_summaries_.resize(groups_.size());
-  if (columns_->has_distances) distance_summaries_.resize(groups_.size());
+  if (columns_->has_layers) layer_rows_.resize(LayerRows::kSize * groups_.size());
+  if (columns_->has_distances) distance_rows_.resize(DistanceRows::kSize * groups_.size());
   for (const std::uint32_t chunk : stale_) {
     Chunk& c = chunks_[chunk];
     c.stale = false;
     if (c.group == kNone) continue;
     const ChunkColumns all = columns_of(c);
-    const std::uint32_t i = c.index_in_group;
     if (columns_->has_layers) {
-      LayerSummary& layers = layer_summaries_[c.group];
-      layers.some[i] = all.some, layers.every[i] = all.every;
+      std::uint32_t* const row = &layer_rows_[LayerRows::kSize * c.group + c.index_in_group];
+      row[LayerRows::kSome] = all.some, row[LayerRows::kEvery] = all.every;
     }
     if (!columns_->has_distances) continue;
-    DistanceSummary& distances = distance_summaries_[c.group];
-    distances.first_min[i] = all.first_min, distances.last_min[i] = all.last_min;
-    distances.first_max[i] = all.first_max, distances.last_max[i] = all.last_max;
+    float* const row = &distance_rows_[DistanceRows::kSize * c.group + c.index_in_group];
+    row[DistanceRows::kFirstMin] = all.first_min, row[DistanceRows::kLastMin] = all.last_min;
+    row[DistanceRows::kFirstMax] = all.first_max, row[DistanceRows::kLastMax] = all.last_max;
   }
   stale_.clear();
 }

@@ -175,10 +175,13 @@ public:
   void note_columns(ObjectId object);
   /// Brings what groups know of columns up to date; before, they know nothing. To be called after changes.
   void settle_columns() noexcept;
-  /// What each group knows of its chunks' columns; empty where there is no such column.
-  [[nodiscard]] std::span<const LayerSummary> layer_summaries() const noexcept { return layer_summaries_; }
-  [[nodiscard]] std::span<const DistanceSummary> distance_summaries() const noexcept {
-    return distance_summaries_;
+  /// What a group knows of its chunks' columns, in rows as LayerRows and DistanceRows say, aligned to 64
+  /// bytes; null where there is no such column.
+  [[nodiscard]] const std::uint32_t* layer_rows(std::uint32_t group) const noexcept {
+    return layer_rows_.empty() ? nullptr : &layer_rows_[LayerRows::kSize * group];
+  }
+  [[nodiscard]] const float* distance_rows(std::uint32_t group) const noexcept {
+    return distance_rows_.empty() ? nullptr : &distance_rows_[DistanceRows::kSize * group];
   }
   /// The columns of a chunk's objects, as ChunkView has its arrays; of distances the least, and as far behind
   /// as `step` says the greatest.
@@ -387,8 +390,8 @@ private:
   std::vector<Key> keys_;
   std::unordered_map<std::uint32_t, std::uint32_t> key_of_regions_;
   geometry::LargeVector<Group> groups_;
-  geometry::LargeVector<LayerSummary> layer_summaries_;        // one a group, or none
-  geometry::LargeVector<DistanceSummary> distance_summaries_;  // the same
+  geometry::LargeVector<std::uint32_t> layer_rows_;  // of all groups, or none
+  geometry::LargeVector<float> distance_rows_;       // the same
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;

@@ -49,62 +49,62 @@ ColumnBits test_chunks(const ChunkMap& map, std::uint32_t number, const SectorVi
   const F f;
   const U u;
   ColumnBits out{~0u, ~0u};
-  if (!map.layer_summaries().empty()) {
-    const LayerSummary& s = map.layer_summaries()[number];
+  if (const std::uint32_t* rows = map.layer_rows(number)) {
     const auto wanted = hn::Set(u, view.layers);
-    std::uint32_t some = 0, all = 0;
+    out = {};
     for (std::size_t i = 0; i < kGroup; i += hn::Lanes(u)) {
-      const auto shared = [&](const std::uint32_t* layers) HWY_ATTR {
-        return bits_of(u, hn::Ne(hn::And(hn::Load(u, layers + i), wanted), hn::Zero(u)));
+      const auto share = [&](std::size_t row) HWY_ATTR {
+        const auto shared = hn::And(hn::Load(u, rows + row + i), wanted);
+        return static_cast<std::uint32_t>(bits_of(u, hn::Ne(shared, hn::Zero(u)))) << i;
       };
-      some |= static_cast<std::uint32_t>(shared(s.some.data())) << i;
-      all |= static_cast<std::uint32_t>(shared(s.every.data())) << i;
+      out.some |= share(LayerRows::kSome), out.all |= share(LayerRows::kEvery);
     }
-    out = {some, all};
   }
-  if (map.distance_summaries().empty() || out.some == 0) return out;
-  const DistanceSummary& s = map.distance_summaries()[number];
-  const ChunkMap::Group& group = map.groups()[number];
-  std::uint32_t some = 0, all = 0;
+  const float* rows = map.distance_rows(number);
+  if (!rows || out.some == 0) return out;
+  ColumnBits near;
   for (std::size_t i = 0; i < kGroup; i += hn::Lanes(f)) {
-    const Distances d = distances_to(group, view, i);
-    const auto reached = hn::And(hn::Ge(d.farthest, reach(&s.first_min[i], view)),
-                                 hn::Lt(d.nearest, reach(&s.last_max[i], view)));
-    const auto inside = hn::And(hn::Ge(d.nearest, reach(&s.last_min[i], view)),
-                                hn::Lt(d.farthest, reach(&s.first_max[i], view)));
-    some |= static_cast<std::uint32_t>(bits_of(f, reached)) << i;
-    all |= static_cast<std::uint32_t>(bits_of(f, inside)) << i;
+    const Distances d = distances_to(map.groups()[number], view, i);
+    const auto between = [&](VF last, std::size_t min, VF first, std::size_t max) HWY_ATTR {
+      const auto reached = hn::Ge(last, reach(rows + min + i, view)),
+                 left = hn::Lt(first, reach(rows + max + i, view));
+      return static_cast<std::uint32_t>(bits_of(f, hn::And(reached, left))) << i;
+    };
+    near.some |= between(d.farthest, DistanceRows::kFirstMin, d.nearest, DistanceRows::kLastMax);
+    near.all |= between(d.nearest, DistanceRows::kLastMin, d.farthest, DistanceRows::kFirstMax);
   }
-  return {out.some & some, out.all & all};
+  return {out.some & near.some, out.all & near.all};
 }
 
 ObjectBits test_chunk_objects(const ChunkMap& map, const ChunkMap::Group& group,
                               const ChunkMap::ChunkView& chunk, const SectorView& view) {
   const F f;
   const U u;
-  const bool by_layers = !map.layer_summaries().empty(), by_distance = !map.distance_summaries().empty();
-  const std::uint32_t* layers = by_layers ? map.layers_of(group, chunk) : nullptr;
+  const std::uint32_t* layers = map.layer_rows(0) ? map.layers_of(group, chunk) : nullptr;
   std::size_t step = 0;
-  const float* metres = by_distance ? map.distances_of(group, chunk, step) : nullptr;
+  const float* metres = map.distance_rows(0) ? map.distances_of(group, chunk, step) : nullptr;
   const auto wanted = hn::Set(u, view.layers);
-  return test_objects(chunk, nullptr, 0, [&](std::size_t i, hn::Mask<F> seen) HWY_ATTR {
-    if (by_layers) {
-      const auto shared = hn::Ne(hn::And(hn::Load(u, layers + i), wanted), hn::Zero(u));
-      seen = hn::And(seen, hn::RebindMask(f, shared));
+  ObjectBits out;
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f)) {
+    auto seen = hn::FirstN(f, hn::Lanes(f));
+    if (layers) seen = hn::RebindMask(f, hn::Ne(hn::And(hn::Load(u, layers + i), wanted), hn::Zero(u)));
+    if (metres) {
+      VF distance = hn::Zero(f);
+      const auto add = [&](const float* low, const float* high, float eye) HWY_ATTR {
+        const VF half = hn::Set(f, 0.5f);
+        const VF centre = hn::Add(hn::Mul(half, hn::Load(f, low + i)), hn::Mul(half, hn::Load(f, high + i)));
+        distance = hn::Add(distance, square(hn::Sub(centre, hn::Set(f, eye))));
+      };
+      add(chunk.min_x, chunk.max_x, view.distance_eye.x);
+      add(chunk.min_y, chunk.max_y, view.distance_eye.y);
+      add(chunk.min_z, chunk.max_z, view.distance_eye.z);
+      const auto in_range = hn::And(hn::Ge(distance, reach(metres + i, view)),
+                                    hn::Lt(distance, reach(metres + step + i, view)));
+      seen = hn::And(seen, in_range);
     }
-    if (!by_distance) return seen;
-    VF distance = hn::Zero(f);
-    const auto add = [&](const float* low, const float* high, float eye) HWY_ATTR {
-      const VF half = hn::Set(f, 0.5f);
-      const VF centre = hn::Add(hn::Mul(half, hn::Load(f, low + i)), hn::Mul(half, hn::Load(f, high + i)));
-      distance = hn::Add(distance, square(hn::Sub(centre, hn::Set(f, eye))));
-    };
-    add(chunk.min_x, chunk.max_x, view.distance_eye.x);
-    add(chunk.min_y, chunk.max_y, view.distance_eye.y);
-    add(chunk.min_z, chunk.max_z, view.distance_eye.z);
-    return hn::And(seen, hn::And(hn::Ge(distance, reach(metres + i, view)),
-                                 hn::Lt(distance, reach(metres + step + i, view))));
-  });
+    out.words[i / 64] |= std::uint64_t{bits_of(f, seen)} << i % 64;
+  }
+  return out;
 }
 
 }  // namespace sightline::world::HWY_NAMESPACE

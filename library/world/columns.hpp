@@ -1,7 +1,7 @@
 // What objects have besides their boxes, and what a group of chunks knows of it.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,18 +15,20 @@ struct Columns {
   std::vector<DistanceRange> distances;
   bool has_layers = false, has_values = false, has_distances = false;
 
+  /// Of an id that is new or used again, takes away what its last object had.
+  void forget(ObjectId id);
   /// Whether there is one that says who is seen.
   [[nodiscard]] bool any() const noexcept { return has_layers || has_distances; }
 };
 
-/// Of each of a group's 32 chunks the layers that some of its objects are in, and those that all are in.
-struct alignas(64) LayerSummary {
-  std::array<std::uint32_t, 32> some{}, every{};
+/// What a group knows of the columns of its 32 chunks: rows of 32 numbers, a chunk each. Of layers, those
+/// that some of the chunk's objects are in and those that all are in; of distances, the least and the
+/// greatest `min` and the least and the greatest `max`.
+struct LayerRows {
+  static constexpr std::size_t kSize = 2 * 32, kSome = 0, kEvery = 32;
 };
-
-/// Of each chunk the least and the greatest of where its objects begin to be seen, and cease to be.
-struct alignas(64) DistanceSummary {
-  std::array<float, 32> first_min{}, last_min{}, first_max{}, last_max{};
+struct DistanceRows {
+  static constexpr std::size_t kSize = 4 * 32, kFirstMin = 0, kLastMin = 32, kFirstMax = 64, kLastMax = 96;
 };
 
 }  // namespace sightline::world

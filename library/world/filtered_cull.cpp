@@ -94,7 +94,7 @@ HWY_INLINE std::uint32_t hidden_of(const PassInput& input, const EntryGroup& at,
                                    PlaneSet planes, std::uint8_t mask_bits, ChunkTally& tally) {
   if (planes == kOutside) return 0;
   ChunkBits bits = classify_chunks(at.group, view, planes);
-  const std::uint32_t parted = drop_by_columns(input, at, view, bits);
+  const std::uint32_t parted = input.columns ? ask_columns(input, at, view, bits) : 0;
   if (bits.kept == 0) return 0;
   ChunkAnswers visible;
   visible.fill(1);
@@ -155,7 +155,7 @@ HWY_INLINE ChunkBits filter_chunks(const PassInput& input, const EntryGroup& at,
   parted = 0;
   if (planes == kOutside) return {};
   ChunkBits bits = classify_chunks(at.group, view, planes);
-  parted = drop_by_columns(input, at, view, bits);
+  if (input.columns) parted = ask_columns(input, at, view, bits);
   if (hidden) {
     bits.kept &= ~*hidden;
   } else if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum)) {

@@ -73,15 +73,6 @@ void WorldState::tidy(bool after_insertions) {
   touched.clear();
 }
 
-void WorldState::begin_column() {
-  column_tests = &world::column_tests();
-  for (std::uint32_t s = 0; s < sectors.size(); ++s) {
-    if (!sectors[s].map) continue;
-    sectors[s].map->begin_column();
-    touch(s);
-  }
-}
-
 Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept {
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
@@ -134,32 +125,6 @@ Status check_boxes(const BoxView& boxes) noexcept {
   return {};
 }
 
-template <class T>
-Status check_column(const Strided<const T>& column, std::size_t expected) noexcept {
-  if (!column.sound())
-    return {StatusCode::bad_argument, "world: a column's pointer is null or its stride too short"};
-  if (column.size() != expected)
-    return {StatusCode::bad_argument, "world: expected one element of a column an object"};
-  return {};
-}
-
-Status check_column(const Strided<const DistanceRange>& column, std::size_t expected) noexcept {
-  if (const Status sound = check_column<DistanceRange>(column, expected); !sound) return sound;
-  for (std::size_t i = 0; i < expected; ++i) {
-    if (const DistanceRange d = column[i]; !(d.min >= 0 && d.min <= d.max))
-      return {StatusCode::bad_argument, "world: distances are no range, expected 0 <= min <= max", i};
-  }
-  return {};
-}
-
-Status check_columns(const ObjectColumns& columns, std::size_t expected) noexcept {
-  Status sound;
-  if (columns.layers.size() > 0) sound = check_column(columns.layers, expected);
-  if (sound && columns.values.size() > 0) sound = check_column(columns.values, expected);
-  if (sound && columns.distances.size() > 0) sound = check_column(columns.distances, expected);
-  return sound;
-}
-
 // Calls take(i, box) for each box.
 template <class Take>
 void for_each_box(const BoxView& boxes, const Take& take) {
@@ -180,76 +145,6 @@ void reserve(WorldState& s, std::size_t more) {
   s.objects.reserve(room);
 }
 
-std::uint32_t own_id(std::size_t id) {
-  return static_cast<std::uint32_t>(id);
-}
-std::uint32_t all_layers(std::size_t) {
-  return kAllLayers;
-}
-DistanceRange any_distance(std::size_t) {
-  return {};
-}
-
-// A column comes to be with the first value that somebody sets; ids without one have `otherwise`(id). Returns
-// whether it has just come to be.
-template <class T, class Otherwise>
-bool cover(std::vector<T>& column, bool& used, std::size_t ids, const Otherwise& otherwise) {
-  while (column.size() < ids) column.push_back(otherwise(column.size()));
-  return !std::exchange(used, true);
-}
-
-template <class T>
-void set_column(std::vector<T>& column, const Handles& handles, const Strided<const T>& values) {
-  for (std::size_t i = 0; i < handles.size(); ++i) column[handles[i].index] = values[i];
-}
-
-// Of columns that say who is seen: chunks are told.
-template <class T, class Otherwise>
-void set_seen(WorldState& s, std::vector<T>& column, bool& used, const Handles& handles,
-              const Strided<const T>& values, const Otherwise& otherwise) {
-  if (cover(column, used, s.objects.size(), otherwise)) s.begin_column();
-  set_column(column, handles, values);
-  for (std::size_t i = 0; i < handles.size(); ++i) {
-    const ChunkMap::Location& object = s.objects[handles[i].index];
-    s.touch(object.sector);
-    s.sectors[object.sector].map->note_columns(handles[i].index);
-  }
-  s.tidy(false);
-}
-
-// Gives new objects their columns. Where nobody gives any, reused ids lose what their last objects had.
-class ColumnWriter {
-public:
-  ColumnWriter(WorldState& state, const ObjectColumns& given) : state_(state), given_(given) {
-    Columns& c = state.columns;
-    const std::size_t ids = state.objects.size();
-    bool begun = given.layers.size() > 0 && cover(c.layers, c.has_layers, ids, all_layers);
-    if (given.distances.size() > 0) begun |= cover(c.distances, c.has_distances, ids, any_distance);
-    if (given.values.size() > 0) cover(c.values, c.has_values, ids, own_id);
-    if (begun) state.begin_column();
-  }
-
-  void write(ObjectId id, std::size_t i) {
-    Columns& c = state_.columns;
-    if (c.has_layers) write(c.layers, given_.layers, id, i, all_layers);
-    if (c.has_values) write(c.values, given_.values, id, i, own_id);
-    if (c.has_distances) write(c.distances, given_.distances, id, i, any_distance);
-  }
-
-private:
-  using Columns = world::Columns;
-
-  template <class T, class Otherwise>
-  static void write(std::vector<T>& column, const Strided<const T>& given, ObjectId id, std::size_t i,
-                    const Otherwise& otherwise) {
-    if (id >= column.size()) column.push_back({});  // ids that are new follow one another
-    column[id] = given.size() > 0 ? given[i] : otherwise(id);
-  }
-
-  WorldState& state_;
-  const ObjectColumns& given_;
-};
-
 }  // namespace
 
 World::World() : state_(new State) {}
@@ -262,18 +157,16 @@ World& World::operator=(World&& other) noexcept {
   return *this;
 }
 
-Status World::insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns) {
+Status World::insert(const BoxView& boxes, Strided<Handle> handles) {
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   if (boxes.size() != handles.size()) return {StatusCode::bad_argument, "world: expected one handle a box"};
-  if (const Status sound = check_columns(columns, boxes.size()); !sound) return sound;
   WorldState& s = *state_;
   constexpr std::size_t kMostObjects = std::size_t{1} << 31;
   if (boxes.size() > kMostObjects - s.size)
     return {StatusCode::too_many, "world: it cannot hold more than 2^31 objects"};
   if (const Status sound = check_boxes(boxes); !sound) return sound;
   reserve(s, boxes.size());
-  ColumnWriter writer(s, columns);
   world::SectorCell last_cell;
   std::uint32_t sector = ChunkMap::kNone;
   for_each_box(boxes, [&](std::size_t i, const WorldBox& box) {
@@ -283,7 +176,7 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles, const Object
       sector = s.sector_at(cell), last_cell = cell;
       s.touch(sector);
     }
-    writer.write(id, i);
+    s.columns.forget(id);
     s.sectors[sector].map->insert(id, geometry::relative_box(box, s.sectors[sector].origin));
     s.objects[id].sector = sector;
     handles.set(i, {id, s.objects[id].generation});
@@ -327,30 +220,6 @@ Status World::remove(Strided<const Handle> handles) {
   return {};
 }
 
-Status World::set_layers(Strided<const Handle> handles, Strided<const std::uint32_t> layers) {
-  if (const Status stand = check_handles(*this, handles); !stand) return stand;
-  if (const Status sound = check_column(layers, handles.size()); !sound) return sound;
-  set_seen(*state_, state_->columns.layers, state_->columns.has_layers, handles, layers, all_layers);
-  return {};
-}
-
-Status World::set_values(Strided<const Handle> handles, Strided<const std::uint32_t> values) {
-  if (const Status stand = check_handles(*this, handles); !stand) return stand;
-  if (const Status sound = check_column(values, handles.size()); !sound) return sound;
-  world::Columns& c = state_->columns;
-  cover(c.values, c.has_values, state_->objects.size(), own_id);
-  set_column(c.values, handles, values);
-  return {};
-}
-
-Status World::set_distances(Strided<const Handle> handles, Strided<const DistanceRange> distances) {
-  if (const Status stand = check_handles(*this, handles); !stand) return stand;
-  if (const Status sound = check_column(distances, handles.size()); !sound) return sound;
-  set_seen(*state_, state_->columns.distances, state_->columns.has_distances, handles, distances,
-           any_distance);
-  return {};
-}
-
 bool World::contains(Handle handle) const noexcept {
   const auto& objects = state_->objects;
   return handle.index < objects.size() && objects[handle.index].sector != ChunkMap::kNone &&
@@ -360,21 +229,6 @@ bool World::contains(Handle handle) const noexcept {
 WorldBox World::box(Handle handle) const noexcept {
   if (!contains(handle)) return {};
   return world::stored_box(*state_, handle.index);
-}
-
-std::uint32_t World::layers(Handle handle) const noexcept {
-  if (!contains(handle)) return 0;
-  return state_->columns.has_layers ? state_->columns.layers[handle.index] : kAllLayers;
-}
-
-std::uint32_t World::value(Handle handle) const noexcept {
-  if (!contains(handle)) return kNoObject;
-  return state_->columns.has_values ? state_->columns.values[handle.index] : handle.index;
-}
-
-DistanceRange World::distances(Handle handle) const noexcept {
-  if (!contains(handle)) return {0, 0};
-  return state_->columns.has_distances ? state_->columns.distances[handle.index] : DistanceRange{};
 }
 
 Handle World::handle(ObjectId id) const noexcept {

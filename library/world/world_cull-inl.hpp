@@ -319,9 +319,9 @@ HWY_INLINE EntryGroup group_of(const PassInput& input, const GroupEntry& entry) 
 }
 
 // Takes out the chunks of which the columns leave nothing; returns those of which they leave a part.
-HWY_INLINE std::uint32_t drop_by_columns(const PassInput& input, const EntryGroup& at, const SectorView& view,
-                                         ChunkBits& bits) {
-  if (!input.columns || bits.kept == 0) return 0;
+HWY_INLINE std::uint32_t ask_columns(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                     ChunkBits& bits) {
+  if (bits.kept == 0) return 0;
   const ColumnBits left = input.columns->chunks(at.map, at.number, view);
   bits.kept &= left.some, bits.crossing &= left.some;
   return bits.kept & ~left.all;

@@ -45,12 +45,19 @@ void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> vi
 
 // Of the group that comes after the next, for by then it will have arrived.
 HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntry> entries, std::size_t e) {
+  if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
+}
+
+// The same of what the group knows of columns. By itself, as most worlds have none.
+HWY_NOINLINE void prefetch_columns(const PassInput& input, std::span<const GroupEntry> entries,
+                                   std::size_t e) {
   if (e + 2 >= entries.size()) return;
   const EntryGroup next = group_of(input, entries[e + 2]);
-  prefetch_lines(next.group);
-  if (!input.columns) return;
-  if (!next.map.layer_summaries().empty()) prefetch_lines(next.map.layer_summaries()[next.number]);
-  if (!next.map.distance_summaries().empty()) prefetch_lines(next.map.distance_summaries()[next.number]);
+  constexpr std::size_t kLine = 16;
+  if (const std::uint32_t* rows = next.map.layer_rows(next.number))
+    for (std::size_t i = 0; i < LayerRows::kSize; i += kLine) hwy::Prefetch(rows + i);
+  if (const float* rows = next.map.distance_rows(next.number))
+    for (std::size_t i = 0; i < DistanceRows::kSize; i += kLine) hwy::Prefetch(rows + i);
 }
 
 // All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
@@ -83,13 +90,18 @@ HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, cons
 HWY_NOINLINE std::size_t cull_parted_chunk(const PassInput& input, const EntryGroup& at,
                                            const ChunkMap::ChunkView& chunk, PlaneSet planes,
                                            ObjectId* HWY_RESTRICT out) {
+  const U u;
   Corner corners[Frustum::sides];
-  ChunkViews seen;
-  seen.count = 1, seen.bits[0] = 1;
-  seen.seen[0] = test_objects(chunk, corners, corners_of(chunk, *at.views, planes, corners),
-                              [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
-  seen.seen[0].keep(input.columns->objects(at.map, at.group, chunk, *at.views));
-  return write_seen(chunk, 0, seen, 0, out, nullptr);
+  const ObjectBits seen = input.columns->objects(at.map, at.group, chunk, *at.views);
+  std::size_t kept = 0;
+  const auto take = [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const auto ids = hn::Load(u, chunk.objects + i);
+    auto keep = hn::And(hn::And(hn::RebindMask(u, mask), mask_at(u, seen, i)), are_objects(ids));
+    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    kept += store_kept(u, ids, keep, out + kept);
+  };
+  test_planes<0>(corners, corners_of(chunk, *at.views, planes, corners), chunk.count, take);
+  return kept;
 }
 
 PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
@@ -101,7 +113,11 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
     prefetch_group(input, entries, e);
     const EntryGroup at = group_of(input, entry);
     ChunkBits bits = classify_chunks(at.group, *at.views, entry.planes[0]);
-    const std::uint32_t parted = drop_by_columns(input, at, *at.views, bits);
+    std::uint32_t parted = 0;
+    if (input.columns) {
+      prefetch_columns(input, entries, e);
+      parted = ask_columns(input, at, *at.views, bits);
+    }
     counts.chunks += at.group.count;
     find_chunks(at, bits.kept, chunks);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
@@ -162,23 +178,18 @@ HWY_INLINE std::array<std::uint8_t, 1 << kMaxViews> bits_of_views(const PassInpu
 struct GroupBits {
   std::array<ChunkBits, kMaxViews> bits;  // of the views that do not miss the group
   std::array<std::uint32_t, kMaxViews> whole{}, crossing{};
-  std::array<std::uint32_t, kMaxViews> parted{};  // by the columns; these count as crossing, too
-  std::uint32_t any_parted = 0;
 };
 
 // Returns the chunks that some view may see.
 HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry& entry, const EntryGroup& at,
                                         GroupBits& out) {
   std::uint32_t any = 0;
-  out.any_parted = 0;
   for (std::size_t v = 0; v < input.view_count; ++v) {
-    out.whole[v] = out.crossing[v] = out.parted[v] = 0;
+    out.whole[v] = out.crossing[v] = 0;
     if (entry.planes[v] == kOutside) continue;
     out.bits[v] = classify_chunks(at.group, at.views[v], entry.planes[v]);
-    out.any_parted |= out.parted[v] = drop_by_columns(input, at, at.views[v], out.bits[v]);
     any |= out.bits[v].kept;
-    out.crossing[v] = out.bits[v].crossing | out.parted[v];
-    out.whole[v] = out.bits[v].kept & ~out.crossing[v];
+    out.crossing[v] = out.bits[v].crossing, out.whole[v] = out.bits[v].kept & ~out.bits[v].crossing;
   }
   return any;
 }
@@ -187,13 +198,13 @@ HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry
 struct CrossedChunk {
   const PassInput& input;
   const GroupEntry& entry;
-  const EntryGroup& at;
+  const SectorView* views;
   const GroupBits& bits;
   const ChunkMap::ChunkView& chunk;
   std::uint32_t i;  // the chunk's place in the group
 
   HWY_INLINE std::size_t corners(int v, Corner* out) const {
-    return corners_of(chunk, at.views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
+    return corners_of(chunk, views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
   }
 
   // One view alone: its mask is the same for all.
@@ -214,10 +225,8 @@ struct CrossedChunk {
       Corner planes[Frustum::sides];
       const std::size_t count = corners(v, planes);
       out.bits[out.count] = input.bits[v];
-      ObjectBits& seen = out.seen[out.count++];
-      seen = test_objects(chunk, planes, count, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
-      if (bits.parted[static_cast<std::size_t>(v)] >> i & 1)
-        seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
+      out.seen[out.count++] =
+          test_objects(chunk, planes, count, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
     }
   }
 };
@@ -248,8 +257,8 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
         kept += write_whole(chunk, whole, kept, ids, masks);
         continue;
       }
-      const CrossedChunk crossing{input, entry, at, bits, chunk, i};
-      if (whole == 0 && std::has_single_bit(by) && (bits.any_parted >> i & 1) == 0) {
+      const CrossedChunk crossing{input, entry, at.views, bits, chunk, i};
+      if (whole == 0 && std::has_single_bit(by)) {
         counts.tested += chunk.count;
         kept += crossing.write_one(std::countr_zero(by), kept, ids, masks);
         continue;
@@ -282,8 +291,9 @@ PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entri
                        std::uint8_t* masks) noexcept {
   bool plain = input.hidden.empty();
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
-  if (!plain) return cull_filtered_groups(input, entries, out, masks);
-  if (input.view_count == 1 && !masks) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);
+  const bool alone = input.view_count == 1 && !masks;
+  if (!plain || (input.columns && !alone)) return cull_filtered_groups(input, entries, out, masks);
+  if (alone) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);
   return HWY_DYNAMIC_DISPATCH(frustum_views)(input, entries, out, masks);
 }
 
