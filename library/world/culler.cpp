@@ -171,9 +171,15 @@ const WorldView& distance_view(std::span<const CullView> views, const CullView& 
   return own ? view.view : views[view.distance_view].view;
 }
 
+// The matrix is rigid: its transpose turns back.
 WorldPoint eye_of(const WorldView& view) noexcept {
-  const glm::dvec4 eye = glm::inverse(to_double(view.view.world_to_eye))[3];
-  return {view.origin.x + eye.x, view.origin.y + eye.y, view.origin.z + eye.z};
+  const auto& m = view.view.world_to_eye.m;
+  const auto along = [&](std::size_t axis) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) sum += double{m[4 * axis + i]} * double{m[12 + i]};
+    return -sum;
+  };
+  return {view.origin.x + along(0), view.origin.y + along(1), view.origin.z + along(2)};
 }
 
 // Views that are the same are culled once; what no column asks for makes no difference.

@@ -22,8 +22,8 @@ void Columns::forget(ObjectId id) {
   set(has_distances, distances, DistanceRange{});
 }
 
-void WorldState::begin_column() {
-  column_tests = &world::column_tests();
+void WorldState::begin_column(const ColumnTests& tests) {
+  column_tests = &tests;
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
     if (!sectors[s].map) continue;
     sectors[s].map->begin_column();
@@ -92,9 +92,9 @@ void set_column(std::vector<T>& column, const Handles& handles, const Strided<co
 
 // Of columns that say who is seen: chunks are told.
 template <class T, class Otherwise>
-void set_seen(WorldState& s, std::vector<T>& column, bool& used, const Handles& handles,
-              const Strided<const T>& values, const Otherwise& otherwise) {
-  if (cover(column, used, s.objects.size(), otherwise)) s.begin_column();
+void set_seen(WorldState& s, const world::ColumnTests& tests, std::vector<T>& column, bool& used,
+              const Handles& handles, const Strided<const T>& values, const Otherwise& otherwise) {
+  if (cover(column, used, s.objects.size(), otherwise)) s.begin_column(tests);
   set_column(column, handles, values);
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const ChunkMap::Location& object = s.objects[handles[i].index];
@@ -119,7 +119,9 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles, const Object
 Status World::set_layers(Strided<const Handle> handles, Strided<const std::uint32_t> layers) {
   if (const Status stand = check_handles(*this, handles); !stand) return stand;
   if (const Status sound = check_column(layers, handles.size()); !sound) return sound;
-  set_seen(*state_, state_->columns.layers, state_->columns.has_layers, handles, layers, all_layers);
+  WorldState& s = *state_;
+  const world::ColumnTests& tests = s.column_tests ? *s.column_tests : world::kLayerTests;
+  set_seen(s, tests, s.columns.layers, s.columns.has_layers, handles, layers, all_layers);
   return {};
 }
 
@@ -135,7 +137,8 @@ Status World::set_values(Strided<const Handle> handles, Strided<const std::uint3
 Status World::set_distances(Strided<const Handle> handles, Strided<const DistanceRange> distances) {
   if (const Status stand = check_handles(*this, handles); !stand) return stand;
   if (const Status sound = check_column(distances, handles.size()); !sound) return sound;
-  set_seen(*state_, state_->columns.distances, state_->columns.has_distances, handles, distances,
+  WorldState& s = *state_;
+  set_seen(s, world::kDistanceTests, s.columns.distances, s.columns.has_distances, handles, distances,
            any_distance);
   return {};
 }

@@ -51,15 +51,16 @@ struct ColumnBits {
   std::uint32_t some = 0, all = 0;
 };
 
-/// What layers and distances say. A world hands it to its cullers once it has such a column, so that who has
-/// none need not link it.
+/// What layers and distances say. A world hands them to its cullers once it has such a column, so that who
+/// has none need not link them.
 struct ColumnTests {
   ColumnBits (*chunks)(const ChunkMap& map, std::uint32_t group, const SectorView& view);
   /// Of a chunk's objects those that the view sees; bits from its count on mean nothing.
   ObjectBits (*objects)(const ChunkMap& map, const ChunkMap::Group& group, const ChunkMap::ChunkView& chunk,
                         const SectorView& view);
 };
-const ColumnTests& column_tests() noexcept;
+extern const ColumnTests kLayerTests;     ///< of worlds that have no distances
+extern const ColumnTests kDistanceTests;  ///< of both, where there are any
 
 /// A group that some view may see.
 struct GroupEntry {

@@ -76,7 +76,7 @@ struct WorldState {
   /// after insertions also puts chunks side by side.
   void tidy(bool after_insertions);
   /// To be called when a column that says who is seen has come to be, with an element for each id.
-  void begin_column();
+  void begin_column(const ColumnTests& tests);
   /// World::move, of what has been checked.
   void move(const Strided<const Handle>& handles, const BoxView& boxes);
   /// Counts frames; true where a new one begins.
