@@ -396,6 +396,13 @@ private:
       options.occlusion = in_.rarely() ? in_.byte() : std::uint32_t{SIGHTLINE_OCCLUSION_AUTOMATIC};
     options.costs.object = in_.byte() & 1 ? 1e6f : in_.single(1000);
     (void)done(sightline_report_frame_time(culler_.get(), in_.number(1)));
+    int zones = 0;
+    options.zones.user = &zones;
+    if (in_.byte() & 1) {
+      options.zones.begin = [](void* user, const char*) { ++*static_cast<int*>(user); };
+      options.zones.end = [](void* user) { --*static_cast<int*>(user); };
+    }
+    if (in_.rarely()) options.zones.end = nullptr;
     if (in_.rarely()) options.struct_size = in_.byte();
     const std::size_t needed = sightline_cull_capacity(world_.get(), &options);
     const std::size_t room = needed > 0 && in_.rarely() ? needed - 1 : needed;
@@ -408,7 +415,7 @@ private:
     if (!done(sightline_cull(culler_.get(), world_.get(), views.data(), views.size(), &options, &output,
                              &result)))
       return;
-    require(result.count <= standing_);
+    require(result.count <= standing_ && zones == 0);
     require(options.occlusion == SIGHTLINE_OCCLUSION_NONE || result.cost <= 1.05 * result.frustum_cost);
     for (std::size_t i = 0; i < result.count && options.values_for_ids == 0; ++i)
       require(ids[i] < sightline_world_id_limit(world_.get()) && (!output.masks || masks[i] != 0));

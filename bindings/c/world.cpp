@@ -61,6 +61,7 @@ Status take(const sightline_cull_options* given, CullOptions& options) {
   options.buffer = {static_cast<Coverage>(o.coverage), o.scale};
   const sightline_cull_costs& c = o.costs;
   options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
+  options.zones = {o.zones.begin, o.zones.end, o.zones.user};
   return c_api::take(o.jobs, options.jobs);
 }
 

@@ -205,6 +205,14 @@ struct CullCosts {
 /// An object's cost as long as nobody has said or taught another.
 inline constexpr float kObjectCost = 1000;
 
+/// A profiler that has zones, as Tracy, Optick and Perfetto do: both functions are called by whichever thread
+/// does the work, the caller's or a job's, first `begin` and then `end`, one zone within another.
+struct CullZones {
+  void (*begin)(void* user, const char* name) = nullptr;  ///< a name that lives as long as the program
+  void (*end)(void* user) = nullptr;                      ///< of the zone that this thread began last
+  void* user = nullptr;                                   ///< handed to both
+};
+
 /// How a call culls; the same for all its views.
 struct CullOptions {
   JobSystem jobs = {};                    ///< the caller's threads; without them, the calling one
@@ -213,6 +221,7 @@ struct CullOptions {
   CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
   /// Which places of the images automatic occlusion answers for, and how finely.
   OcclusionOptions buffer = {};
+  CullZones zones = {};  ///< both functions, or none: what a cull spends its time on is told to nobody
 };
 
 /// Where a cull writes; both have cull_capacity() elements, but `masks` may be empty. What stands behind the

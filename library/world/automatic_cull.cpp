@@ -59,6 +59,7 @@ private:
   [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
 
   [[nodiscard]] bool draw_occluders() {
+    const Zone zone(state_.zones, "sightline: draw occluders");
     std::uint64_t objects = 0;
     for (const GroupEntry& entry : state_.entries) {
       const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
@@ -108,6 +109,7 @@ private:
   }
 
   [[nodiscard]] bool cull_again() {
+    const Zone zone(state_.zones, "sightline: ask for what is hidden");
     const double nodes = static_cast<double>(chunks_) * double{costs_.node};
     const double asking = nodes + static_cast<double>(chunks_ * different_.count) * double{costs_.query};
     if (!purse_.affords(asking)) return false;
@@ -144,6 +146,7 @@ private:
   }
 
   void ask_triangles() {
+    const Zone zone(state_.zones, "sightline: ask for triangles");
     const WorldOccluders& o = *state_.world->occluders;
     const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
     if (o.triangles.size() == o.free_triangles.size() || !purse_.affords(looking)) return;

@@ -135,6 +135,7 @@ private:
 
 void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
+  const Zone zone(state.zones, "sightline: chunks and objects");
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
   PassInput input = state.input;
@@ -209,6 +210,7 @@ std::size_t nodes_of(const Sector& sector) {
 // regions and groups it looked at.
 std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
                            const DifferentViews& different) {
+  const Zone zone(state.zones, "sightline: regions and groups");
   const auto& sectors = state.world->sectors;
   const auto of_different = std::span(different.first).first(different.count);
   state.maps.clear(), state.views.clear(), state.entries.clear(), state.origins.clear();
@@ -301,6 +303,8 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
     return {StatusCode::bad_argument, "cull: expected 1 to 8 views", views.size()};
   if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs)
     return {StatusCode::bad_argument, "cull: expected 1 to 64 jobs"};
+  if ((options.zones.begin == nullptr) != (options.zones.end == nullptr))
+    return {StatusCode::bad_argument, "cull: a zone's begin or end is null, expected both or none"};
   const std::size_t needed = cull_capacity(world, options);
   if (output.ids.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
@@ -331,6 +335,7 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
       static_cast<double>(count_drawn(state, result.count)) * double{costs.object};
   const WorldOccluders* occluders = state.world->occluders.get();
   if (occluders && occluders->any() && result.count > 0 && state.account.begins_try()) {
+    const Zone zone(state.zones, "sightline: automatic occlusion");
     if (!state.hiding) state.hiding = occluders->make_hiding();
     state.hiding->hide(state, views, different, options, costs, result);
   }
@@ -379,6 +384,8 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
                                 const CullOptions& options, const CullOutput& output) noexcept {
   if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
   world::CullerState& state = *state_;
+  state.zones = options.zones;
+  const world::Zone zone(state.zones, "sightline: cull");
   state.world = &WorldAccess::state(world);
   auto& culled = state.world->culled;
   if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);

@@ -31,6 +31,22 @@ struct DifferentViews {
 
 struct CullerState;
 
+/// A zone of the caller's profiler, if there is one.
+class Zone {
+public:
+  Zone(const CullZones& zones, const char* name) noexcept : zones_(zones) {
+    if (zones_.begin) zones_.begin(zones_.user, name);
+  }
+  ~Zone() {
+    if (zones_.end) zones_.end(zones_.user);
+  }
+  Zone(const Zone&) = delete;
+  Zone& operator=(const Zone&) = delete;
+
+private:
+  const CullZones& zones_;
+};
+
 /// What a culler does after its passes by frustum, whose ids and masks stand in the state's output, and
 /// `result` is theirs: hides what the world's occluders hide, and adds to the result's cost, no more than the
 /// account allows. A world hands it to its cullers once it has an occluder, so that who has none need not
@@ -57,6 +73,7 @@ struct CullerState {
   std::uint8_t* masks = nullptr;
 
   const WorldState* world = nullptr;
+  CullZones zones;
   std::array<WorldPoint, kMaxViews> distance_eyes;  ///< of the caller's views that differ
 
   Account account;

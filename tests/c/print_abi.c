@@ -14,10 +14,11 @@ int main(void) {
   STRUCT(sightline_camera, shift);
   STRUCT(sightline_column, count);
   STRUCT(sightline_cull_costs, reserved);
-  STRUCT(sightline_cull_options, costs);
+  STRUCT(sightline_cull_options, zones);
   STRUCT(sightline_cull_output, capacity);
   STRUCT(sightline_cull_result, reserved);
   STRUCT(sightline_cull_view, distance_view);
+  STRUCT(sightline_cull_zones, user);
   STRUCT(sightline_distance_range, max);
   STRUCT(sightline_distances, count);
   STRUCT(sightline_error, message);

@@ -218,6 +218,14 @@ typedef struct sightline_cull_costs {
   float reserved;  /**< 0 */
 } sightline_cull_costs;
 
+/** A profiler that has zones, as Tracy, Optick and Perfetto do: both are called by whichever thread does the
+ * work, the caller's or a job's, one zone within another. */
+typedef struct sightline_cull_zones {
+  void (*begin)(void* user, const char* name); /**< a name that lives as long as the program; or NULL */
+  void (*end)(void* user); /**< of the zone that this thread began last; NULL where begin is */
+  void* user;              /**< handed to both */
+} sightline_cull_zones;
+
 /** How a call culls; the same for all its views. Made by sightline_cull_options_default(). */
 typedef struct sightline_cull_options {
   uint32_t struct_size;       /**< bytes of this struct */
@@ -228,6 +236,7 @@ typedef struct sightline_cull_options {
   sightline_cull_costs costs; /**< finite, not negative; read by automatic occlusion */
   uint32_t coverage;          /**< SIGHTLINE_COVERAGE_...: which places automatic occlusion answers for */
   uint32_t scale;             /**< pixels of the view along a side of one of its buffer's: 1, 2 or 4 */
+  sightline_cull_zones zones; /**< told what a cull spends its time on */
 } sightline_cull_options;
 
 /** Ids, by the calling thread, without occlusion. */
@@ -240,6 +249,7 @@ static inline sightline_cull_options sightline_cull_options_default(void) {
   options.occlusion = SIGHTLINE_OCCLUSION_NONE, options.reserved = 0;
   options.costs = costs;
   options.coverage = SIGHTLINE_COVERAGE_CENTRES, options.scale = 1;
+  options.zones.begin = NULL, options.zones.end = NULL, options.zones.user = NULL;
   return options;
 }
 
