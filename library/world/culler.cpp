@@ -344,6 +344,13 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
 
 }  // namespace
 
+Zone::Zone(const CullZones& zones, const char* name) noexcept : zones_(zones) {
+  if (zones_.begin) zones_.begin(zones_.user, name);
+}
+Zone::~Zone() {
+  if (zones_.end) zones_.end(zones_.user);
+}
+
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept {
   const std::uint8_t* masks = state.masks;
   if (!masks) return count;

@@ -34,12 +34,8 @@ struct CullerState;
 /// A zone of the caller's profiler, if there is one.
 class Zone {
 public:
-  Zone(const CullZones& zones, const char* name) noexcept : zones_(zones) {
-    if (zones_.begin) zones_.begin(zones_.user, name);
-  }
-  ~Zone() {
-    if (zones_.end) zones_.end(zones_.user);
-  }
+  Zone(const CullZones& zones, const char* name) noexcept;
+  ~Zone();
   Zone(const Zone&) = delete;
   Zone& operator=(const Zone&) = delete;
 
