@@ -46,6 +46,7 @@ struct Thing {
   float centre[3], half[3];
   sightline_handle handle;
   std::uint32_t layer, value;
+  sightline_distance_range range;
 };
 using Things = std::array<Thing, kMost>;
 
@@ -59,6 +60,9 @@ void fill(Bytes& in, Things& things, std::size_t count) {
       t.centre[a] = static_cast<float>(t.box.min[a]) + t.half[a];
     }
     t.layer = in.byte(), t.value = in.byte();
+    t.range.min = in.byte() < 128 ? 0 : in.byte();
+    t.range.max = t.range.min + in.byte();
+    if (in.rarely()) t.range = {in.single(1), in.single(1)};
   }
 }
 
@@ -106,6 +110,12 @@ sightline_column column_of(Bytes& in, const std::uint32_t* first, std::size_t co
   sightline_column column = sightline_column_of(first, sizeof(Thing), count);
   if (in.rarely()) harm(in, column.first, column.stride, column.count);
   return column;
+}
+
+sightline_distances distances_of(Bytes& in, const Things& things, std::size_t count) {
+  sightline_distances distances = sightline_distances_of(&things[0].range, sizeof(Thing), count);
+  if (in.rarely()) harm(in, distances.first, distances.stride, distances.count);
+  return distances;
 }
 
 sightline_view view_of(Bytes& in) {
@@ -168,6 +178,7 @@ private:
     sightline_object_columns columns = sightline_object_columns_default();
     if (in_.byte() & 1) columns.layers = column_of(in_, &things_[0].layer, count_);
     if (in_.byte() & 1) columns.values = column_of(in_, &things_[0].value, count_);
+    if (in_.byte() & 1) columns.distances = distances_of(in_, things_, count_);
     if (in_.rarely()) columns.struct_size = in_.byte();
     const auto* given = in_.byte() & 1 ? &columns : nullptr;
     if (!done(sightline_world_insert(world_.get(), in_.rarely() ? nullptr : &boxes, &handles, given))) return;
@@ -199,6 +210,13 @@ private:
     const sightline_column layers = column_of(in_, &things_[0].layer, count_),
                            values = column_of(in_, &things_[0].value, count_);
     (void)done(sightline_world_set_layers(world_.get(), &handles, &layers));
+    const sightline_distances distances = distances_of(in_, things_, count_);
+    if (done(sightline_world_set_distances(world_.get(), &handles, &distances)) && handles.count > 0) {
+      const Thing& one = things_[handles.count - 1];
+      sightline_distance_range range;
+      require(sightline_world_distances(world_.get(), one.handle, &range) == SIGHTLINE_OK &&
+              range.min == one.range.min && range.max == one.range.max);
+    }
     if (!done(sightline_world_set_values(world_.get(), &handles, &values)) || handles.count == 0) return;
     std::uint32_t value = 0;
     const Thing& last = things_[handles.count - 1];
@@ -367,6 +385,8 @@ private:
       if (automatic ? in_.rarely() : in_.byte() & 1) view.occlusion = occlusion_.get();
       if (in_.byte() & 1) view.layers = in_.byte();
       if (in_.byte() & 1) view.min_area = in_.single(1);
+      if (in_.byte() & 1) view.distance_scale = in_.single(1);
+      if (in_.byte() < 64) view.distance_view = in_.byte() % 8u;
       if (in_.rarely()) view.struct_size = in_.byte();
     }
     sightline_cull_options options = sightline_cull_options_default();
@@ -376,6 +396,13 @@ private:
       options.occlusion = in_.rarely() ? in_.byte() : std::uint32_t{SIGHTLINE_OCCLUSION_AUTOMATIC};
     options.costs.object = in_.byte() & 1 ? 1e6f : in_.single(1000);
     (void)done(sightline_report_frame_time(culler_.get(), in_.number(1)));
+    int zones = 0;
+    options.zones.user = &zones;
+    if (in_.byte() & 1) {
+      options.zones.begin = [](void* user, const char*) { ++*static_cast<int*>(user); };
+      options.zones.end = [](void* user) { --*static_cast<int*>(user); };
+    }
+    if (in_.rarely()) options.zones.end = nullptr;
     if (in_.rarely()) options.struct_size = in_.byte();
     const std::size_t needed = sightline_cull_capacity(world_.get(), &options);
     const std::size_t room = needed > 0 && in_.rarely() ? needed - 1 : needed;
@@ -388,7 +415,7 @@ private:
     if (!done(sightline_cull(culler_.get(), world_.get(), views.data(), views.size(), &options, &output,
                              &result)))
       return;
-    require(result.count <= standing_);
+    require(result.count <= standing_ && zones == 0);
     require(options.occlusion == SIGHTLINE_OCCLUSION_NONE || result.cost <= 1.05 * result.frustum_cost);
     for (std::size_t i = 0; i < result.count && options.values_for_ids == 0; ++i)
       require(ids[i] < sightline_world_id_limit(world_.get()) && (!output.masks || masks[i] != 0));

@@ -18,7 +18,8 @@ namespace {
 static_assert(sizeof(sightline_handle) == sizeof(Handle) &&
               offsetof(sightline_handle, generation) == offsetof(Handle, generation));
 static_assert(SIGHTLINE_NO_OBJECT == kNoObject && SIGHTLINE_ALL_LAYERS == kAllLayers &&
-              SIGHTLINE_MAX_VIEWS == kMaxViews && SIGHTLINE_NO_OCCLUDER == kNoOccluder);
+              SIGHTLINE_MAX_VIEWS == kMaxViews && SIGHTLINE_OWN_VIEW == kOwnView &&
+              SIGHTLINE_NO_OCCLUDER == kNoOccluder);
 static_assert(sizeof(sightline_occluder_placement) == sizeof(OccluderPlacement) &&
               offsetof(sightline_occluder_placement, transform) == offsetof(OccluderPlacement, transform) &&
               offsetof(sightline_occluder_placement, origin) == offsetof(OccluderPlacement, origin));
@@ -28,6 +29,9 @@ Strided<const Handle> read(const sightline_handles& handles) {
 }
 Strided<const std::uint32_t> read(const sightline_column& column) {
   return {column.first, column.count, column.stride};
+}
+Strided<const DistanceRange> read(const sightline_distances& distances) {
+  return {distances.first, distances.count, distances.stride};
 }
 Handle handle_of(sightline_handle handle) {
   return {handle.index, handle.generation};
@@ -39,7 +43,7 @@ Status take(const sightline_object_columns& given, ObjectColumns& columns) {
     return {StatusCode::bad_argument,
             "columns: a struct_size is unknown, expected that of sightline_object_columns_default"};
   }
-  columns = {read(c.layers), read(c.values)};
+  columns = {read(c.layers), read(c.values), read(c.distances)};
   return {};
 }
 
@@ -57,6 +61,7 @@ Status take(const sightline_cull_options* given, CullOptions& options) {
   options.buffer = {static_cast<Coverage>(o.coverage), o.scale};
   const sightline_cull_costs& c = o.costs;
   options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
+  options.zones = {o.zones.begin, o.zones.end, o.zones.user};
   return c_api::take(o.jobs, options.jobs);
 }
 
@@ -93,6 +98,7 @@ Status take(const sightline_cull_view* given, std::size_t count, Views& views) {
     views[i].view = view_of(v.view);
     views[i].occlusion = v.occlusion ? &v.occlusion->buffer : nullptr;
     views[i].layers = v.layers, views[i].min_area = v.min_area;
+    views[i].distance_scale = v.distance_scale, views[i].distance_view = v.distance_view;
   }
   return {};
 }
@@ -172,6 +178,13 @@ sightline_status sightline_world_set_values(sightline_world* world, const sightl
   if (!world || !handles || !values)
     return refuse("set_values: the world, the handles or the values are NULL");
   return keep(world->world.set_values(read(*handles), read(*values)));
+}
+
+sightline_status sightline_world_set_distances(sightline_world* world, const sightline_handles* handles,
+                                               const sightline_distances* distances) {
+  if (!world || !handles || !distances)
+    return refuse("set_distances: the world, the handles or the distances are NULL");
+  return keep(world->world.set_distances(read(*handles), read(*distances)));
 }
 
 sightline_status sightline_world_add_occluder(sightline_world* world, const sightline_occluder* occluder,
@@ -267,6 +280,14 @@ sightline_status sightline_world_layers(const sightline_world* world, sightline_
 sightline_status sightline_world_value(const sightline_world* world, sightline_handle handle,
                                        uint32_t* value) {
   return read_object(world, handle, value, [&](const World& w, Handle h) { *value = w.value(h); });
+}
+
+sightline_status sightline_world_distances(const sightline_world* world, sightline_handle handle,
+                                           sightline_distance_range* distances) {
+  return read_object(world, handle, distances, [&](const World& w, Handle h) {
+    const DistanceRange d = w.distances(h);
+    *distances = {d.min, d.max};
+  });
 }
 
 size_t sightline_cull_capacity(const sightline_world* world, const sightline_cull_options* options) {

@@ -162,6 +162,14 @@ Strided<const std::uint32_t> column_of(const py::object& given, const char* name
   return {rows.first, rows.count, rows.stride};
 }
 
+Strided<const DistanceRange> distances_of(const py::object& given) {
+  if (given.is_none()) return {};
+  constexpr const char* what = "distances: expected float32 of shape (n, 2) with a row's numbers together";
+  const auto rows = rows_of<float>(array_given(given, what), what, 2);
+  static_assert(sizeof(DistanceRange) == 2 * sizeof(float));
+  return {rows.first, rows.count, rows.stride};
+}
+
 std::vector<Vec3> points_of(const py::object& given, const char* name) {
   const std::string what = std::string(name) + ": expected float32 of shape (..., 3)";
   const auto array = contiguous<float>(given, what);

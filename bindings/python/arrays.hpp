@@ -52,6 +52,8 @@ Strided<const Handle> handles_of(const py::object& given);
 Strided<Handle> writable_handles_of(const py::object& given);
 /// Uint32 (n,); an empty column for None.
 Strided<const std::uint32_t> column_of(const py::object& given, const char* name);
+/// Float32 (n, 2), minimum and maximum; an empty column for None.
+Strided<const DistanceRange> distances_of(const py::object& given);
 
 /// Contiguous copies of what is not read through strides: points (..., 3) float32, and numbers uint32 of any
 /// shape.

@@ -1,8 +1,11 @@
 // Worlds and their culling.
 #include <sightline/world.hpp>
 
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/objects.hpp"
@@ -18,13 +21,14 @@ using Reading = std::shared_lock<std::shared_mutex>;
 // Calls that check the caller's arrays and then rely on them keep the interpreter's lock.
 
 py::object insert(SharedWorld& world, const py::object& boxes, const py::object& handles,
-                  const py::object& layers, const py::object& values) {
+                  const py::object& layers, const py::object& values, const py::object& distances) {
   const Boxes given = boxes_of(boxes);
   py::object written = handles;
   if (handles.is_none())
     written = py::array_t<std::uint32_t>({static_cast<py::ssize_t>(given.view.size()), py::ssize_t{2}});
   const Strided<Handle> out = writable_handles_of(written);
-  const ObjectColumns columns{column_of(layers, "layers"), column_of(values, "values")};
+  const ObjectColumns columns{column_of(layers, "layers"), column_of(values, "values"),
+                              distances_of(distances)};
   expect(changing(world, [&](World& w) { return w.insert(given.view, out, columns); }));
   return written;
 }
@@ -50,6 +54,12 @@ void set_values(SharedWorld& world, const py::object& handles, const py::object&
   const Strided<const Handle> which = handles_of(handles);
   const Strided<const std::uint32_t> given = column_of(values, "values");
   expect(changing(world, [&](World& w) { return w.set_values(which, given); }));
+}
+
+void set_distances(SharedWorld& world, const py::object& handles, const py::object& distances) {
+  const Strided<const Handle> which = handles_of(handles);
+  const Strided<const DistanceRange> given = distances_of(distances);
+  expect(changing(world, [&](World& w) { return w.set_distances(which, given); }));
 }
 
 // Calls read(world, i, handle) for each handle; they may be stale.
@@ -79,6 +89,17 @@ py::array_t<std::uint32_t> layers(const SharedWorld& world, const py::object& ha
 }
 py::array_t<std::uint32_t> values(const SharedWorld& world, const py::object& handles) {
   return numbers<std::uint32_t>(world, handles, [](const World& w, Handle h) { return w.value(h); });
+}
+
+py::array_t<float> distances(const SharedWorld& world, const py::object& handles) {
+  const Strided<const Handle> given = handles_of(handles);
+  py::array_t<float> result({static_cast<py::ssize_t>(given.size()), py::ssize_t{2}});
+  const std::span<float> out = span_of(result);
+  read_each(world, given, [&](const World& w, std::size_t i, Handle h) {
+    const DistanceRange range = w.distances(h);
+    out[2 * i] = range.min, out[2 * i + 1] = range.max;
+  });
+  return result;
 }
 
 py::array_t<double> boxes(const SharedWorld& world, const py::object& handles) {
@@ -114,11 +135,13 @@ struct ViewOfWorld {
   WorldView view;
   std::uint32_t layers = kAllLayers;
   float min_area = 0;
-  std::shared_ptr<Occlusion> occlusion;
+  std::shared_ptr<Occlusion> occlusion = nullptr;
+  float distance_scale = 1;
+  std::optional<std::uint32_t> distance_view = {};
 };
 
 ViewOfWorld view_of(const py::handle& given) {
-  if (py::isinstance<WorldView>(given)) return {given.cast<WorldView>(), kAllLayers, 0, nullptr};
+  if (py::isinstance<WorldView>(given)) return {given.cast<WorldView>()};
   if (!py::isinstance<ViewOfWorld>(given)) refuse("cull: expected a View, a CullView, or some of them");
   return given.cast<ViewOfWorld>();
 }
@@ -167,7 +190,8 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
   const std::vector<ViewOfWorld> given = views_of(views);
   std::vector<CullView> seen;
   for (const ViewOfWorld& v : given)
-    seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area});
+    seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area,
+                    v.distance_scale, v.distance_view.value_or(kOwnView)});
   CullOptions options{{}, values};
   options.occlusion = occlusion_of(occlusion), options.costs.object = object_cost;
   options.buffer = occlusion_options(coverage, scale);
@@ -211,20 +235,25 @@ void add_world(py::module_& m) {
       .def("insert", &insert,
            "Puts n boxes in and returns their handles: `handles` where it is given, into which they are\n"
            "written, or a new array (n, 2). layers: uint32 (n,), a bit a layer, all unless given; values:\n"
-           "uint32 (n,), what cull(values=True) returns, the id unless given.",
+           "uint32 (n,), what cull(values=True) returns, the id unless given; distances: float32 (n, 2),\n"
+           "metres from which and below which an object is seen, measured from a view's eye to the centre\n"
+           "of its box, any unless given.",
            py::arg("boxes"), py::arg("handles") = py::none(), py::arg("layers") = py::none(),
-           py::arg("values") = py::none())
+           py::arg("values") = py::none(), py::arg("distances") = py::none())
       .def("move", &move, "Gives each object a new box.", py::arg("handles"), py::arg("boxes"))
       .def("remove", &remove, "Takes the objects out.", py::arg("handles"))
       .def("set_layers", &set_layers, "Gives each object new layers, uint32 (n,).", py::arg("handles"),
            py::arg("layers"))
       .def("set_values", &set_values, "Gives each object a new value, uint32 (n,).", py::arg("handles"),
            py::arg("values"))
+      .def("set_distances", &set_distances, "Gives each object new distances, float32 (n, 2).",
+           py::arg("handles"), py::arg("distances"))
       .def("contains", &contains, "bool (n,): whether the object still stands.", py::arg("handles"))
       .def("boxes", &boxes, "float64 (n, 2, 3): the boxes as they are kept; 0 for stale handles.",
            py::arg("handles"))
       .def("layers", &layers, "uint32 (n,); 0 for stale handles.", py::arg("handles"))
       .def("values", &values, "uint32 (n,); NO_OBJECT for stale handles.", py::arg("handles"))
+      .def("distances", &distances, "float32 (n, 2); 0 for stale handles.", py::arg("handles"))
       .def("handles", &handles, "uint32 (n, 2): the handles of the objects that have these ids, uint32 (n,).",
            py::arg("ids"))
       .def("__len__", &size_of)
@@ -234,17 +263,23 @@ void add_world(py::module_& m) {
   py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
       .def(
           py::init([](const WorldView& view, std::uint32_t layers, float min_area,
-                      std::shared_ptr<Occlusion> occlusion) {
-            return ViewOfWorld{view, layers, min_area, std::move(occlusion)};
+                      std::shared_ptr<Occlusion> occlusion, float distance_scale,
+                      std::optional<std::uint32_t> distance_view) {
+            return ViewOfWorld{view, layers, min_area, std::move(occlusion), distance_scale, distance_view};
           }),
           "layers: sees objects whose layers share a bit with these; min_area: drops what covers fewer px2,\n"
-          "approximately; occlusion: one that was begun with this same view, or None.",
+          "approximately; occlusion: one that was begun with this same view, or None; distance_scale: times\n"
+          "the objects' distances; distance_view: the place of the view from whose eye these are measured,\n"
+          "as a shadow cascade takes its camera's, or None: this one's.",
           py::arg("view"), py::arg("layers") = kAllLayers, py::arg("min_area") = 0.0f,
-          py::arg("occlusion") = std::shared_ptr<Occlusion>())
+          py::arg("occlusion") = std::shared_ptr<Occlusion>(), py::arg("distance_scale") = 1.0f,
+          py::arg("distance_view") = py::none())
       .def_readwrite("view", &ViewOfWorld::view)
       .def_readwrite("layers", &ViewOfWorld::layers)
       .def_readwrite("min_area", &ViewOfWorld::min_area)
-      .def_readwrite("occlusion", &ViewOfWorld::occlusion);
+      .def_readwrite("occlusion", &ViewOfWorld::occlusion)
+      .def_readwrite("distance_scale", &ViewOfWorld::distance_scale)
+      .def_readwrite("distance_view", &ViewOfWorld::distance_view);
 
   py::class_<LockedCuller>(m, "Culler", "Remembers from frame to frame what helps the next.")
       .def(py::init<>())

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <sightline/box_view.hpp>
@@ -33,12 +34,24 @@ struct Handle {
 /// In all layers.
 inline constexpr std::uint32_t kAllLayers = 0xffffffffu;
 
+/// From how far away an object is seen: from `min` metres on, and nearer than `max`. Where one range ends and
+/// another begins at one number, exactly one of two objects in one place is seen.
+struct DistanceRange {
+  float min = 0;                                       ///< metres, not negative
+  float max = std::numeric_limits<float>::infinity();  ///< metres, no less than `min`
+  bool operator==(const DistanceRange&) const = default;
+};
+
 /// What objects are given besides their boxes; each column has an element an object, or none at all.
 struct ObjectColumns {
   /// A bit a layer. A view sees an object iff their layers share a bit. Without: kAllLayers.
   Strided<const std::uint32_t> layers = {};
   /// Numbers of the caller's own, that cull() writes instead of ids where it is asked to. Without: the id.
   Strided<const std::uint32_t> values = {};
+  /// A view sees an object iff the distance from its eye to the centre of the object's box, as kept, is in
+  /// the range, times the view's distance_scale. Found in single precision about the object's sector: right
+  /// to a millimetre and a millionth. Without: at any distance.
+  Strided<const DistanceRange> distances = {};
 };
 
 /// Names an occluder that a world keeps for its objects to carry.
@@ -73,7 +86,9 @@ public:
   /// (lengths, strides, pointers), bad_box (not min <= max within ±kWorldReach), too_many (beyond 2³¹
   /// objects). Cost: linear, some 200 ns an object. Allocates: about 60 bytes an object; less for ids used
   /// again.
-  Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns = {});
+  Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns);
+  /// The same of objects that have no columns. Errors, Cost, Allocates: the same.
+  Status insert(const BoxView& boxes, Strided<Handle> handles);
   /// Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with all
   /// that moved, or with nothing: what has come to rest is filed again a part a frame, by the first call
   /// after a cull. Listing objects in the same order each frame is fastest. Errors: bad_argument, bad_box,
@@ -86,10 +101,15 @@ public:
   /// list of free ids.
   Status remove(Strided<const Handle> handles);
   /// Gives each object new layers; see ObjectColumns.
-  /// Errors: bad_argument, stale_handle. Cost: linear. Allocates: 4 bytes an id, the first time.
+  /// Errors: bad_argument, stale_handle. Cost: linear. Allocates: 4 bytes an id, some 6 an object, the first
+  /// time.
   Status set_layers(Strided<const Handle> handles, Strided<const std::uint32_t> layers);
-  /// Gives each object a new value; see ObjectColumns. Errors, Cost, Allocates: as set_layers.
+  /// Gives each object a new value; see ObjectColumns.
+  /// Errors: bad_argument, stale_handle. Cost: linear. Allocates: 4 bytes an id, the first time.
   Status set_values(Strided<const Handle> handles, Strided<const std::uint32_t> values);
+  /// Gives each object new distances; see ObjectColumns. Errors: bad_argument, also for what is no range;
+  /// stale_handle. Cost: as set_layers. Allocates: 8 bytes an id, some 12 an object, the first time.
+  Status set_distances(Strided<const Handle> handles, Strided<const DistanceRange> distances);
 
   /// Keeps an occluder for objects to carry, as many as like: what make_occluder made, or triangles and boxes
   /// put there by hand, and solid spheres. Its boxes are drawn where it has no triangles. All but triangles
@@ -127,6 +147,8 @@ public:
   [[nodiscard]] std::uint32_t layers(Handle handle) const noexcept;
   /// The object's value; kNoObject for a stale handle.
   [[nodiscard]] std::uint32_t value(Handle handle) const noexcept;
+  /// The object's distances; {0, 0} for a stale handle.
+  [[nodiscard]] DistanceRange distances(Handle handle) const noexcept;
   /// The handle of the object that has this id now; a handle that no world contains where none has.
   [[nodiscard]] Handle handle(ObjectId id) const noexcept;
   /// How many objects there are.
@@ -142,6 +164,8 @@ private:
 
 /// The most views that one call culls together.
 inline constexpr std::size_t kMaxViews = 8;
+/// Of CullView::distance_view: the view itself.
+inline constexpr std::uint32_t kOwnView = 0xffffffffu;
 
 /// A camera, an eye, a shadow cascade: whatever sees the world.
 struct CullView {
@@ -153,6 +177,10 @@ struct CullView {
   /// px²: drops what covers less by its bounding sphere (Lee & Shin 2023, equation 1, mended): approximate. 0
   /// drops nothing.
   float min_area = 0;
+  float distance_scale = 1;  ///< times the objects' distances: 2 shows them from twice as far; above 0
+  /// The place in `views` of the one from whose eye distances are measured, so that a shadow cascade shows
+  /// what its camera does; kOwnView: this one's.
+  std::uint32_t distance_view = kOwnView;
 };
 
 /// Whether a cull draws occluders by itself.
@@ -177,6 +205,14 @@ struct CullCosts {
 /// An object's cost as long as nobody has said or taught another.
 inline constexpr float kObjectCost = 1000;
 
+/// A profiler that has zones, as Tracy, Optick and Perfetto do: both functions are called by whichever thread
+/// does the work, the caller's or a job's, first `begin` and then `end`, one zone within another.
+struct CullZones {
+  void (*begin)(void* user, const char* name) = nullptr;  ///< a name that lives as long as the program
+  void (*end)(void* user) = nullptr;                      ///< of the zone that this thread began last
+  void* user = nullptr;                                   ///< handed to both
+};
+
 /// How a call culls; the same for all its views.
 struct CullOptions {
   JobSystem jobs = {};                    ///< the caller's threads; without them, the calling one
@@ -185,6 +221,7 @@ struct CullOptions {
   CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
   /// Which places of the images automatic occlusion answers for, and how finely.
   OcclusionOptions buffer = {};
+  CullZones zones = {};  ///< both functions, or none: what a cull spends its time on is told to nobody
 };
 
 /// Where a cull writes; both have cull_capacity() elements, but `masks` may be empty. What stands behind the
@@ -224,8 +261,8 @@ public:
   /// Writes the ids of the objects that at least one of the 1 … kMaxViews views may see, and which views see
   /// each, in an order that depends on the calls so far alone, culls between moves among them: never on
   /// threads, SIMD width or processor. Nothing that is visible at some pixel centre is left out, but by
-  /// `layers` and `min_area`; nothing at any place on the image where occlusion is asked for with
-  /// Coverage::area. Errors: bad_argument (no or too many views; an option out of range), bad_view,
+  /// `layers`, `distances` and `min_area`; nothing at any place on the image where occlusion is asked for
+  /// with Coverage::area. Errors: bad_argument (no or too many views; an option out of range), bad_view,
   /// buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows with what is
   /// visible and with the boundary of the views, not with the world: 20 to 30 µs for the few thousand of a
   /// million still boxes that a camera sees. Threads: only reads the world and the buffers. Allocates:

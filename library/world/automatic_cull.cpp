@@ -37,7 +37,7 @@ public:
         buffer_(options.buffer),
         costs_(costs),
         result_(result),
-        masks_(masks_of_caller(state)),
+        masks_(state.masks),
         before_(count_drawn(state, result.count)),
         purse_(state.account.allowance(result.frustum_cost)) {}
 
@@ -59,6 +59,7 @@ private:
   [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
 
   [[nodiscard]] bool draw_occluders() {
+    const Zone zone(state_.zones, "sightline: draw occluders");
     std::uint64_t objects = 0;
     for (const GroupEntry& entry : state_.entries) {
       const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
@@ -80,8 +81,8 @@ private:
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
       drawn_[d] =
-          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], {state_.out, result_.count},
-                                                 buffer_, costs_, share, purse_);
+          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
+                                                 {state_.out, result_.count}, buffer_, costs_, share, purse_);
       any = any || drawn_[d];
     }
     return any;
@@ -102,12 +103,13 @@ private:
 
   // What hidden chunks save for certain: known where masks tell views apart, or there is only one.
   [[nodiscard]] double saving(const ChunkTally& tally) const {
-    if (state_.filters_layers || (!masks_ && different_.count > 1)) return 0;
+    if (!masks_ && different_.count > 1) return 0;
     const int copies = masks_ ? 1 : std::popcount(different_.bits[0]);
     return static_cast<double>(tally.saved) / copies * double{costs_.object};
   }
 
   [[nodiscard]] bool cull_again() {
+    const Zone zone(state_.zones, "sightline: ask for what is hidden");
     const double nodes = static_cast<double>(chunks_) * double{costs_.node};
     const double asking = nodes + static_cast<double>(chunks_ * different_.count) * double{costs_.query};
     if (!purse_.affords(asking)) return false;
@@ -144,6 +146,7 @@ private:
   }
 
   void ask_triangles() {
+    const Zone zone(state_.zones, "sightline: ask for triangles");
     const WorldOccluders& o = *state_.world->occluders;
     const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
     if (o.triangles.size() == o.free_triangles.size() || !purse_.affords(looking)) return;

@@ -206,7 +206,7 @@ void ChunkMap::put_in_group(std::uint32_t chunk, std::uint32_t group, const Box&
   b.chunks[b.count++] = chunk;
   b.pool = c.pool;
   set_bounds(chunk, bounds);
-  note_shape(chunk);
+  note_shape(chunk), note_stale(chunk);
   add_objects(group, static_cast<std::int32_t>(c.live));
   c.counted = c.live;
   extend_group(group, bounds);
@@ -224,6 +224,7 @@ void ChunkMap::take_from_group(std::uint32_t chunk) {
     b.first_lane[c.index_in_group] = b.first_lane[last];
     b.count_and_size[c.index_in_group] = b.count_and_size[last];
     chunks_[b.chunks[last]].index_in_group = c.index_in_group;
+    note_stale(b.chunks[last]);
   }
   c.group = kNone;
   if (b.count > 0) return shrink_group(group, before);
@@ -274,6 +275,7 @@ std::uint32_t ChunkMap::split_group(std::uint32_t group, const Box& newcomer) {
     to.count_and_size[i] = old.count_and_size[from];
     chunks_[chunk].group = up ? added : group;
     chunks_[chunk].index_in_group = i;
+    note_stale(chunk);
     if (up) moved_objects += chunks_[chunk].counted;
   }
   set_box(group, tight(low));

@@ -46,6 +46,36 @@ Status ChunkMap::check_chunk(std::uint32_t chunk) const {
     if (found != chunk) return bad("chunk map: the splits do not lead to object", object);
   }
   if (live != c.live || live != c.counted) return bad("chunk map: wrong number of objects in chunk", chunk);
+  return has_columns() ? check_columns(chunk) : Status{};
+}
+
+// After settle_columns().
+Status ChunkMap::check_columns(std::uint32_t chunk) const {
+  const Chunk& c = chunks_[chunk];
+  if (c.stale) return bad("chunk map: not settled chunk", chunk);
+  const Pool& pool = pools_[c.pool];
+  for (std::uint32_t slot = 0; slot < c.count; ++slot) {
+    const ObjectId object = ids(c)[slot];
+    if (object == kNoObject) continue;
+    if (columns_->has_layers && pool.layers[c.first_lane + slot] != columns_->layers[object])
+      return bad("chunk map: wrong layers of object", object);
+    if (!columns_->has_distances) continue;
+    const float* at = &pool.distances[2 * std::size_t{c.first_lane} + slot];
+    if (columns_->distances[object] != DistanceRange{at[0], at[c.capacity]})
+      return bad("chunk map: wrong distances of object", object);
+  }
+  const ChunkColumns all = columns_of(c);
+  if (columns_->has_layers) {
+    const std::uint32_t* row = layer_rows(c.group) + c.index_in_group;
+    if (row[LayerRows::kSome] != all.some || row[LayerRows::kEvery] != all.every)
+      return bad("chunk map: wrong layers in the group of chunk", chunk);
+  }
+  if (columns_->has_distances) {
+    const float* row = distance_rows(c.group) + c.index_in_group;
+    if (row[DistanceRows::kFirstMin] != all.first_min || row[DistanceRows::kLastMin] != all.last_min ||
+        row[DistanceRows::kFirstMax] != all.first_max || row[DistanceRows::kLastMax] != all.last_max)
+      return bad("chunk map: wrong distances in the group of chunk", chunk);
+  }
   return {};
 }
 

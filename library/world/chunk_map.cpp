@@ -29,8 +29,10 @@ std::uint32_t packed(RegionSet r) {
 
 }  // namespace
 
-ChunkMap::ChunkMap(const ChunkMapOptions& options, Locations* shared_locations)
-    : options_(options), locations_(shared_locations ? shared_locations : &own_locations_) {
+ChunkMap::ChunkMap(const ChunkMapOptions& options, Locations* shared_locations, const Columns* columns)
+    : options_(options),
+      locations_(shared_locations ? shared_locations : &own_locations_),
+      columns_(columns) {
   options_.depth = std::min(options_.depth, kMaxDepth);
   const std::uint32_t side = 1u << options_.depth;
   last_region_ = side - 1;
@@ -116,6 +118,7 @@ std::uint32_t ChunkMap::take_lanes(Pool& pool, std::uint32_t capacity) {
   const auto first = static_cast<std::uint32_t>(pool.ids.size());
   pool.ids.resize(pool.ids.size() + capacity);
   pool.lanes.resize(pool.lanes.size() + 6 * std::size_t{capacity});
+  if (has_columns()) resize_columns(pool);
   return first;
 }
 
@@ -133,6 +136,7 @@ void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, c
   const Chunk& c = chunks_[chunk];
   write_box(c, slot, box);
   ids(c)[slot] = object;
+  if (has_columns()) load_columns(c, slot), note_stale(chunk);
   Location& at = (*locations_)[object];
   at.chunk = chunk, at.slot_and_history = (at.slot_and_history & ~0xffu) | slot;
 }
@@ -160,7 +164,7 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
   misplaced_ += pool == kStill;
   // Its number may still stand in these lists.
   const Chunk& old = chunks_[chunk];
-  added.changed = old.changed, added.dirty = old.dirty, added.grown = old.grown;
+  added.changed = old.changed, added.dirty = old.dirty, added.grown = old.grown, added.stale = old.stale;
   chunks_[chunk] = added;
   note_change(chunk);
   return chunk;
@@ -185,6 +189,7 @@ void ChunkMap::grow(std::uint32_t chunk) {
   c.first_lane = first, c.capacity = kCapacity;
   for (std::uint32_t side = 0; side < 6; ++side) std::copy_n(lanes(old, side), old.count, lanes(c, side));
   std::copy_n(ids(old), old.count, ids(c));
+  if (has_columns()) load_columns(c);
   give_lanes(pool, old.first_lane, old.capacity);
 }
 
@@ -250,6 +255,7 @@ void ChunkMap::erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept {
   ObjectId* const all = ids(c);
   all[slot] = kNoObject;
   --c.live;
+  note_stale(chunk);
   const auto trim = [&] {
     while (c.count > 0 && all[c.count - 1] == kNoObject) --c.count;
   };

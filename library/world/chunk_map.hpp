@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -25,6 +26,7 @@
 
 #include "library/geometry/aligned_vector.hpp"
 #include "library/geometry/box_reader.hpp"
+#include "library/world/columns.hpp"
 
 namespace sightline::world {
 
@@ -121,8 +123,9 @@ public:
   };
 
   /// The location table is the map's own unless the caller brings one, which must outlive the map and hold an
-  /// entry for each id before it is inserted.
-  explicit ChunkMap(const ChunkMapOptions& options, Locations* shared_locations = nullptr);
+  /// entry for each id before it is inserted; so must columns, if there are any.
+  explicit ChunkMap(const ChunkMapOptions& options, Locations* shared_locations = nullptr,
+                    const Columns* columns = nullptr);
   ChunkMap(const ChunkMap&) = delete;
   ChunkMap& operator=(const ChunkMap&) = delete;
 
@@ -164,6 +167,33 @@ public:
   [[nodiscard]] std::uint32_t mover_node() const noexcept { return mover_node_; }
   [[nodiscard]] bool is_mover(ObjectId object) const noexcept {
     return chunks_[(*locations_)[object].chunk].pool == kMovers;
+  }
+
+  /// To be called when a column has come to be: chunks learn of it.
+  void begin_column();
+  /// To be called when an object's columns have changed.
+  void note_columns(ObjectId object);
+  /// Brings what groups know of columns up to date; before, they know nothing. To be called after changes.
+  void settle_columns() noexcept;
+  /// What a group knows of its chunks' columns, in rows as LayerRows and DistanceRows say, aligned to 64
+  /// bytes; null where there is no such column.
+  [[nodiscard]] const std::uint32_t* layer_rows(std::uint32_t group) const noexcept {
+    return layer_rows_.empty() ? nullptr : &layer_rows_[LayerRows::kSize * group];
+  }
+  [[nodiscard]] const float* distance_rows(std::uint32_t group) const noexcept {
+    return distance_rows_.empty() ? nullptr : &distance_rows_[DistanceRows::kSize * group];
+  }
+  /// The columns of a chunk's objects, as ChunkView has its arrays; of distances the least, and as far behind
+  /// as `step` says the greatest.
+  [[nodiscard]] const std::uint32_t* layers_of(const Group& group, const ChunkView& chunk) const noexcept {
+    const Pool& pool = pools_[group.pool];
+    return pool.layers.data() + (chunk.objects - pool.ids.data());
+  }
+  [[nodiscard]] const float* distances_of(const Group& group, const ChunkView& chunk,
+                                          std::size_t& step) const noexcept {
+    const Pool& pool = pools_[group.pool];
+    step = static_cast<std::size_t>(chunk.min_y - chunk.min_x);
+    return pool.distances.data() + 2 * (chunk.objects - pool.ids.data());
   }
 
   [[nodiscard]] bool contains(ObjectId object) const noexcept;
@@ -244,12 +274,16 @@ private:
     std::uint32_t next = kNone, previous = kNone;
     std::uint32_t group = kNone, index_in_group = 0;
     bool changed = false;
+    bool stale = false;  // stands in stale_
   };
   static constexpr std::uint8_t kStill = 0, kMovers = 1;
   // Movers have lanes of their own, so that those who come all at once make nobody copy the others'.
   struct Pool {
     geometry::LargeVector<float> lanes;
     geometry::LargeVector<ObjectId> ids;
+    // Where there are such columns: one a lane, and two, a chunk's least before its greatest.
+    geometry::LargeVector<std::uint32_t> layers;
+    geometry::LargeVector<float> distances;
     std::vector<std::uint32_t> free_small, free_large;
   };
   struct Key {
@@ -302,6 +336,19 @@ private:
   void note_change(std::uint32_t chunk);
   void note_shape(std::uint32_t chunk) noexcept;
   void arrange();
+  [[nodiscard]] bool has_columns() const noexcept { return columns_ && columns_->any(); }
+  void resize_columns(Pool& pool) const;
+  void load_columns(const Chunk& chunk, std::uint32_t slot) noexcept;
+  void load_columns(const Chunk& chunk) noexcept;
+  void note_stale(std::uint32_t chunk);
+  // What a chunk's objects have in common; of none, what leaves it out.
+  struct ChunkColumns {
+    std::uint32_t some = 0, every = kAllLayers;
+    float first_min = std::numeric_limits<float>::infinity(), last_min = 0;
+    float first_max = std::numeric_limits<float>::infinity(), last_max = 0;
+  };
+  ChunkColumns columns_of(const Chunk& chunk) const noexcept;
+  Status check_columns(std::uint32_t chunk) const;
 
   void make_dirty(std::uint32_t chunk);
   void note_grown(std::uint32_t chunk);
@@ -343,6 +390,8 @@ private:
   std::vector<Key> keys_;
   std::unordered_map<std::uint32_t, std::uint32_t> key_of_regions_;
   geometry::LargeVector<Group> groups_;
+  geometry::LargeVector<std::uint32_t> layer_rows_;  // of all groups, or none
+  geometry::LargeVector<float> distance_rows_;       // the same
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> loose_;  // one a node: its bounds may be too large
   bool any_loose_ = false;
@@ -354,10 +403,12 @@ private:
   std::vector<std::uint32_t> dirty_;         // chunks that wait for flush()
   std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
   std::vector<std::uint32_t> mover_chunks_;  // the last one is open
+  std::vector<std::uint32_t> stale_;         // chunks whose summaries wait for settle_columns()
   std::uint32_t mover_node_ = kNone, mover_group_ = kNone;
   std::size_t grown_hand_ = 0, mover_hand_ = 0;  // where rest() goes on
   Locations own_locations_;
   Locations* locations_;
+  const Columns* columns_;
   std::size_t size_ = 0;
 };
 

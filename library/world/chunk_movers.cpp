@@ -112,7 +112,7 @@ void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   Chunk& c = chunks_[chunk];
   ids(c)[slot] = kNoObject;
   --c.live;
-  make_dirty(chunk);
+  make_dirty(chunk), note_stale(chunk);
   if (c.pool == kMovers) {
     c.moved[slot / 64] &= ~(std::uint64_t{1} << slot % 64);
   } else {

@@ -26,6 +26,10 @@ void ChunkMap::arrange() {
   }
   pool.lanes = std::move(lanes), pool.ids = std::move(ids);
   pool.free_small.clear(), pool.free_large.clear();
+  if (!has_columns()) return;
+  resize_columns(pool);
+  for (const Chunk& c : chunks_)
+    if (c.pool == kStill) load_columns(c);
 }
 
 }  // namespace sightline::world

@@ -79,6 +79,7 @@ bool ChunkMap::split(std::uint32_t chunk) {
     }
   }
   low.count = low.live = kept;
+  note_stale(chunk);
   high.live = high.count;
   coordinate(low.cell.max, cut->axis) = cut->at;
   coordinate(high.cell.min, cut->axis) = cut->at;

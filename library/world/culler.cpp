@@ -13,6 +13,7 @@
 #include <sightline/projection.hpp>
 
 #include "library/geometry/linear.hpp"
+#include "library/geometry/mutant.h"
 #include "library/world/culler_state.hpp"
 
 namespace sightline {
@@ -27,9 +28,12 @@ std::uint8_t side_along(float normal, std::uint8_t axis, bool far) {
   return static_cast<std::uint8_t>(axis + ((normal >= 0) != far ? 3 : 0));
 }
 
-SectorView sector_view(const CullView& culled, const Sector& sector) {
+SectorView sector_view(const CullView& culled, const WorldPoint& distance_eye, const Sector& sector) {
   const WorldView& view = culled.view;
+  const WorldPoint &e = distance_eye, &o = sector.origin;
   SectorView out;
+  out.layers = culled.layers, out.distance_scale = culled.distance_scale;
+  out.distance_eye = to_vec3(glm::dvec3(e.x - o.x, e.y - o.y, e.z - o.z));
   const glm::dvec3 offset(sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
                           sector.origin.z - view.origin.z);
   glm::dmat4 moved(1.0);
@@ -89,7 +93,8 @@ public:
 
   std::uint64_t run() noexcept {
     ViewPlanes all{};
-    all.fill(kAllPlanes);
+    for (std::size_t v = 0; v < views_; ++v)
+      all[v] = state_.views[sector_ * views_ + v].layers != 0 ? kAllPlanes : kOutside;
     visit(0, all);
     return visited_;
   }
@@ -128,27 +133,9 @@ private:
   std::uint64_t visited_ = 0;
 };
 
-// Takes out what lies in no layer of the views that may see it; returns how many are left.
-std::size_t keep_layers(const CullerState& state, std::size_t count, ObjectId* ids, std::uint8_t* masks) {
-  const std::vector<std::uint32_t>& layers = state.world->layers;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const ObjectId id = ids[i];
-    const std::uint32_t layer = id < layers.size() ? layers[id] : kAllLayers;
-    std::uint8_t seen = masks ? masks[i] : std::uint8_t{1};
-    for (std::uint32_t rest = seen; rest != 0; rest &= rest - 1) {
-      if ((layer & state.layers[static_cast<std::size_t>(std::countr_zero(rest))]) == 0)
-        seen &= static_cast<std::uint8_t>(~(rest & (0u - rest)));
-    }
-    ids[kept] = id;
-    if (masks) masks[kept] = seen;
-    kept += seen != 0;
-  }
-  return kept;
-}
-
 void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
+  const Zone zone(state.zones, "sightline: chunks and objects");
   Job& job = state.jobs[index];
   const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
   PassInput input = state.input;
@@ -157,7 +144,6 @@ void run_job(void* data, std::uint32_t index) {
   ObjectId* ids = state.out + job.first_output;
   std::uint8_t* masks = state.masks ? state.masks + job.first_output : nullptr;
   job.counts = cull_groups(input, entries, ids, masks);
-  if (state.filters_layers) job.counts.written = keep_layers(state, job.counts.written, ids, masks);
 }
 
 // Parts of about equally many objects; each writes to where it would stand if all were visible.
@@ -180,11 +166,31 @@ std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
   return jobs;
 }
 
-// Views that are the same are culled once.
-DifferentViews different_views(std::span<const CullView> views) noexcept {
+// Whose eye a view's distances are measured from.
+const WorldView& distance_view(std::span<const CullView> views, const CullView& view) noexcept {
+  const bool own = view.distance_view == kOwnView || SIGHTLINE_MUTANT(distances_of_the_own_eye);
+  return own ? view.view : views[view.distance_view].view;
+}
+
+// The matrix is rigid: its transpose turns back.
+WorldPoint eye_of(const WorldView& view) noexcept {
+  const auto& m = view.view.world_to_eye.m;
+  const auto along = [&](std::size_t axis) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) sum += double{m[4 * axis + i]} * double{m[12 + i]};
+    return -sum;
+  };
+  return {view.origin.x + along(0), view.origin.y + along(1), view.origin.z + along(2)};
+}
+
+// Views that are the same are culled once; what no column asks for makes no difference.
+DifferentViews different_views(std::span<const CullView> views, const Columns& columns) noexcept {
   DifferentViews out;
   const auto same = [&](const CullView& a, const CullView& b) {
-    return a.view == b.view && a.occlusion == b.occlusion && a.min_area == b.min_area;
+    if (a.view != b.view || a.occlusion != b.occlusion || a.min_area != b.min_area) return false;
+    if (columns.has_layers ? a.layers != b.layers : (a.layers == 0) != (b.layers == 0)) return false;
+    return !columns.has_distances ||
+           (a.distance_scale == b.distance_scale && distance_view(views, a) == distance_view(views, b));
   };
   for (std::size_t v = 0; v < views.size(); ++v) {
     std::size_t d = 0;
@@ -204,10 +210,12 @@ std::size_t nodes_of(const Sector& sector) {
 // regions and groups it looked at.
 std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
                            const DifferentViews& different) {
+  const Zone zone(state.zones, "sightline: regions and groups");
   const auto& sectors = state.world->sectors;
   const auto of_different = std::span(different.first).first(different.count);
   state.maps.clear(), state.views.clear(), state.entries.clear(), state.origins.clear();
   for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]].view);
+  for (const std::uint8_t v : of_different) state.distance_eyes[v] = eye_of(distance_view(views, views[v]));
   // Room for all sectors, so that a camera that turns allocates nothing.
   state.maps.reserve(sectors.size());
   state.origins.reserve(sectors.size());
@@ -230,7 +238,8 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
     const auto kept = static_cast<std::uint32_t>(state.maps.size());
     state.maps.push_back(sector.map.get());
     state.origins.push_back(sector.origin);
-    for (const std::uint8_t v : of_different) state.views.push_back(sector_view(views[v], sector));
+    for (const std::uint8_t v : of_different)
+      state.views.push_back(sector_view(views[v], state.distance_eyes[v], sector));
     state.failed[s].resize(nodes_of(sector) * kMaxViews, 0);
     visited += RegionWalk(state, kept, different.count, state.failed[s].data()).run();
   }
@@ -253,10 +262,14 @@ void join_outputs(const CullerState& state, std::uint32_t jobs, CullResult& resu
   }
 }
 
-Status check_view(const CullView& view, std::size_t index) noexcept {
+Status check_view(const CullView& view, std::size_t index, std::size_t views) noexcept {
   if (const Status sound = check(view.view); !sound) return {StatusCode::bad_view, sound.message(), index};
   if (!(view.min_area >= 0) || !std::isfinite(view.min_area))
     return {StatusCode::bad_argument, "cull: a view's min_area is negative or not finite", index};
+  if (!(view.distance_scale > 0) || !std::isfinite(view.distance_scale))
+    return {StatusCode::bad_argument, "cull: a view's distance_scale is not above 0 or not finite", index};
+  if (view.distance_view != kOwnView && view.distance_view >= views)
+    return {StatusCode::bad_argument, "cull: a view's distance_view is none of the views", index};
   if (!view.occlusion) return {};
   if (!view.occlusion->begun())
     return {StatusCode::stale_buffer, "cull: a view's occlusion buffer was never begun", index};
@@ -290,13 +303,15 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
     return {StatusCode::bad_argument, "cull: expected 1 to 8 views", views.size()};
   if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs)
     return {StatusCode::bad_argument, "cull: expected 1 to 64 jobs"};
+  if ((options.zones.begin == nullptr) != (options.zones.end == nullptr))
+    return {StatusCode::bad_argument, "cull: a zone's begin or end is null, expected both or none"};
   const std::size_t needed = cull_capacity(world, options);
   if (output.ids.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
   if (!output.masks.empty() && output.masks.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() masks, or none"};
   for (std::size_t v = 0; v < views.size(); ++v) {
-    if (const Status sound = check_view(views[v], v); !sound) return sound;
+    if (const Status sound = check_view(views[v], v, views.size()); !sound) return sound;
   }
   if (options.occlusion == Occlusion::none) return {};
   if (options.occlusion != Occlusion::automatic)
@@ -304,20 +319,9 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
   return check_automatic(views, options.buffer, options.costs);
 }
 
-// Whether layers drop anything, and what that takes.
-void prepare_layers(CullerState& state, std::span<const CullView> views, std::size_t room) {
-  state.filters_layers = !state.world->layers.empty();
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    state.layers[v] = views[v].layers;
-    state.filters_layers = state.filters_layers || views[v].layers == 0;
-  }
-  if (!state.filters_layers || state.masks || views.size() == 1) return;
-  if (state.scratch_masks.size() < room) state.scratch_masks.resize(room);
-  state.masks = state.scratch_masks.data();
-}
-
-void write_values(const std::vector<std::uint32_t>& values, std::span<ObjectId> ids) noexcept {
-  for (ObjectId& id : ids) id = id < values.size() ? values[id] : id;
+void write_values(const Columns& columns, std::span<ObjectId> ids) noexcept {
+  if (!columns.has_values) return;
+  for (ObjectId& id : ids) id = columns.values[id];
 }
 
 // What the passes cost, and what else the world's occluders hide.
@@ -331,6 +335,7 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
       static_cast<double>(count_drawn(state, result.count)) * double{costs.object};
   const WorldOccluders* occluders = state.world->occluders.get();
   if (occluders && occluders->any() && result.count > 0 && state.account.begins_try()) {
+    const Zone zone(state.zones, "sightline: automatic occlusion");
     if (!state.hiding) state.hiding = occluders->make_hiding();
     state.hiding->hide(state, views, different, options, costs, result);
   }
@@ -339,8 +344,15 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
 
 }  // namespace
 
+Zone::Zone(const CullZones& zones, const char* name) noexcept : zones_(zones) {
+  if (zones_.begin) zones_.begin(zones_.user, name);
+}
+Zone::~Zone() {
+  if (zones_.end) zones_.end(zones_.user);
+}
+
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept {
-  const std::uint8_t* masks = masks_of_caller(state);
+  const std::uint8_t* masks = state.masks;
   if (!masks) return count;
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < count; ++i) sum += static_cast<std::uint64_t>(std::popcount(masks[i]));
@@ -379,20 +391,21 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
                                 const CullOptions& options, const CullOutput& output) noexcept {
   if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
   world::CullerState& state = *state_;
+  state.zones = options.zones;
+  const world::Zone zone(state.zones, "sightline: cull");
   state.world = &WorldAccess::state(world);
   auto& culled = state.world->culled;
   if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
-  const world::DifferentViews different = world::different_views(views);
+  const world::DifferentViews different = world::different_views(views, state.world->columns);
   CullResult result;
   result.nodes_visited = world::find_entries(state, views, different);
-  state.input = {state.maps, state.views, different.count, different.bits, {}};
+  state.input = {state.maps, state.views, different.count, different.bits, {}, state.world->column_tests};
   state.out = output.ids.data();
   state.masks = output.masks.empty() ? nullptr : output.masks.data();
-  world::prepare_layers(state, views, output.ids.size());
   world::run_passes(state, options.jobs, result);
   if (options.occlusion == Occlusion::automatic) world::hide(state, views, different, options, result);
   state.object_cost.drew(result.count);
-  if (options.values_for_ids) world::write_values(state.world->values, output.ids.first(result.count));
+  if (options.values_for_ids) world::write_values(state.world->columns, output.ids.first(result.count));
   return result;
 }
 

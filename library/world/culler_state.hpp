@@ -31,6 +31,18 @@ struct DifferentViews {
 
 struct CullerState;
 
+/// A zone of the caller's profiler, if there is one.
+class Zone {
+public:
+  Zone(const CullZones& zones, const char* name) noexcept;
+  ~Zone();
+  Zone(const Zone&) = delete;
+  Zone& operator=(const Zone&) = delete;
+
+private:
+  const CullZones& zones_;
+};
+
 /// What a culler does after its passes by frustum, whose ids and masks stand in the state's output, and
 /// `result` is theirs: hides what the world's occluders hide, and adds to the result's cost, no more than the
 /// account allows. A world hands it to its cullers once it has an occluder, so that who has none need not
@@ -55,22 +67,15 @@ struct CullerState {
   PassInput input;
   ObjectId* out = nullptr;
   std::uint8_t* masks = nullptr;
-  /// Of several views that layers tell apart, where the caller wants no masks.
-  std::vector<std::uint8_t> scratch_masks;
 
   const WorldState* world = nullptr;
-  std::array<std::uint32_t, kMaxViews> layers{};  ///< of the caller's views
-  bool filters_layers = false;
+  CullZones zones;
+  std::array<WorldPoint, kMaxViews> distance_eyes;  ///< of the caller's views that differ
 
   Account account;
   ObjectCost object_cost;
   std::unique_ptr<Hiding> hiding;
 };
-
-/// The masks that the caller gets, or null.
-inline std::uint8_t* masks_of_caller(CullerState& state) noexcept {
-  return state.masks == state.scratch_masks.data() ? nullptr : state.masks;
-}
 
 /// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;

@@ -63,26 +63,38 @@ std::uint64_t objects_of(const ChunkMap::ChunkView& chunk) {
          static_cast<std::uint64_t>(std::count(chunk.objects, chunk.objects + chunk.count, kNoObject));
 }
 
-// Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold.
-std::uint64_t drop_hidden_chunks(const ChunkMap& map, const ChunkMap::Group& group, const SectorView& view,
-                                 ChunkBits& bits) {
+// Of a chunk that the columns part, those that they leave.
+std::uint64_t objects_left(const PassInput& input, const EntryGroup& at, const ChunkMap::ChunkView& chunk,
+                           const SectorView& view) {
+  const ObjectBits seen = input.columns->objects(at.map, at.group, chunk, view);
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < chunk.count; ++i) count += seen.at(i) && chunk.objects[i] != kNoObject;
+  return count;
+}
+
+// Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold that the columns
+// leave.
+std::uint64_t drop_hidden_chunks(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                 std::uint32_t parted, ChunkBits& bits) {
   std::uint64_t dropped = 0;
   ChunkAnswers visible;
-  ask_chunks(group, view, visible);
+  ask_chunks(at.group, view, visible);
   for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     if (visible[i]) continue;
     bits.kept &= ~(1u << i);
-    dropped += objects_of(map.chunk(group, static_cast<std::uint32_t>(i)));
+    const ChunkMap::ChunkView chunk = at.map.chunk(at.group, static_cast<std::uint32_t>(i));
+    dropped += parted >> i & 1 ? objects_left(input, at, chunk, view) : objects_of(chunk);
   }
   return dropped;
 }
 
 // What find_hidden_chunks() does for a view and a group.
-HWY_INLINE std::uint32_t hidden_of(const EntryGroup& at, const SectorView& view, PlaneSet planes,
-                                   std::uint8_t mask_bits, ChunkTally& tally) {
+HWY_INLINE std::uint32_t hidden_of(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                   PlaneSet planes, std::uint8_t mask_bits, ChunkTally& tally) {
   if (planes == kOutside) return 0;
-  const ChunkBits bits = classify_chunks(at.group, view, planes);
+  ChunkBits bits = classify_chunks(at.group, view, planes);
+  const std::uint32_t parted = input.columns ? ask_columns(input, at, view, bits) : 0;
   if (bits.kept == 0) return 0;
   ChunkAnswers visible;
   visible.fill(1);
@@ -100,8 +112,9 @@ HWY_INLINE std::uint32_t hidden_of(const EntryGroup& at, const SectorView& view,
     }
     hidden |= 1u << i;
     ++tally.hidden;
-    // Of a chunk that the frustum crosses, or that has holes, nobody knows without looking at its objects.
-    if ((bits.crossing >> i & 1) == 0 && !chunk.loose && view.area_scale == 0)
+    // Of a chunk that the frustum crosses, that the columns part or that has holes, nobody knows without
+    // looking at its objects.
+    if (((bits.crossing | parted) >> i & 1) == 0 && !chunk.loose && view.area_scale == 0)
       tally.saved += static_cast<std::uint64_t>(std::popcount(mask_bits)) * chunk.count;
   }
   return hidden;
@@ -112,7 +125,7 @@ ChunkTally hidden_chunks(const PassInput& input, std::span<const GroupEntry> ent
   for (const GroupEntry& entry : entries) {
     const EntryGroup at = group_of(input, entry);
     for (std::size_t v = 0; v < input.view_count; ++v)
-      *hidden++ = hidden_of(at, at.views[v], entry.planes[v], input.bits[v], tally);
+      *hidden++ = hidden_of(input, at, at.views[v], entry.planes[v], input.bits[v], tally);
   }
   return tally;
 }
@@ -136,14 +149,17 @@ std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const Sector
 }
 
 // The chunks of a group that a view may see. Those that are known to be hidden are not asked for again.
-HWY_INLINE ChunkBits filter_chunks(const EntryGroup& at, const SectorView& view, PlaneSet planes,
-                                   const std::uint32_t* hidden, std::uint64_t& dropped) {
+HWY_INLINE ChunkBits filter_chunks(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                   PlaneSet planes, const std::uint32_t* hidden, std::uint32_t& parted,
+                                   std::uint64_t& dropped) {
+  parted = 0;
   if (planes == kOutside) return {};
   ChunkBits bits = classify_chunks(at.group, view, planes);
+  if (input.columns) parted = ask_columns(input, at, view, bits);
   if (hidden) {
     bits.kept &= ~*hidden;
   } else if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum)) {
-    dropped += drop_hidden_chunks(at.map, at.group, view, bits);
+    dropped += drop_hidden_chunks(input, at, view, parted, bits);
   }
   return bits;
 }
@@ -154,12 +170,14 @@ struct ChunkViewers {
 };
 
 HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
-                                   const std::array<ChunkBits, kMaxViews>& bits, std::uint32_t i) {
+                                   const std::array<ChunkBits, kMaxViews>& bits,
+                                   const std::array<std::uint32_t, kMaxViews>& parted, std::uint32_t i) {
   ChunkViewers out;
   for (std::size_t v = 0; v < input.view_count; ++v) {
     if ((bits[v].kept >> i & 1) == 0) continue;
     const SectorView& view = at.views[v];
-    const bool all = (bits[v].crossing >> i & 1) == 0 && view.area_scale == 0 && !view.occluders;
+    const bool all =
+        ((bits[v].crossing | parted[v]) >> i & 1) == 0 && view.area_scale == 0 && !view.occluders;
     if (all) out.whole |= input.bits[v];
     if (!all) out.part |= static_cast<std::uint8_t>(1u << v);
   }
@@ -171,6 +189,7 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
                           ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks) {
   PassCounts counts;
   std::array<ChunkBits, kMaxViews> bits;
+  std::array<std::uint32_t, kMaxViews> parted;
   ChunkViews parts;
   std::array<ChunkMap::ChunkView, kGroup> chunks;
   // What occlusion drops counts once for each of the caller's views that are the same.
@@ -183,7 +202,8 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
     std::uint32_t any = 0;
     for (std::size_t v = 0; v < input.view_count; ++v) {
       std::uint64_t dropped = 0;
-      bits[v] = filter_chunks(at, at.views[v], entry.planes[v], hidden ? hidden++ : nullptr, dropped);
+      bits[v] = filter_chunks(input, at, at.views[v], entry.planes[v], hidden ? hidden++ : nullptr, parted[v],
+                              dropped);
       count_occluded(v, dropped);
       any |= bits[v].kept;
     }
@@ -192,7 +212,7 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
-      const ChunkViewers viewers = viewers_of(input, at, bits, i);
+      const ChunkViewers viewers = viewers_of(input, at, bits, parted, i);
       if (viewers.part == 0 || (viewers.whole != 0 && masks == nullptr)) {
         counts.written += write_whole(chunk, viewers.whole, counts.written, ids, masks);
         continue;
@@ -204,6 +224,7 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
         parts.bits[parts.count++] = input.bits[v];
         counts.tested += chunk.count;
         view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
+        if (parted[v] >> i & 1) seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
         if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
       }
       counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);

@@ -76,10 +76,11 @@ Box near_rectangle(const View& view) {
 
 // A view, and what is worked out once for all candidates.
 struct OccluderPicks::Sight {
-  Sight(const WorldState& in_world, const CullView& culled, const OcclusionOptions& drawn,
-        const CullCosts& at_costs)
+  Sight(const WorldState& in_world, const CullView& culled, const WorldPoint& measured_from,
+        const OcclusionOptions& drawn, const CullCosts& at_costs)
       : world(in_world),
         view(culled),
+        distance_eye(measured_from),
         costs(at_costs),
         triangle(double{at_costs.triangle} *
                  (drawn.coverage == Coverage::area || drawn.scale > 1 ? kMarginCost : 1)),
@@ -96,7 +97,7 @@ struct OccluderPicks::Sight {
   }
 
   [[nodiscard]] bool sees_layers_of(ObjectId id) const {
-    return ((id < world.layers.size() ? world.layers[id] : kAllLayers) & view.layers) != 0;
+    return ((world.columns.has_layers ? world.columns.layers[id] : kAllLayers) & view.layers) != 0;
   }
 
   // Whether some pixel may look from inside the box: what a pixel sees begins on the near plane, within the
@@ -124,6 +125,19 @@ struct OccluderPicks::Sight {
     return look + static_cast<double>(triangles) * (triangle + (double{costs.query} + 4 * tile) / kGroup);
   }
 
+  // Whether distances surely leave an object of this box.
+  [[nodiscard]] bool in_range(ObjectId id, const WorldBox& box) const {
+    if (!world.columns.has_distances || SIGHTLINE_MUTANT(far_occluders_drawn)) return true;
+    const auto along = [](double low, double high, double eye) { return 0.5 * low + 0.5 * high - eye; };
+    const double distance = glm::length(glm::dvec3(along(box.min.x, box.max.x, distance_eye.x),
+                                                   along(box.min.y, box.max.y, distance_eye.y),
+                                                   along(box.min.z, box.max.z, distance_eye.z)));
+    const double error = 2e-3 + 2e-6 * distance, scale = double{view.distance_scale};
+    const DistanceRange range = world.columns.distances[id];
+    return (range.min == 0 || distance - error >= scale * double{range.min}) &&
+           distance + error < scale * double{range.max};
+  }
+
   // Whether `min_area` surely leaves an object of this box.
   [[nodiscard]] bool large(const Box& box) const {
     if (view.min_area == 0) return true;
@@ -136,6 +150,7 @@ struct OccluderPicks::Sight {
 
   const WorldState& world;
   const CullView& view;
+  const WorldPoint& distance_eye;
   const CullCosts& costs;
   double triangle, tile;  // what a triangle and 8 × 8 pixels of the view cost to draw
   Projector projector;
@@ -152,15 +167,16 @@ double OccluderPicks::begin_cost(const CullView& view, const OcclusionOptions& o
   return static_cast<double>(all) * double{costs.tile};
 }
 
-bool OccluderPicks::draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
-                         const OcclusionOptions& options, const CullCosts& costs, double most, Purse& purse) {
+bool OccluderPicks::draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
+                         std::span<const ObjectId> in_view, const OcclusionOptions& options,
+                         const CullCosts& costs, double most, Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
   picks_.reserve(world.occluders->carriers.size()), seen_.reserve(world.occluders->carriers.size());
   picks_.clear();
   const double begin = begin_cost(view, options, costs), had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
   if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
-  const Sight sight(world, view, options, costs);
+  const Sight sight(world, view, distance_eye, options, costs);
   find(sight, in_view, purse);
   const double budget = left() - begin;
   double spare = budget - choose(budget);
@@ -234,7 +250,7 @@ double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spar
   const WorldBox stored = stored_box(sight.world, carrier.object);
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
   const bool here = stands_in(carrier.bounds, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
-  if (!here || !sight.large(box)) return spare;
+  if (!here || !sight.large(box) || !sight.in_range(carrier.object, stored)) return spare;
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
   const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
   // What lies inside an object would still show a front to a pixel that looks from inside it.

@@ -16,10 +16,12 @@ namespace sightline::world {
 
 class OccluderPicks {
 public:
-  /// Draws what pays of the occluders in view, for no more than `most` out of the purse. `in_view` are the
-  /// objects that the view sees by frustum. False where nothing was drawn.
-  bool draw(const WorldState& world, const CullView& view, std::span<const ObjectId> in_view,
-            const OcclusionOptions& options, const CullCosts& costs, double most, Purse& purse);
+  /// Draws what pays of the occluders in view, for no more than `most` out of the purse. Distances are
+  /// measured from `distance_eye`. `in_view` are the objects that the view sees by frustum and columns. False
+  /// where nothing was drawn.
+  bool draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
+            std::span<const ObjectId> in_view, const OcclusionOptions& options, const CullCosts& costs,
+            double most, Purse& purse);
   /// What beginning a view's buffer costs.
   static double begin_cost(const CullView& view, const OcclusionOptions& options,
                            const CullCosts& costs) noexcept;

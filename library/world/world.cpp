@@ -8,6 +8,7 @@
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_runs.hpp"
 #include "library/world/free_list.hpp"
+#include "library/world/world_cull.hpp"
 #include "library/world/world_state.hpp"
 
 namespace sightline {
@@ -38,7 +39,7 @@ std::uint32_t WorldState::sector_at(const SectorCell& cell) {
   const bool awake_before = sectors[added].awake;  // it may still stand in the list
   sectors[added] = {{static_cast<double>(cell.x) * kSectorSide, static_cast<double>(cell.y) * kSectorSide,
                      static_cast<double>(cell.z) * kSectorSide},
-                    std::make_unique<ChunkMap>(kSectorMap, &objects),
+                    std::make_unique<ChunkMap>(kSectorMap, &objects, &columns),
                     {},
                     false,
                     awake_before};
@@ -60,6 +61,7 @@ void WorldState::tidy(bool after_insertions) {
     Sector& sector = sectors[s];
     sector.touched = false;
     after_insertions ? sector.map->tighten() : sector.map->tighten_nodes();
+    sector.map->settle_columns();
     sector.bounds = sector.map->nodes()[0].bounds;
     if (sector.map->size() > 0) continue;
     const WorldPoint& o = sector.origin;
@@ -104,7 +106,6 @@ using world::ChunkMap;
 using world::WorldState;
 
 using Handles = Strided<const Handle>;
-using Column = Strided<const std::uint32_t>;
 
 Status check_boxes(const BoxView& boxes) noexcept {
   if (!boxes.sound())
@@ -121,14 +122,6 @@ Status check_boxes(const BoxView& boxes) noexcept {
                 first + i};
     }
   }
-  return {};
-}
-
-Status check_column(const Column& column, std::size_t expected) noexcept {
-  if (!column.sound())
-    return {StatusCode::bad_argument, "world: a column's pointer is null or its stride too short"};
-  if (column.size() != expected)
-    return {StatusCode::bad_argument, "world: expected one element of a column an object"};
   return {};
 }
 
@@ -152,33 +145,6 @@ void reserve(WorldState& s, std::size_t more) {
   s.objects.reserve(room);
 }
 
-// A column comes to be with the first value that somebody sets; ids without one have `otherwise`(id).
-template <class Otherwise>
-void set_column(std::vector<std::uint32_t>& column, std::size_t ids, const Handles& handles,
-                const Column& values, const Otherwise& otherwise) {
-  while (column.size() < ids) column.push_back(otherwise(column.size()));
-  for (std::size_t i = 0; i < handles.size(); ++i) column[handles[i].index] = values[i];
-}
-
-std::uint32_t own_id(std::size_t id) {
-  return static_cast<std::uint32_t>(id);
-}
-std::uint32_t all_layers(std::size_t) {
-  return kAllLayers;
-}
-
-// New objects' columns; where nobody gives any, reused ids lose what their last objects had.
-void fill_columns(WorldState& s, const Handles& handles, const ObjectColumns& given) {
-  const auto fill = [&](std::vector<std::uint32_t>& column, const Column& values, auto otherwise) {
-    if (values.size() > 0) return set_column(column, s.objects.size(), handles, values, otherwise);
-    if (column.empty()) return;
-    while (column.size() < s.objects.size()) column.push_back(otherwise(column.size()));
-    for (std::size_t i = 0; i < handles.size(); ++i) column[handles[i].index] = otherwise(handles[i].index);
-  };
-  fill(s.layers, given.layers, all_layers);
-  fill(s.values, given.values, own_id);
-}
-
 }  // namespace
 
 World::World() : state_(new State) {}
@@ -191,14 +157,10 @@ World& World::operator=(World&& other) noexcept {
   return *this;
 }
 
-Status World::insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns) {
+Status World::insert(const BoxView& boxes, Strided<Handle> handles) {
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   if (boxes.size() != handles.size()) return {StatusCode::bad_argument, "world: expected one handle a box"};
-  for (const Column& column : {columns.layers, columns.values}) {
-    if (column.size() == 0) continue;
-    if (const Status sound = check_column(column, boxes.size()); !sound) return sound;
-  }
   WorldState& s = *state_;
   constexpr std::size_t kMostObjects = std::size_t{1} << 31;
   if (boxes.size() > kMostObjects - s.size)
@@ -214,15 +176,13 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles, const Object
       sector = s.sector_at(cell), last_cell = cell;
       s.touch(sector);
     }
+    s.columns.forget(id);
     s.sectors[sector].map->insert(id, geometry::relative_box(box, s.sectors[sector].origin));
     s.objects[id].sector = sector;
     handles.set(i, {id, s.objects[id].generation});
   });
   s.tidy(true);
   s.size += boxes.size();
-  const bool any_column =
-      columns.layers.size() + columns.values.size() + s.layers.size() + s.values.size() > 0;
-  if (any_column) fill_columns(s, handles, columns);
   return {};
 }
 
@@ -260,20 +220,6 @@ Status World::remove(Strided<const Handle> handles) {
   return {};
 }
 
-Status World::set_layers(Strided<const Handle> handles, Strided<const std::uint32_t> layers) {
-  if (const Status stand = check_handles(*this, handles); !stand) return stand;
-  if (const Status sound = check_column(layers, handles.size()); !sound) return sound;
-  set_column(state_->layers, state_->objects.size(), handles, layers, all_layers);
-  return {};
-}
-
-Status World::set_values(Strided<const Handle> handles, Strided<const std::uint32_t> values) {
-  if (const Status stand = check_handles(*this, handles); !stand) return stand;
-  if (const Status sound = check_column(values, handles.size()); !sound) return sound;
-  set_column(state_->values, state_->objects.size(), handles, values, own_id);
-  return {};
-}
-
 bool World::contains(Handle handle) const noexcept {
   const auto& objects = state_->objects;
   return handle.index < objects.size() && objects[handle.index].sector != ChunkMap::kNone &&
@@ -283,16 +229,6 @@ bool World::contains(Handle handle) const noexcept {
 WorldBox World::box(Handle handle) const noexcept {
   if (!contains(handle)) return {};
   return world::stored_box(*state_, handle.index);
-}
-
-std::uint32_t World::layers(Handle handle) const noexcept {
-  if (!contains(handle)) return 0;
-  return handle.index < state_->layers.size() ? state_->layers[handle.index] : kAllLayers;
-}
-
-std::uint32_t World::value(Handle handle) const noexcept {
-  if (!contains(handle)) return kNoObject;
-  return handle.index < state_->values.size() ? state_->values[handle.index] : handle.index;
 }
 
 Handle World::handle(ObjectId id) const noexcept {

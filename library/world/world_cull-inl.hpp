@@ -183,16 +183,6 @@ HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size
   test_planes<0>(corners, planes, count, take);
 }
 
-// A bit an object of a chunk. Whole words are kept in registers and stored once: loads that gather what
-// several narrow stores have just written make processors wait.
-struct alignas(16) ObjectBits {
-  std::array<std::uint64_t, 2> words{};
-
-  [[nodiscard]] bool at(std::size_t i) const { return words[i / 64] >> (i % 64) & 1; }
-  void drop(std::size_t i) { words[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
-};
-static_assert(ChunkMap::kCapacity <= 128);
-
 // Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
@@ -320,11 +310,21 @@ struct EntryGroup {
   const ChunkMap& map;
   const ChunkMap::Group& group;
   const SectorView* views;  // the sector's
+  std::uint32_t number;     // the group's
 };
 
 HWY_INLINE EntryGroup group_of(const PassInput& input, const GroupEntry& entry) {
   const ChunkMap& map = *input.maps[entry.sector];
-  return {map, map.groups()[entry.group], &input.views[entry.sector * input.view_count]};
+  return {map, map.groups()[entry.group], &input.views[entry.sector * input.view_count], entry.group};
+}
+
+// Takes out the chunks of which the columns leave nothing; returns those of which they leave a part.
+HWY_INLINE std::uint32_t ask_columns(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                     ChunkBits& bits) {
+  if (bits.kept == 0) return 0;
+  const ColumnBits left = input.columns->chunks(at.map, at.number, view);
+  bits.kept &= left.some, bits.crossing &= left.some;
+  return bits.kept & ~left.all;
 }
 
 // Finds the chunks of a group whose bits are set. Memory is what a pass waits for: all of a group's is asked

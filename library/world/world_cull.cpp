@@ -48,6 +48,18 @@ HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntr
   if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
 }
 
+// The same of what the group knows of columns. By itself, as most worlds have none.
+HWY_NOINLINE void prefetch_columns(const PassInput& input, std::span<const GroupEntry> entries,
+                                   std::size_t e) {
+  if (e + 2 >= entries.size()) return;
+  const EntryGroup next = group_of(input, entries[e + 2]);
+  constexpr std::size_t kLine = 16;
+  if (const std::uint32_t* rows = next.map.layer_rows(next.number))
+    for (std::size_t i = 0; i < LayerRows::kSize; i += kLine) hwy::Prefetch(rows + i);
+  if (const float* rows = next.map.distance_rows(next.number))
+    for (std::size_t i = 0; i < DistanceRows::kSize; i += kLine) hwy::Prefetch(rows + i);
+}
+
 // All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
 HWY_INLINE void prefetch_boxes(const ChunkMap::ChunkView& chunk) {
   for (std::size_t i = 0; i < 6 * ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.min_x + i);
@@ -74,6 +86,24 @@ HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, cons
   return kept;
 }
 
+// cull_chunk() of a chunk of which the columns leave a part.
+HWY_NOINLINE std::size_t cull_parted_chunk(const PassInput& input, const EntryGroup& at,
+                                           const ChunkMap::ChunkView& chunk, PlaneSet planes,
+                                           ObjectId* HWY_RESTRICT out) {
+  const U u;
+  Corner corners[Frustum::sides];
+  const ObjectBits seen = input.columns->objects(at.map, at.group, chunk, *at.views);
+  std::size_t kept = 0;
+  const auto take = [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const auto ids = hn::Load(u, chunk.objects + i);
+    auto keep = hn::And(hn::And(hn::RebindMask(u, mask), mask_at(u, seen, i)), are_objects(ids));
+    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
+    kept += store_kept(u, ids, keep, out + kept);
+  };
+  test_planes<0>(corners, corners_of(chunk, *at.views, planes, corners), chunk.count, take);
+  return kept;
+}
+
 PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* end = out;
@@ -82,14 +112,22 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
     const GroupEntry& entry = entries[e];
     prefetch_group(input, entries, e);
     const EntryGroup at = group_of(input, entry);
-    const ChunkBits bits = classify_chunks(at.group, *at.views, entry.planes[0]);
+    ChunkBits bits = classify_chunks(at.group, *at.views, entry.planes[0]);
+    std::uint32_t parted = 0;
+    if (input.columns) {
+      prefetch_columns(input, entries, e);
+      parted = ask_columns(input, at, *at.views, bits);
+    }
     counts.chunks += at.group.count;
     find_chunks(at, bits.kept, chunks);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       const ChunkMap::ChunkView& chunk = chunks[i];
       const PlaneSet planes = planes_of(bits, i, entry.planes[0]);
-      if (chunk.loose) {
+      if (parted >> i & 1) {
+        counts.tested += chunk.count;
+        end += cull_parted_chunk(input, at, chunk, planes, end);
+      } else if (chunk.loose) {
         if (const std::uint32_t later = rest & (rest - 1); at.group.pool != 0 && later != 0)
           prefetch_boxes(chunks[static_cast<std::uint32_t>(std::countr_zero(later))]);
         Corner corners[Frustum::sides];
@@ -253,8 +291,9 @@ PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entri
                        std::uint8_t* masks) noexcept {
   bool plain = input.hidden.empty();
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
-  if (!plain) return cull_filtered_groups(input, entries, out, masks);
-  if (input.view_count == 1 && !masks) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);
+  const bool alone = input.view_count == 1 && !masks;
+  if (!plain || (input.columns && !alone)) return cull_filtered_groups(input, entries, out, masks);
+  if (alone) return HWY_DYNAMIC_DISPATCH(one_view)(input, entries, out);
   return HWY_DYNAMIC_DISPATCH(frustum_views)(input, entries, out, masks);
 }
 

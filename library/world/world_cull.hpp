@@ -29,7 +29,38 @@ struct SectorView {
   bool orthographic = false;
   const occlusion::DepthTiles* occluders = nullptr;  ///< null: occlusion is not tested
   occlusion::EyeProjection projection;               ///< of the occluders' view, about the sector's origin
+  std::uint32_t layers = kAllLayers;
+  Vec3 distance_eye;  ///< from which distances are measured
+  float distance_scale = 1;
 };
+
+/// A bit an object of a chunk. Whole words are kept in registers and stored once: loads that gather what
+/// several narrow stores have just written make processors wait.
+struct alignas(16) ObjectBits {
+  std::array<std::uint64_t, 2> words{};
+
+  [[nodiscard]] bool at(std::size_t i) const { return words[i / 64] >> (i % 64) & 1; }
+  void drop(std::size_t i) { words[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
+  void keep(const ObjectBits& others) { words[0] &= others.words[0], words[1] &= others.words[1]; }
+};
+static_assert(ChunkMap::kCapacity <= 128);
+
+/// Of a group's chunks, a bit each: those of which a view may see an object by the columns, and of these
+/// those of which it sees all.
+struct ColumnBits {
+  std::uint32_t some = 0, all = 0;
+};
+
+/// What layers and distances say. A world hands them to its cullers once it has such a column, so that who
+/// has none need not link them.
+struct ColumnTests {
+  ColumnBits (*chunks)(const ChunkMap& map, std::uint32_t group, const SectorView& view);
+  /// Of a chunk's objects those that the view sees; bits from its count on mean nothing.
+  ObjectBits (*objects)(const ChunkMap& map, const ChunkMap::Group& group, const ChunkMap::ChunkView& chunk,
+                        const SectorView& view);
+};
+extern const ColumnTests kLayerTests;     ///< of worlds that have no distances
+extern const ColumnTests kDistanceTests;  ///< of both, where there are any
 
 /// A group that some view may see.
 struct GroupEntry {
@@ -51,6 +82,7 @@ struct PassInput {
   std::array<std::uint8_t, kMaxViews> bits{};
   /// Of each entry and each of its views the chunks that are known to be hidden, a bit each; or none.
   std::span<const std::uint32_t> hidden = {};
+  const ColumnTests* columns = nullptr;  ///< null: the world has none that say who is seen
 };
 
 /// What asking for chunks found.

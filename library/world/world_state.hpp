@@ -10,6 +10,7 @@
 #include <sightline/world.hpp>
 
 #include "library/world/chunk_map.hpp"
+#include "library/world/columns.hpp"
 #include "library/world/world_occluders.hpp"
 
 namespace sightline::world {
@@ -17,6 +18,8 @@ namespace sightline::world {
 /// Metres. A float within half of it keeps 0.12 mm; and 10⁷ m are a whole number of sectors, as are all round
 /// decimal distances from there on, so that a world shifted by one keeps its bits.
 inline constexpr double kSectorSide = 3200;
+
+struct ColumnTests;
 
 struct SectorCell {
   std::int64_t x = 0, y = 0, z = 0;
@@ -49,8 +52,8 @@ struct WorldState {
   /// One an id, shared by all sectors' maps; where the sector is kNone the id is free.
   ChunkMap::Locations objects;
   std::vector<ObjectId> free_ids;
-  /// One an id, or empty as long as nobody has set any.
-  std::vector<std::uint32_t> layers, values;
+  Columns columns;
+  const ColumnTests* column_tests = nullptr;  ///< null: no column says who is seen
   std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
   std::vector<std::uint32_t> touched;         ///< sectors that changed since tidy(), each once
   std::uint64_t tidied = 0;                   ///< how many sectors tidy() has looked at, ever
@@ -72,6 +75,8 @@ struct WorldState {
   /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty;
   /// after insertions also puts chunks side by side.
   void tidy(bool after_insertions);
+  /// To be called when a column that says who is seen has come to be, with an element for each id.
+  void begin_column(const ColumnTests& tests);
   /// World::move, of what has been checked.
   void move(const Strided<const Handle>& handles, const BoxView& boxes);
   /// Counts frames; true where a new one begins.

@@ -15,6 +15,30 @@ static void run_here(void* user, uint32_t count, void (*job)(void*, uint32_t), v
   for (uint32_t i = count; i-- > 0;) job(data, i);
 }
 
+static void begin_zone(void* user, const char* name) {
+  EXPECT(strncmp(name, "sightline: ", 11) == 0);
+  ++((int*)user)[0];
+}
+static void end_zone(void* user) {
+  ++((int*)user)[1];
+}
+
+static void tell_zones(sightline_culler* culler, const sightline_world* world) {
+  const sightline_view ahead = view_ahead();
+  const sightline_cull_view view = sightline_cull_view_of(&ahead);
+  const sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
+  sightline_cull_options options = sightline_cull_options_default();
+  sightline_cull_result result;
+  int calls[2] = {0, 0};
+  options.zones.begin = begin_zone, options.zones.end = end_zone, options.zones.user = calls;
+  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
+  EXPECT(calls[0] == 3 && calls[1] == 3);
+  options.zones.end = NULL;
+  EXPECT_REFUSED(sightline_cull(culler, world, &view, 1, &options, &output, &result), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
+  EXPECT(calls[0] == 3);
+}
+
 static sightline_world* filled_world(void) {
   static uint32_t layers[kCount], values[kCount];
   sightline_world* world = sightline_world_create();
@@ -162,6 +186,7 @@ void test_cull(void) {
   sightline_culler* culler = sightline_culler_create();
   cull_views(culler, world);
   cull_with_occlusion(culler, world);
+  tell_zones(culler, world);
   refuse_calls(culler, world);
   refuse_options(culler, world);
   sightline_culler_destroy(culler);

@@ -36,6 +36,7 @@ void test_status(void);
 void test_views(void);
 void test_world(void);
 void test_cull(void);
+void test_columns(void);
 void test_automatic(void);
 void test_occlusion(void);
 void test_frustum(void);

@@ -33,6 +33,7 @@ int main(void) {
   test_views();
   test_world();
   test_cull();
+  test_columns();
   test_automatic();
   test_occlusion();
   test_frustum();

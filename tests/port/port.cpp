@@ -1,6 +1,7 @@
 // Prints what the library answers: visible sets, what rays meet, and depth images. scripts/check-answers.sh
 // holds every build and processor against tests/port/library.txt. Worlds and views are made by what rounds
 // alike everywhere.
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -219,6 +220,42 @@ void answer_occlusion(const std::vector<NamedView>& views, Answers& out) {
   }
 }
 
+// Layers and distances of neighbours, or each object's own; from two places at once, one of which measures
+// from the other.
+void answer_columns(const std::vector<NamedView>& views, Answers& out) {
+  scene::Random random(9);
+  std::vector<WorldBox> boxes;
+  std::vector<std::uint32_t> layers;
+  std::vector<DistanceRange> distances;
+  for (int i = 0; i < 30000; ++i) {
+    boxes.push_back(world_box(box_of(random, 3)));
+    const bool own = boxes.back().min.x > 0;
+    layers.push_back(own ? 1 + random.below(7) : 3);
+    distances.push_back({own ? random.between(0, 50) : 0, random.between(own ? 50 : 200, 200)});
+  }
+  std::vector<Handle> handles(boxes.size());
+  World world;
+  expect(world.insert(boxes, handles,
+                      {.layers = std::span<const std::uint32_t>(layers),
+                       .distances = std::span<const DistanceRange>(distances)}));
+  Culler culler;
+  const CullOptions options{.jobs = {test::run_threads, nullptr, out.threads}};
+  std::vector<ObjectId> visible(cull_capacity(world, options));
+  std::vector<std::uint8_t> masks(visible.size());
+  for (const NamedView& named : views) {
+    const std::array both{CullView{.view = {named.view, {}}, .layers = 2},
+                          CullView{.view = {views[0].view, {}}, .distance_scale = 0.7f, .distance_view = 0}};
+    const auto culled = culler.cull(world, both, options, {visible, masks});
+    const std::size_t count = culled ? culled->count : 0;
+    expect(culled.error());
+    out.add_all("world.columns." + named.name, std::span(visible).first(count));
+    out.add_all("world.columns_masks." + named.name, std::span(masks).first(count));
+    const auto one = culler.cull(world, both[0], visible);
+    expect(one.error());
+    out.add_all("world.columns_alone." + named.name, std::span(visible).first(one ? one->count : 0));
+  }
+}
+
 void answer_world(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(6);
   std::vector<WorldBox> boxes;
@@ -291,6 +328,7 @@ int main() {
     answer_frustum(all, out);
     answer_occlusion(all, out);
     answer_world(all, out);
+    answer_columns(all, out);
     answer_rays(all, out);
   });
   return others == 0 ? 0 : 1;

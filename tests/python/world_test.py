@@ -85,6 +85,13 @@ class Insert(Case):
         world.set_layers(handles, things["layer"])
         world.set_values(handles, things["number"])
         self.assertEqual((set(world.layers(handles)), set(world.values(handles))), ({2}, {5}))
+        self.assertTrue((world.distances(handles) == [0, np.inf]).all())
+        ranges = np.stack([np.arange(9), np.arange(9) + 50], 1).astype(np.float32)
+        world.set_distances(handles, ranges)
+        self.assertTrue((world.distances(handles) == ranges).all())
+        for wrong in (ranges[:, ::-1], ranges[:, :1], ranges.astype(float), -1 - ranges):
+            with self.assertRaises(ValueError):
+                world.set_distances(handles, wrong)
         world.remove(handles[:1])
         self.assertEqual((world.layers(handles)[0], world.values(handles)[0]), (0, sightline.NO_OBJECT))
         self.assertFalse(world.boxes(handles)[0].any())

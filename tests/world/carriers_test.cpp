@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "support/solid_boxes.hpp"
 
@@ -52,6 +54,37 @@ TEST(Carriers, ADoorHidesWhileItIsSwitchedOn) {
   const std::array<OccluderPlacement, 1> none{};
   ASSERT_TRUE(wall.scene.world.set_occluders(door, none));
   EXPECT_EQ(wall.seen(culler), kAll);
+}
+
+// Each zone ends within the one in which it began, and all that a cull does has one.
+TEST(Carriers, ACullTellsAProfilerItsZones) {
+  struct Told {
+    std::vector<std::string> open, all;
+  } told;
+  Wall wall;
+  CullOptions options = automatic(5e6f);
+  options.zones = {[](void* user, const char* name) {
+                     auto& t = *static_cast<Told*>(user);
+                     t.open.emplace_back(name);
+                     t.all.push_back(std::to_string(t.open.size()) + name);
+                   },
+                   [](void* user) { static_cast<Told*>(user)->open.pop_back(); }, &told};
+  Culler culler;
+  EXPECT_EQ(cull_with(culler, wall.scene.world, {&wall.view, 1}, options).result.count, 1u);
+  EXPECT_TRUE(told.open.empty());
+  const std::vector<std::string> expected{"1sightline: cull",
+                                          "2sightline: regions and groups",
+                                          "2sightline: chunks and objects",
+                                          "2sightline: automatic occlusion",
+                                          "3sightline: draw occluders",
+                                          "3sightline: ask for what is hidden",
+                                          "4sightline: chunks and objects",
+                                          "3sightline: ask for triangles"};
+  EXPECT_EQ(told.all, expected);
+  options.zones.end = nullptr;
+  std::vector<ObjectId> ids(cull_capacity(wall.scene.world));
+  EXPECT_EQ(culler.cull(wall.scene.world, {&wall.view, 1}, options, {ids, {}}).error().code(),
+            StatusCode::bad_argument);
 }
 
 TEST(Carriers, WhatMovedOrLeftHidesNothingWhereItWas) {

@@ -1,4 +1,4 @@
-// Views as the library lays them out: WorldView of 160 bytes, CullView of 176.
+// Views as the library lays them out: WorldView of 160 bytes, CullView of 184.
 import { refuse } from './errors.js';
 import { buffer } from './runtime.js';
 
@@ -16,7 +16,7 @@ export interface View {
 }
 
 export const viewBytes = 160;
-export const cullViewBytes = 176;
+export const cullViewBytes = 184;
 
 /** A projection whose clip depth is -1 to 1, as WebGL has it, as one whose depth is 0 to 1. */
 export function clipZeroToOne(projection: ArrayLike<number>): number[] {

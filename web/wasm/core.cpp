@@ -79,11 +79,10 @@ std::uint32_t world_insert(WebWorld* web, Layout layout, const void* first, std:
                            std::size_t count, double x, double y, double z, const std::uint32_t* layers,
                            const std::uint32_t* values, double* numbers) {
   web->handles.resize(count);
-  ObjectColumns columns;
-  if (layers) columns.layers = {layers, count};
-  if (values) columns.values = {values, count};
-  const Status status =
-      web->world.insert(boxes_of(layout, first, stride, count, {x, y, z}), web->handles, columns);
+  Status status = web->world.insert(boxes_of(layout, first, stride, count, {x, y, z}), web->handles);
+  // Column by column, so that those that nobody has here are not linked.
+  if (status && layers) status = web->world.set_layers(web->handles, {layers, count});
+  if (status && values) status = web->world.set_values(web->handles, {values, count});
   if (status) std::transform(web->handles.begin(), web->handles.end(), numbers, number_of);
   return keep(status);
 }
@@ -146,8 +145,9 @@ SIGHTLINE_WEB(world_value) std::uint32_t world_value(WebWorld* web, double numbe
 
 // web/src/views.ts writes these as they lie.
 static_assert(sizeof(WorldView) == 160 && offsetof(WorldView, origin) == 136);
-static_assert(sizeof(CullView) == 176 && offsetof(CullView, occlusion) == 160);
+static_assert(sizeof(CullView) == 184 && offsetof(CullView, occlusion) == 160);
 static_assert(offsetof(CullView, layers) == 164 && offsetof(CullView, min_area) == 168);
+static_assert(offsetof(CullView, distance_scale) == 172 && offsetof(CullView, distance_view) == 176);
 static_assert(sizeof(CullCosts) == 36 && offsetof(CullCosts, occludee) == 32);
 
 SIGHTLINE_WEB(culler_create) WebCuller* culler_create() {

@@ -151,6 +151,27 @@ static inline sightline_column sightline_column_of(const uint32_t* first, size_t
   return column;
 }
 
+/** From how far away an object is seen: from `min` metres on, and nearer than `max`. */
+typedef struct sightline_distance_range {
+  float min; /**< metres, not negative */
+  float max; /**< metres, no less than min; infinity: however far */
+} sightline_distance_range;
+
+/** Such ranges in the caller's own memory, one an object. */
+typedef struct sightline_distances {
+  const sightline_distance_range* first; /**< where the first one lies */
+  size_t stride;                         /**< bytes from a range to the next */
+  size_t count;                          /**< ranges */
+} sightline_distances;
+
+/** `count` ranges from `first` on, `stride` bytes from one to the next. */
+static inline sightline_distances sightline_distances_of(const sightline_distance_range* first, size_t stride,
+                                                         size_t count) {
+  sightline_distances distances;
+  distances.first = first, distances.stride = stride, distances.count = count;
+  return distances;
+}
+
 /* --- views --- */
 
 /** A camera's matrices, and the size of its image in pixels: 1 to 16384 a side. The world is seen moved by

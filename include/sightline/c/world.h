@@ -32,6 +32,9 @@ typedef struct sightline_object_columns {
   uint32_t reserved;       /**< 0 */
   sightline_column layers; /**< a bit a layer; none: all. A view sees what shares a bit with its layers. */
   sightline_column values; /**< numbers that sightline_cull() can write instead of ids; none: the id */
+  /** From where objects are seen; none: from anywhere. A view sees an object iff the distance from its eye to
+   * the centre of the object's box, as kept, is in the range, times the view's distance_scale. */
+  sightline_distances distances;
 } sightline_object_columns;
 
 /** No columns. */
@@ -39,6 +42,7 @@ static inline sightline_object_columns sightline_object_columns_default(void) {
   sightline_object_columns columns;
   columns.struct_size = (uint32_t)sizeof columns, columns.reserved = 0;
   columns.layers = columns.values = sightline_column_of(NULL, sizeof(uint32_t), 0);
+  columns.distances = sightline_distances_of(NULL, sizeof(sightline_distance_range), 0);
   return columns;
 }
 
@@ -64,14 +68,19 @@ SIGHTLINE_API sightline_status sightline_world_move(sightline_world* world, cons
 SIGHTLINE_API sightline_status sightline_world_remove(sightline_world* world,
                                                       const sightline_handles* handles);
 /** Gives each object new layers. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates: 4 bytes an id,
- * the first time. */
+ * some 6 an object, the first time. */
 SIGHTLINE_API sightline_status sightline_world_set_layers(sightline_world* world,
                                                           const sightline_handles* handles,
                                                           const sightline_column* layers);
-/** Gives each object a new value. Errors, Cost, Allocates: the same. */
+/** Gives each object a new value. Errors, Cost: the same. Allocates: 4 bytes an id, the first time. */
 SIGHTLINE_API sightline_status sightline_world_set_values(sightline_world* world,
                                                           const sightline_handles* handles,
                                                           const sightline_column* values);
+/** Gives each object new distances. Errors: BAD_ARGUMENT, also for what is no range; STALE_HANDLE. Cost: the
+ * same. Allocates: 8 bytes an id, some 12 an object, the first time. */
+SIGHTLINE_API sightline_status sightline_world_set_distances(sightline_world* world,
+                                                             const sightline_handles* handles,
+                                                             const sightline_distances* distances);
 
 /* --- what objects hide behind them, from culls with SIGHTLINE_OCCLUSION_AUTOMATIC --- */
 
@@ -152,8 +161,15 @@ SIGHTLINE_API sightline_status sightline_world_layers(const sightline_world* wor
 /** The object's value. Errors: BAD_ARGUMENT, STALE_HANDLE. */
 SIGHTLINE_API sightline_status sightline_world_value(const sightline_world* world, sightline_handle handle,
                                                      uint32_t* value);
+/** The object's distances. Errors: BAD_ARGUMENT, STALE_HANDLE. */
+SIGHTLINE_API sightline_status sightline_world_distances(const sightline_world* world,
+                                                         sightline_handle handle,
+                                                         sightline_distance_range* distances);
 
 /* --- culling --- */
+
+/** Of sightline_cull_view's distance_view: the view itself. */
+#define SIGHTLINE_OWN_VIEW 0xffffffffu
 
 /** A camera, an eye, a shadow cascade: whatever sees the world. Made by sightline_cull_view_of(). */
 typedef struct sightline_cull_view {
@@ -163,6 +179,9 @@ typedef struct sightline_cull_view {
   uint32_t reserved;                    /**< 0 */
   const sightline_occlusion* occlusion; /**< begun with this same view, occluders drawn; or NULL */
   sightline_view view;                  /**< what it sees, and the size of its image */
+  float distance_scale;   /**< times the objects' distances: 2 shows them from twice as far; above 0 */
+  uint32_t distance_view; /**< place of the view from whose eye distances are measured, as a shadow cascade
+                             takes its camera's; SIGHTLINE_OWN_VIEW: this one's */
 } sightline_cull_view;
 
 /** A view that sees all layers, drops nothing small and has no occlusion; of zeros, which sightline_cull()
@@ -175,6 +194,7 @@ static inline sightline_cull_view sightline_cull_view_of(const sightline_view* v
   result.min_area = 0, result.reserved = 0;
   result.occlusion = NULL;
   result.view = view ? *view : none;
+  result.distance_scale = 1, result.distance_view = SIGHTLINE_OWN_VIEW;
   return result;
 }
 
@@ -198,6 +218,14 @@ typedef struct sightline_cull_costs {
   float reserved;  /**< 0 */
 } sightline_cull_costs;
 
+/** A profiler that has zones, as Tracy, Optick and Perfetto do: both are called by whichever thread does the
+ * work, the caller's or a job's, one zone within another. */
+typedef struct sightline_cull_zones {
+  void (*begin)(void* user, const char* name); /**< a name that lives as long as the program; or NULL */
+  void (*end)(void* user); /**< of the zone that this thread began last; NULL where begin is */
+  void* user;              /**< handed to both */
+} sightline_cull_zones;
+
 /** How a call culls; the same for all its views. Made by sightline_cull_options_default(). */
 typedef struct sightline_cull_options {
   uint32_t struct_size;       /**< bytes of this struct */
@@ -208,6 +236,7 @@ typedef struct sightline_cull_options {
   sightline_cull_costs costs; /**< finite, not negative; read by automatic occlusion */
   uint32_t coverage;          /**< SIGHTLINE_COVERAGE_...: which places automatic occlusion answers for */
   uint32_t scale;             /**< pixels of the view along a side of one of its buffer's: 1, 2 or 4 */
+  sightline_cull_zones zones; /**< told what a cull spends its time on */
 } sightline_cull_options;
 
 /** Ids, by the calling thread, without occlusion. */
@@ -220,6 +249,7 @@ static inline sightline_cull_options sightline_cull_options_default(void) {
   options.occlusion = SIGHTLINE_OCCLUSION_NONE, options.reserved = 0;
   options.costs = costs;
   options.coverage = SIGHTLINE_COVERAGE_CENTRES, options.scale = 1;
+  options.zones.begin = NULL, options.zones.end = NULL, options.zones.user = NULL;
   return options;
 }
 
@@ -269,9 +299,9 @@ SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* cul
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
  * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
- * is left out, but by `layers` and `min_area`. All views have the same struct_size. `options` may be NULL.
- * With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted work x
- * costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more
+ * is left out, but by `layers`, `distances` and `min_area`. All views have the same struct_size. `options`
+ * may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted
+ * work x costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more
  * than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost:
  * grows with what is visible and with the boundary of the views, not with the world. Threads: only reads the
  * world and the occlusions. Allocates: nothing once the culler has grown to the world's size. */
