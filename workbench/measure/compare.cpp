@@ -14,6 +14,8 @@ namespace sightline::measure {
 
 namespace {
 
+constexpr std::size_t kMostFinalists = 8;
+
 /// What one subject's frames of one view took.
 struct Samples {
   std::vector<double> cpu, gpu, occluders, frame;
@@ -119,18 +121,22 @@ Row row_of(Bench& bench, Subject& subject, const View& view, std::size_t index, 
   return row;
 }
 
-/// What finalists' frames took, theirs and those before.
+/// Eight, then the quicker four, then two, each round as long as the one before.
 void run_finals(Bench& bench, MeasureOptions options, Mover& mover,
                 std::vector<std::vector<Samples>>& samples, Comparison& result) {
-  const std::vector<std::size_t> who = finalists(result);
-  if (who.size() < 2) return;
-  options.repeats = options.finals, options.timed_passes = 0;
-  for (std::size_t v = 0; v < samples.size(); ++v) {
-    const View view = or_throw(make_view(result.cameras[v], options.width, options.height));
-    take_times(bench, who, view, v, options, mover, samples[v]);
-    for (const std::size_t m : who) {
-      Row& row = result.rows[v * result.methods.size() + m];
-      row.cull = timing_of(samples[v][m].cpu), row.frame = timing_of(samples[v][m].frame);
+  options.timed_passes = 0;
+  for (std::size_t most = kMostFinalists; most >= 2; most /= 2) {
+    std::vector<std::size_t> who = finalists(result);
+    who.resize(std::min(who.size(), most));
+    if (who.size() < 2) return;
+    options.repeats = options.finals * kMostFinalists / most;
+    for (std::size_t v = 0; v < samples.size(); ++v) {
+      const View view = or_throw(make_view(result.cameras[v], options.width, options.height));
+      take_times(bench, who, view, v, options, mover, samples[v]);
+      for (const std::size_t m : who) {
+        Row& row = result.rows[v * result.methods.size() + m];
+        row.cull = timing_of(samples[v][m].cpu), row.frame = timing_of(samples[v][m].frame);
+      }
     }
   }
 }
@@ -139,7 +145,6 @@ void run_finals(Bench& bench, MeasureOptions options, Mover& mover,
 
 std::vector<std::size_t> finalists(const Comparison& so_far) {
   constexpr double kClose = 1.3;  // a few frames among many methods' tell no closer
-  constexpr std::size_t kMost = 8;
   const std::size_t methods = so_far.methods.size();
   std::vector<double> frame(methods);
   for (std::size_t i = 0; i < so_far.rows.size(); ++i) {
@@ -153,7 +158,7 @@ std::vector<std::size_t> finalists(const Comparison& so_far) {
   std::ranges::stable_sort(order, {}, [&](std::size_t m) { return frame[m]; });
   const double most = kClose * frame[order.front()];
   std::erase_if(order, [&](std::size_t m) { return !(frame[m] <= most) || std::isinf(frame[m]); });
-  order.resize(std::min(order.size(), kMost));
+  order.resize(std::min(order.size(), kMostFinalists));
   return order;
 }
 

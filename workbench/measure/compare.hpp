@@ -52,7 +52,8 @@ struct MeasureOptions {
   /// On a device: frames of each method and view that tell what their passes took on the GPU, and nothing
   /// else: they are the slower for it.
   std::size_t timed_passes = 5;
-  /// On a device: frames more of each view of those that may be the quickest, by turns among themselves.
+  /// On a device: frames more of each view of the eight that may be the quickest, by turns among themselves;
+  /// twice as many of the quicker half, and four times of the two that are left.
   std::size_t finals = 0;
   double moving = 0;  ///< share of the objects that move before every frame
   /// One more subject, kLimit: what the item buffer sees and nothing else, found for nothing. No culling of
