@@ -9,7 +9,6 @@
 
 #include <sightline/projection.hpp>
 
-#include "library/geometry/box_math.hpp"
 #include "library/geometry/mutant.h"
 #include "workbench/methods/raster_occlusion/ground_chunks.hpp"
 #include "workbench/methods/raster_occlusion/two_phase.hpp"
@@ -93,8 +92,9 @@ private:
 
   void end_run() {
     const std::span run = std::span(run_).first(std::exchange(length_, 0));
-    const Box all = std::accumulate(run.begin(), run.end(), geometry::kEmptyBox, geometry::united);
-    if (run.empty() || with(touched_, image_of(all)) == touched_) return;
+    if (run.empty()) return;
+    const Box all = std::accumulate(run.begin() + 1, run.end(), run.front(), both);
+    if (with(touched_, image_of(all)) == touched_) return;
     for (const Box& box : run) {
       const Rect image = image_of(box);
       const float area = (image.max_x - image.min_x) * (image.max_y - image.min_y);
@@ -108,6 +108,11 @@ private:
     const float right = projector_.width - 1, bottom = projector_.height - 1;
     return {std::clamp(rect.min_x, 0.0f, right), std::clamp(rect.min_y, 0.0f, bottom),
             std::clamp(rect.max_x, 0.0f, right), std::clamp(rect.max_y, 0.0f, bottom)};
+  }
+
+  static Box both(const Box& a, const Box& b) {
+    return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)},
+            {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z)}};
   }
 
   static Rect with(const Rect& a, const Rect& b) {
