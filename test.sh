@@ -79,8 +79,9 @@ ctest --preset asan -j"$(nproc)" -L mutants-in-gate
 
 stage "threads"
 cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target world_tests
+cmake --build --preset tsan --target world_tests occlusion_tests
 build/tsan/tests/world_tests --gtest_brief=1
+build/tsan/tests/occlusion_tests --gtest_brief=1 --gtest_filter='OcclusionJobs.*'
 
 stage "fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-6}" build/asan

@@ -1,7 +1,8 @@
 // Occluders drawn as one mesh, beside peers: milliseconds a view, with wrong culls and excess.
 //
 //   occluder_meshes_benchmark SCENE [--peer FILE.so]... [--views N | --look ex,ey,ez,tx,ty,tz] [--headings N]
-//                             [--two-sided] [--queries N] [--rounds N] [--size WxH] [--samples N]
+//                             [--two-sided] [--queries N] [--rounds N] [--size WxH] [--samples N] [--threads
+//                             N]
 #include <dlfcn.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,7 @@
 
 #include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/tbb.hpp>
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
@@ -61,12 +63,13 @@ public:
 
 class Ours : public Contestant {
 public:
-  Ours(const OccluderMesh& mesh, std::string name, const OcclusionOptions& options)
-      : mesh_(mesh), name_(std::move(name)), options_(options) {}
+  Ours(const OccluderMesh& mesh, std::string name, const OcclusionOptions& options,
+       const JobSystem& jobs = {})
+      : mesh_(mesh), name_(std::move(name)), options_(options), jobs_(jobs) {}
   std::string name() const override { return name_; }
   void draw(const Camera&, const View& view) override {
     or_throw(buffer_.begin({view, {}}, options_));
-    or_throw(buffer_.draw_mesh(mesh_));
+    or_throw(buffer_.draw_mesh(mesh_, {}, jobs_));
   }
   void query(std::span<const Box> boxes, std::span<std::uint8_t> visible) override {
     or_throw(buffer_.may_see(boxes, visible));
@@ -86,6 +89,7 @@ private:
   const OccluderMesh& mesh_;
   std::string name_;
   OcclusionOptions options_;
+  JobSystem jobs_;
   OcclusionBuffer buffer_;
 };
 
@@ -146,7 +150,7 @@ struct Options {
   std::vector<std::string> peers;
   std::vector<float> look;
   std::size_t views = 50, headings = 1, queries = 2000, rounds = 11;
-  std::uint32_t samples = 1;
+  std::uint32_t samples = 1, threads = 1;
   bool two_sided = false;
 };
 
@@ -255,6 +259,11 @@ void run(const Options& options) {
       std::make_unique<Ours>(mesh, "sightline, any place", OcclusionOptions{Coverage::area}));
   contestants.push_back(
       std::make_unique<Ours>(mesh, "sightline, half resolution", OcclusionOptions{Coverage::centres, 2}));
+  if (options.threads > 1) {
+    contestants.push_back(std::make_unique<Ours>(mesh,
+                                                 "sightline, " + std::to_string(options.threads) + " threads",
+                                                 OcclusionOptions{}, tbb_jobs(options.threads)));
+  }
   for (const std::string& file : options.peers)
     contestants.push_back(std::make_unique<Peer>(file, occluders, options.two_sided, width, height));
   Judged judged;
@@ -285,6 +294,8 @@ int main(int argc, char** argv) {
   app.add_option("--queries", options.queries, "Boxes asked for a view");
   app.add_option("--rounds", options.rounds, "Of timing, all contestants in each");
   app.add_option("--samples", options.samples, "Of the truth: 1 is the centre, more lie anywhere in a pixel");
+  app.add_option("--threads", options.threads, "Draw with so many as well")
+      ->check(CLI::Range(1u, sightline::kMaxJobs));
   app.add_option("--size", options.size, "Of the image");
   app.add_flag("--two-sided", options.two_sided, "Both sides occlude, not fronts alone");
   CLI11_PARSE(app, argc, argv);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include <sightline/box_view.hpp>
+#include <sightline/jobs.hpp>
 #include <sightline/occluder.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
@@ -116,11 +117,12 @@ public:
   /// much of the image. Spheres that are not valid or reach behind the near plane are left out. Leave out,
   /// too, those of things that reach behind it, as their inside shows. Errors, Cost: as draw_boxes.
   Status draw_spheres(const SphereView& spheres) noexcept;
-  /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1).
+  /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1). The caller's jobs
+  /// draw bands of the image at once, to the same bits.
   /// Errors: stale_buffer before begin(); bad_argument for a transform that is not finite or not affine.
   /// Cost: linear in the triangles in view, 10 to 20 ns each and 1 ns a tile. Allocates: until it has seen
-  /// its largest mesh.
-  Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {});
+  /// its largest mesh, for each job.
+  Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
   /// Whether some pixel centre may see the box. False is certain; of a box that is not finite, true. Cost: 30
   /// ns.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <sightline/jobs.hpp>
 #include <sightline/occlusion.hpp>
 
 #include "library/geometry/aligned_vector.hpp"
@@ -45,8 +46,16 @@ struct TilePlane {
   std::uint32_t covers;      ///< 0 where DepthTiles::nearness has the tile; undefined where nothing was drawn
 };
 
+/// Where the tiles lie. What is undefined below is left as it was, so that a frame pays for what it draws.
+struct TileMemory {
+  geometry::AlignedVector<float> farthest, nearest, nearness, untouched;
+  geometry::AlignedVector<TilePlane> plane;
+  std::vector<MeshScratch> scratch;  ///< one a job that draws; the first is there once a view is begun
+};
+
 struct BoxQuestions;
 
+/// A view's tiles, or a band of them for one of many who draw at once: rows of tiles of its own.
 struct DepthTiles {
   WorldView view{{{}, {}, 1, 1}, {}};
   OcclusionOptions options;
@@ -59,19 +68,21 @@ struct DepthTiles {
   float margin = 0;
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
+  /// Rows of pixels that are drawn to and asked for; whole tiles, but at the image's end.
+  std::uint32_t first_row = 0, end_row = 0;
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
-  geometry::AlignedVector<float> farthest;
+  float* farthest = nullptr;
   /// One a tile: no pixel of it is nearer; -infinity where nothing was drawn.
-  geometry::AlignedVector<float> nearest;
+  float* nearest = nullptr;
   /// One a tile.
-  geometry::AlignedVector<TilePlane> plane;
+  TilePlane* plane = nullptr;
   /// 64 a tile, row by row; undefined where `nearest` is -infinity or a plane covers the tile. Pixels without
   /// an occluder hold -infinity, those beyond the image +infinity.
-  geometry::AlignedVector<float> nearness;
+  float* nearness = nullptr;
   /// What an untouched tile holds: one within the image, in the last column, in the last row, in both.
-  geometry::AlignedVector<float> untouched;
+  const float* untouched = nullptr;
 
-  MeshScratch mesh;
+  MeshScratch* mesh = nullptr;
 
   /// A cull's way to what answers for boxes; set where the buffer is begun, so that programs that never begin
   /// one need not link it.
@@ -124,10 +135,13 @@ struct MeshBudget {
     return true;
   }
 };
-/// With a budget draws a part of the mesh, without one all of it. Allocates until it has seen its largest
-/// mesh.
+/// Draws all of the mesh, in as many bands of the image at once as there are jobs. Allocates until it has
+/// seen its largest mesh.
+void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& mesh,
+               const RowTransform& transform, const JobSystem& jobs);
+/// Draws a part of it, what the budget pays for.
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-               MeshBudget* budget = nullptr);
+               MeshBudget& budget);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
 struct BoxQuestions {
@@ -156,7 +170,9 @@ bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blo
 
 namespace sightline {
 
-struct OcclusionBuffer::State : occlusion::DepthTiles {};
+struct OcclusionBuffer::State : occlusion::DepthTiles {
+  occlusion::TileMemory memory;
+};
 struct OccluderMesh::Topology : occlusion::OccluderTopology {};
 
 /// The way of the library's own to what a buffer holds.

@@ -122,13 +122,15 @@ struct PixelBounds {
 
 HWY_INLINE PixelBounds pixel_bounds(const DepthTiles& tiles, const Rectangles& r) {
   const F f;
-  const VF half = hn::Set(f, 0.5f), zero = hn::Zero(f);
-  const auto first = [&](VF low) HWY_ATTR { return hn::Max(hn::Ceil(hn::Sub(low, half)), zero); };
-  const auto last = [&](VF high, std::uint32_t size) HWY_ATTR {
-    return hn::Min(hn::Floor(hn::Sub(high, half)), hn::Set(f, static_cast<float>(size) - 1));
+  const VF half = hn::Set(f, 0.5f);
+  const auto first = [&](VF low, std::uint32_t least) HWY_ATTR {
+    return hn::Max(hn::Ceil(hn::Sub(low, half)), hn::Set(f, static_cast<float>(least)));
   };
-  const VF x0 = first(r.left), x1 = last(r.right, tiles.width), y0 = first(r.top),
-           y1 = last(r.bottom, tiles.height);
+  const auto last = [&](VF high, std::uint32_t end) HWY_ATTR {
+    return hn::Min(hn::Floor(hn::Sub(high, half)), hn::Set(f, static_cast<float>(end) - 1));
+  };
+  const VF x0 = first(r.left, 0), x1 = last(r.right, tiles.width), y0 = first(r.top, tiles.first_row),
+           y1 = last(r.bottom, tiles.end_row);
   return {x0, x1, y0, y1, hn::And(hn::Le(x0, x1), hn::Le(y0, y1))};
 }
 
@@ -152,12 +154,10 @@ HWY_INLINE PixelRanges pixel_ranges(const PixelBounds& bounds, hn::Mask<F> asked
 }
 
 // The least value of the tiles at the corners, which are all tiles of a small rectangle.
-HWY_INLINE VF least_at_corners(const DepthTiles& tiles, const AlignedVector<float>& of,
-                               const PixelRanges& r) {
+HWY_INLINE VF least_at_corners(const DepthTiles& tiles, const float* of, const PixelRanges& r) {
   const VI stride = hn::Set(I(), static_cast<std::int32_t>(tiles.stride));
   const VI row0 = hn::Mul(r.ty0, stride), row1 = hn::Mul(r.ty1, stride);
-  const auto at = [&](VI row, VI column)
-                      HWY_ATTR { return hn::GatherIndex(F(), of.data(), hn::Add(row, column)); };
+  const auto at = [&](VI row, VI column) HWY_ATTR { return hn::GatherIndex(F(), of, hn::Add(row, column)); };
   return hn::Min(hn::Min(at(row0, r.tx0), at(row0, r.tx1)), hn::Min(at(row1, r.tx0), at(row1, r.tx1)));
 }
 

@@ -25,11 +25,14 @@ struct ViewRows {
 
 inline ViewRows view_rows(const DepthTiles& tiles) {
   const EyeProjection& e = tiles.projection;
-  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  const auto width = static_cast<float>(tiles.width), top = static_cast<float>(tiles.first_row),
+             bottom = static_cast<float>(tiles.end_row);
   const auto minus = [](float scale, const Vec4& a, const Vec4& b) {
     return Vec4{scale * a.x - b.x, scale * a.y - b.y, scale * a.z - b.z, scale * a.w - b.w};
   };
-  return {{e.x, minus(width, e.w, e.x), e.y, minus(height, e.w, e.y), tiles.rays.near_plane},
+  const Vec4 above = minus(top, e.w, e.y), below = minus(bottom, e.w, e.y);
+  return {{e.x, minus(width, e.w, e.x), Vec4{-above.x, -above.y, -above.z, -above.w}, below,
+           tiles.rays.near_plane},
           e.orthographic ? Vec4{-e.nearness.x, -e.nearness.y, -e.nearness.z, 0} : e.w};
 }
 
@@ -81,7 +84,7 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
                               const RowTransform& transform) {
   const F f;
   const ViewRows view = view_rows(tiles);
-  MeshScratch& s = tiles.mesh;
+  MeshScratch& s = *tiles.mesh;
   s.group.clear(), s.near_first.clear();
   for (std::size_t first = 0; first < mesh.groups.size(); first += hn::Lanes(f)) {
     const WideBoxes boxes = moved_boxes(mesh, transform, first);

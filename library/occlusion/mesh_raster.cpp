@@ -156,7 +156,7 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
 HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group, const ReadyTriangles& ready, std::size_t i) {
   const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, group, i);
-  const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh.front : 0;
+  const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh->front : 0;
   if (tiles.margin == 0) return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), {}, 0});
   const std::size_t t = group * kGroup + i;
   Convex image;
@@ -164,7 +164,7 @@ HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, cons
   Rim rim;
   add_rim(tiles, mesh, transform, t, image, rim);
   if (rim.known) draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), rim.bands, rim.slant});
-  if (!rim.known || rim.slant > tiles.mesh.slant[t]) draw_clipped_triangle(tiles, corners, way, {});
+  if (!rim.known || rim.slant > tiles.mesh->slant[t]) draw_clipped_triangle(tiles, corners, way, {});
 }
 
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
@@ -208,7 +208,7 @@ constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for togeth
 // it as true as they are: the mesh goes on there.
 inline bool affords_group(const DepthTiles& tiles, std::size_t place, const Projector& projector,
                           MeshBudget& budget) {
-  const auto& box = tiles.mesh.box;
+  const auto& box = tiles.mesh->box;
   const auto half = [&](std::size_t axis) { return 0.5f * (box[axis + 3][place] - box[axis][place]); };
   const Vec3 size{half(0), half(1), half(2)};
   const Sphere around{{box[0][place] + size.x, box[1][place] + size.y, box[2][place] + size.z},
@@ -224,7 +224,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
   if (budget && !budget->pay(static_cast<double>(mesh.groups.size()) * budget->look)) return;
   const Projector projector = budget ? make_projector(tiles.view.view, {}) : Projector{};
   find_groups(tiles, mesh, transform);
-  const MeshScratch& s = tiles.mesh;
+  const MeshScratch& s = *tiles.mesh;
   for (std::size_t first = 0; first < s.near_first.size(); first += kGroupsAtOnce) {
     const std::size_t count = std::min(kGroupsAtOnce, s.near_first.size() - first);
     if (budget && !budget->pay(static_cast<double>(count) * budget->query)) return;
@@ -266,12 +266,8 @@ bool mirrors(const RowTransform& transform) {
   return glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
 }
 
-}  // namespace
-
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-               MeshBudget* budget) {
-  MeshScratch& s = tiles.mesh;
-  const std::size_t groups = mesh.groups.size();
+// For meshes of that many groups, one of which is drawn.
+void make_ready(MeshScratch& s, std::size_t groups, float front) {
   if (s.known.size() < groups) {
     for (auto& side : s.box) side.resize(groups);
     s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
@@ -279,9 +275,54 @@ void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransfo
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
-  s.front = tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
+  s.front = front;
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
-  HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, budget);
+}
+
+float front_of(const DepthTiles& tiles, const RowTransform& transform) {
+  return tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
+}
+
+// A mesh that jobs draw, a band of the image each: no pixel is written by two, and what one holds does not
+// depend on what others do. More and thinner bands would share out evenly what more of them have to set up.
+struct MeshBands {
+  const DepthTiles& tiles;
+  std::span<MeshScratch> scratch;  // one a job
+  const OccluderTopology& mesh;
+  const RowTransform& transform;
+
+  void draw(std::uint32_t job) const {
+    const auto count = static_cast<std::uint32_t>(scratch.size());
+    DepthTiles band = tiles;
+    band.mesh = &scratch[job];
+    band.first_row = job * tiles.rows / count * kTile;
+    band.end_row = std::min(tiles.height, (job + 1) * tiles.rows / count * kTile);
+    HWY_DYNAMIC_DISPATCH(draw_triangles)(band, mesh, transform, nullptr);
+  }
+};
+
+constexpr std::uint32_t kLeastRows = 6;  // of tiles; a thinner band is not worth a job
+
+}  // namespace
+
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+               MeshBudget& budget) {
+  make_ready(*tiles.mesh, mesh.groups.size(), front_of(tiles, transform));
+  HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, &budget);
+}
+
+void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& mesh,
+               const RowTransform& transform, const JobSystem& jobs) {
+  const std::uint32_t most = std::min(std::min(jobs.threads, kMaxJobs), tiles.rows / kLeastRows);
+  const std::uint32_t count = jobs.run ? std::max(1u, most) : 1;
+  if (memory.scratch.size() < count) memory.scratch.resize(count), tiles.mesh = memory.scratch.data();
+  const std::span scratch = std::span(memory.scratch).first(count);
+  for (MeshScratch& s : scratch) make_ready(s, mesh.groups.size(), front_of(tiles, transform));
+  if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, nullptr);
+  MeshBands bands{tiles, scratch, mesh, transform};
+  jobs.run(
+      jobs.user, count, [](void* data, std::uint32_t job) { static_cast<MeshBands*>(data)->draw(job); },
+      &bands);
 }
 
 }  // namespace sightline::occlusion

@@ -82,7 +82,7 @@ inline void add_band(const ImageSegment& segment, float margin, const Convex& be
 // Whether the mesh ends at the edge, as far as it is drawn.
 inline bool ends_at(const DepthTiles& tiles, const OccluderTopology& mesh,
                     const OccluderTopology::CornerEdge& edge) {
-  const float* facing = tiles.mesh.facing.data();
+  const float* facing = tiles.mesh->facing.data();
   const float its = facing[edge.triangle];
   if (edge.other < OccluderTopology::kShared) {
     const float others = facing[edge.other];
@@ -97,7 +97,7 @@ inline bool ends_at(const DepthTiles& tiles, const OccluderTopology& mesh,
 inline void add_near_edge(const DepthTiles& tiles, const OccluderTopology& mesh,
                           const RowTransform& transform, std::uint32_t triangle, const Convex& beside,
                           Rim& out) {
-  if (std::fabs(tiles.mesh.facing[triangle]) != kCut) return;
+  if (std::fabs(tiles.mesh->facing[triangle]) != kCut) return;
   const auto end = out.cut.begin() + static_cast<std::ptrdiff_t>(out.cuts);
   if (std::find(out.cut.begin(), end, triangle) != end) return;
   if (out.cuts == out.cut.size()) {
@@ -117,7 +117,7 @@ inline void add_rim(const DepthTiles& tiles, const OccluderTopology& mesh, const
     out.known = false;
     return;
   }
-  const float* slant = tiles.mesh.slant.data();
+  const float* slant = tiles.mesh->slant.data();
   out.slant = std::max(out.slant, slant[t]);
   for (std::uint32_t i = mesh.first_around[t]; i < mesh.first_around[t + 1] && out.known; ++i) {
     const OccluderTopology::CornerEdge& edge = mesh.around[i];

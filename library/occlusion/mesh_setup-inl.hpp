@@ -73,7 +73,7 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
   if (!hn::AllFalse(f, cut))
     facing = hn::IfThenElse(cut, hn::Mul(turn_by_plane(tiles, corners), hn::Set(f, kCut)), facing);
   const auto from_behind =
-      hn::And(mask_of(f, one_sided), hn::Lt(hn::Mul(facing, hn::Set(f, tiles.mesh.front)), zero));
+      hn::And(mask_of(f, one_sided), hn::Lt(hn::Mul(facing, hn::Set(f, tiles.mesh->front)), zero));
   return hn::IfThenZeroElse(from_behind, facing);
 }
 
@@ -109,8 +109,8 @@ HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& m
   c.image = on_image(e, c.corners);
   c.facing = facing_of(tiles, c.corners, c.image, mesh.groups[group].one_sided >> lane);
   if (hn::Lanes(f) == kGroup && tiles.margin == 0) {
-    hn::Store(c.facing, f, &tiles.mesh.facing[group * kGroup]);
-    tiles.mesh.known[group] = tiles.mesh.turn;
+    hn::Store(c.facing, f, &tiles.mesh->facing[group * kGroup]);
+    tiles.mesh->known[group] = tiles.mesh->turn;
   }
   const VF *x = c.image.x, *y = c.image.y;
   c.outline = {hn::Min(hn::Min(x[0], x[1]), x[2]), hn::Max(hn::Max(x[0], x[1]), x[2]),
@@ -197,11 +197,11 @@ inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology
 // Of those of a group that the near plane cuts, which count where a pixel's margin does.
 HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group) {
-  float* facing = &tiles.mesh.facing[group * kGroup];
+  float* facing = &tiles.mesh->facing[group * kGroup];
   for (std::size_t i = 0; i < kGroup; ++i) {
     if (std::fabs(facing[i]) != kCut) continue;
     const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i));
-    tiles.mesh.slant[group * kGroup + i] = its.slant;
+    tiles.mesh->slant[group * kGroup + i] = its.slant;
     if (!its.counts) facing[i] = 0;
   }
 }
@@ -211,7 +211,7 @@ HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, cons
 void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                  std::size_t group) {
   const F f;
-  MeshScratch& s = tiles.mesh;
+  MeshScratch& s = *tiles.mesh;
   if (s.known[group] == s.turn) return;
   s.known[group] = s.turn;
   std::uint32_t cut = 0;
@@ -275,7 +275,7 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
   const VF* y = c.image.y;
   const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
   const auto has_other = hn::Gt(other, hn::Set(i32, -1));
-  const VF others = hn::GatherIndex(f, tiles.mesh.facing.data(), hn::Max(other, hn::Zero(i32)));
+  const VF others = hn::GatherIndex(f, tiles.mesh->facing.data(), hn::Max(other, hn::Zero(i32)));
   const auto goes_on = hn::Gt(hn::Mul(others, c.facing), hn::Zero(f));
   const auto seam = hn::Or(hn::And(hn::RebindMask(f, has_other), goes_on), mask_of(f, shared));
   out.seam[k] |= bits_of(f, seam) << c.lane;
@@ -313,7 +313,7 @@ HWY_INLINE void set_whole_edges(const DepthTiles& tiles, const Candidates& c, Re
 // Whether others go on all along an edge that has more than one or a row of them. Facings are known.
 inline bool goes_on_along(const DepthTiles& tiles, const OccluderTopology& mesh,
                           const OccluderTopology::SharedEdge& edge) {
-  const float* facing = tiles.mesh.facing.data();
+  const float* facing = tiles.mesh->facing.data();
   const float turns = facing[edge.triangle];
   bool all = true, piece = false;
   for (std::uint32_t o = edge.first; o < edge.end && all; ++o) {

@@ -17,30 +17,36 @@ using geometry::kBlock;
 using geometry::SphereSpan;
 using occlusion::DepthTiles;
 using occlusion::kTile;
+using occlusion::TileMemory;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kMaxSide = 8192;
 
 // Empty tiles of an image of this size.
-void set_size(DepthTiles& t, std::uint32_t width, std::uint32_t height) {
+void set_size(DepthTiles& t, TileMemory& memory, std::uint32_t width, std::uint32_t height) {
   t.width = width, t.height = height;
+  t.first_row = 0, t.end_row = height;
   t.columns = (t.width + kTile - 1) / kTile, t.rows = (t.height + kTile - 1) / kTile;
   t.stride = (t.columns + 15) / 16 * 16 + 16;
-  t.farthest.assign(std::size_t{t.stride} * t.rows, kInfinity);
+  const std::size_t tiles = std::size_t{t.stride} * t.rows;
+  memory.farthest.assign(tiles, kInfinity);
   for (std::uint32_t row = 0; row < t.rows; ++row) {
-    std::fill_n(t.farthest.begin() + std::size_t{row} * t.stride, t.columns, -kInfinity);
+    std::fill_n(memory.farthest.begin() + std::size_t{row} * t.stride, t.columns, -kInfinity);
   }
-  t.nearest.assign(t.farthest.size(), -kInfinity);
-  if (t.plane.size() < t.farthest.size()) t.plane.resize(t.farthest.size());
-  if (t.nearness.size() < 64 * t.farthest.size()) t.nearness.resize(64 * t.farthest.size());
-  t.untouched.resize(4 * 64);
+  memory.nearest.assign(tiles, -kInfinity);
+  if (memory.plane.size() < tiles) memory.plane.resize(tiles), memory.nearness.resize(64 * tiles);
+  memory.untouched.resize(4 * 64);
   for (std::uint32_t kind = 0; kind < 4; ++kind) {
     for (std::uint32_t i = 0; i < 64; ++i) {
       const bool beyond = (kind & 1 && (t.columns - 1) * kTile + i % kTile >= t.width) ||
                           (kind & 2 && (t.rows - 1) * kTile + i / kTile >= t.height);
-      t.untouched[kind * 64 + i] = beyond ? kInfinity : -kInfinity;
+      memory.untouched[kind * 64 + i] = beyond ? kInfinity : -kInfinity;
     }
   }
+  if (memory.scratch.empty()) memory.scratch.resize(1);
+  t.farthest = memory.farthest.data(), t.nearest = memory.nearest.data();
+  t.plane = memory.plane.data(), t.nearness = memory.nearness.data();
+  t.untouched = memory.untouched.data(), t.mesh = memory.scratch.data();
 }
 
 // Before the first begin(): empty, so that everything may be seen.
@@ -106,7 +112,8 @@ Status OcclusionBuffer::begin(const WorldView& view, const OcclusionOptions& opt
   state_->margin = options.coverage == Coverage::area ? 0.5f : 0.5f - 0.5f / static_cast<float>(scale);
   state_->projection = occlusion::eye_projection(view, view.origin, scale);
   state_->rays = occlusion::pixel_rays(view.view, scale);
-  set_size(*state_, (view.view.width + scale - 1) / scale, (view.view.height + scale - 1) / scale);
+  set_size(*state_, state_->memory, (view.view.width + scale - 1) / scale,
+           (view.view.height + scale - 1) / scale);
   return {};
 }
 
@@ -156,13 +163,13 @@ Status OcclusionBuffer::draw_spheres(const SphereView& spheres) noexcept {
   return {};
 }
 
-Status OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Mat4& transform) {
+Status OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Mat4& transform, const JobSystem& jobs) {
   if (const Status begun = check_begun(*state_); !begun) return begun;
   if (!is_affine(transform)) {
     return {StatusCode::bad_argument,
             "occlusion: the transform is not finite or not affine, expected the last row 0 0 0 1"};
   }
-  occlusion::draw_mesh(*state_, *mesh.topology_, geometry::row_transform(transform));
+  occlusion::draw_mesh(*state_, state_->memory, *mesh.topology_, geometry::row_transform(transform), jobs);
   return {};
 }
 

@@ -25,12 +25,14 @@ struct TileRange {
 
 // The tiles that hold the pixel centres of a rectangle, in pixels; none where there is no such centre.
 HWY_INLINE TileRange tiles_of(const DepthTiles& tiles, float left, float right, float top, float bottom) {
-  const auto first = [](float low) { return std::ceil(std::max(low, 0.5f) - 0.5f); };
-  const auto last = [](float high, std::uint32_t size) {
-    return std::floor(std::min(high, static_cast<float>(size) - 0.5f) - 0.5f);
+  const auto first = [](float low, std::uint32_t least) {
+    return std::ceil(std::max(low, static_cast<float>(least) + 0.5f) - 0.5f);
   };
-  const float x0 = first(left), x1 = last(right, tiles.width), y0 = first(top),
-              y1 = last(bottom, tiles.height);
+  const auto last = [](float high, std::uint32_t end) {
+    return std::floor(std::min(high, static_cast<float>(end) - 0.5f) - 0.5f);
+  };
+  const float x0 = first(left, 0), x1 = last(right, tiles.width), y0 = first(top, tiles.first_row),
+              y1 = last(bottom, tiles.end_row);
   if (!(x0 <= x1 && y0 <= y1)) return {};
   return {static_cast<std::uint32_t>(x0) / kTile, static_cast<std::uint32_t>(x1) / kTile + 1,
           static_cast<std::uint32_t>(y0) / kTile, static_cast<std::uint32_t>(y1) / kTile + 1};

@@ -277,7 +277,7 @@ double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mes
   occlusion::MeshBudget budget{double{sight.costs.test}, double{sight.costs.query}, sight.triangle,
                                sight.tile, pick.claim - pick.whole + spare};
   occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh),
-                       geometry::row_transform(transform), &budget);
+                       geometry::row_transform(transform), budget);
   return budget.left;
 }
 

@@ -1,0 +1,97 @@
+// A mesh that jobs draw, band by band of the image, gives the bits that one thread gives.
+#include <gtest/gtest.h>
+
+#include <sightline/occlusion.hpp>
+
+#include "support/run_threads.hpp"
+#include "workbench/scene/random.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+
+// Long triangles, small ones and slivers about the eye, many of which the near plane cuts or a band's border
+// crosses; four to a strip, whose edges are seams.
+OccluderMesh strips_about(Random& random, const Box& around) {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices;
+  const Box step{{-3, -3, -3}, {3, 3, 3}};
+  for (int strip = 0; strip < 400; ++strip) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    Vec3 at = random.inside(around);
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      positions.push_back(at);
+      const Vec3 by = random.inside(step);
+      at = {at.x + by.x, at.y + by.y, at.z + by.z};
+      if (i < 4) indices.insert(indices.end(), {first + i, first + i + 1 + i % 2, first + i + 2 - i % 2});
+    }
+  }
+  return *OccluderMesh::make(positions, indices, Sides::both);
+}
+
+std::vector<float> drawn(const OccluderMesh& mesh, const View& view, const OcclusionOptions& options,
+                         const JobSystem& jobs) {
+  OcclusionBuffer buffer;
+  std::vector<float> out(std::size_t{view.width} * view.height);
+  EXPECT_TRUE(buffer.begin({view, {}}, options));
+  EXPECT_TRUE(buffer.draw_mesh(mesh, {}, jobs));
+  EXPECT_TRUE(buffer.read_nearness(out));
+  return out;
+}
+
+// Jobs that say how many they were.
+void run_and_count(void* user, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
+  *static_cast<std::uint32_t*>(user) = count;
+  test::run_threads(nullptr, count, job, data);
+}
+
+TEST(OcclusionJobs, DrawTheBitsOfOneThread) {
+  Random random(7);
+  const Box around{{-20, -20, -20}, {20, 20, 20}};
+  std::size_t covered = 0;
+  for (int scene = 0; scene < 6; ++scene) {
+    const OccluderMesh mesh = strips_about(random, around);
+    Camera camera;
+    camera.forward = random.inside({{-1, -1, -1}, {1, 1, 1}});
+    camera.near_plane = 0.2f;
+    // No whole number of tiles high.
+    const View view = *make_view(camera, 250, 301);
+    for (const OcclusionOptions& options :
+         {OcclusionOptions{}, OcclusionOptions{Coverage::area}, OcclusionOptions{Coverage::centres, 2}}) {
+      const std::vector<float> alone = drawn(mesh, view, options, {});
+      for (const float nearness : alone) covered += nearness > 0;
+      for (const std::uint32_t threads : {1u, 2u, 3u, 8u, 64u}) {
+        std::uint32_t made = 0;
+        EXPECT_EQ(drawn(mesh, view, options, {run_and_count, &made, threads}), alone) << threads;
+        // As many as there are bands worth a job; a lone one is drawn without.
+        EXPECT_EQ(made > 1, threads > 1) << threads;
+        EXPECT_LE(made, threads);
+      }
+    }
+  }
+  EXPECT_GT(covered, 200'000u);
+}
+
+// What lies beyond a job's band is none of its business, even where the mesh is drawn a second time behind
+// itself.
+TEST(OcclusionJobs, DrawBehindWhatIsThere) {
+  Random random(8);
+  const OccluderMesh mesh = strips_about(random, {{-10, -10, -30}, {10, 10, -5}});
+  const View view = *make_view(Camera{}, 320, 200);
+  Mat4 behind;
+  behind.m[14] = -4;
+  std::vector<std::vector<float>> pictures;
+  for (const std::uint32_t threads : {1u, 4u}) {
+    OcclusionBuffer buffer;
+    const JobSystem jobs{test::run_threads, nullptr, threads};
+    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.draw_mesh(mesh, {}, jobs));
+    ASSERT_TRUE(buffer.draw_mesh(mesh, behind, jobs));
+    ASSERT_TRUE(buffer.read_nearness(pictures.emplace_back(320 * 200)));
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+}
+
+}  // namespace
+}  // namespace sightline
