@@ -9,6 +9,8 @@ make_bare() {
   mmdebstrap --variant=apt --mode=root --quiet --aptopt='APT::Install-Recommends "false"' \
     ${1:+--include="$(IFS=,; echo "$*")"} bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
   cp /etc/resolv.conf "$root/etc/resolv.conf"
+  # Of a network that has certificates of its own.
+  [ ! -d /usr/local/share/ca-certificates ] || cp -r /usr/local/share/ca-certificates "$root/usr/local/share/"
   mkdir "$root/sightline"
   git archive HEAD | tar -x -C "$root/sightline"
 }

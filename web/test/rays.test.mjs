@@ -22,14 +22,19 @@ test('toca, boca and wide-rays meet what they meet natively', async () => {
   for (const { model, boxes, side, views } of read(natively())) {
     const set = new RaySet(boxes);
     assert.equal(set.nodes.length, 32 * (2 * set.size - 1));
+    let most = 0; // what is seen: from some places that is little
     for (const [v, expected] of views.entries()) {
       set.aim(expected.view, side, side);
       for (const method of cpuMethods) {
         const hits = set.cast(method);
         assert.equal(differing(hits, expected), 0, `${method}, model ${model}, view ${v}`);
-        assert.ok(visibleSet(hits, set.size).length > 20);
+        most = Math.max(most, visibleSet(hits, set.size).length);
       }
     }
+    const hits = set.cast('boca'), into = { objects: new Uint32Array(set.rays), distances: new Float32Array(set.rays) };
+    assert.equal(set.cast('wide-rays', into), into);
+    assert.deepEqual(into, hits);
+    assert.ok(most > 20, `model ${model}: ${most}`);
     set.dispose();
     ++models;
   }
@@ -98,6 +103,9 @@ test('rays refuse what is not sound, and Node has no GPU', async () => {
   assert.throws(() => set.aim({ ...view, origin: [1, 0, 0] }, 4, 4), refusal('bad_view', /origin/));
   set.aim(view, 3, 3);
   assert.throws(() => set.cast('iwcpa'), refusal('bad_argument', /expected toca, boca, wide-rays/));
+  const hits = (objects, distances) => ({ objects: new Uint32Array(objects), distances: new Float32Array(distances) });
+  assert.throws(() => set.cast('toca', hits(9, 8)), refusal('bad_argument', /into: 8 elements, expected 9/));
+  assert.throws(() => set.cast('toca', { ...hits(9, 9), objects: [] }), refusal('bad_argument', /objects as a Uint32Array/));
   assert.deepEqual([...set.cast('toca').objects], [noObject, noObject, noObject, noObject, 0, noObject, noObject, noObject, noObject]);
   set.dispose();
   assert.throws(() => set.cast('toca'), refusal('disposed', /RaySet: used after dispose/));

@@ -5,6 +5,7 @@ import { convexOf, convexOfInstance, type Convex } from './convex.js';
 import type { Range } from './instances.js';
 import type { Inventory } from './inventory.js';
 import type { Batch } from './batches.js';
+import { orderOf } from './order.js';
 import type { Thing } from './things.js';
 
 /** Occluders a frame. */
@@ -57,7 +58,8 @@ function shapeOf({ mesh, kind }: Thing, instance: number): Convex | null {
   return kind === 'batched' ? convexOfInstance(mesh as Batch, instance) : convexOf(mesh.geometry);
 }
 
-const scratch = new Float64Array(16);
+const scratch = new Float64Array(16), transform = new Float64Array(16);
+transform[15] = 1;
 
 // The matrix of a slot, in the world.
 function matrixOf(thing: Thing, instance: number): ArrayLike<number> {
@@ -87,16 +89,23 @@ export interface Eye {
   near: number;
 }
 
-interface Found { slot: number; size: number }
+// What looks large, ascending; arrays that are kept, as they are filled in every frame.
+const found = { slots: new Uint32Array(0), sizes: new Float64Array(0), order: new Uint32Array(0), count: 0 };
 
 /** Draws this frame's occluders among the slots in view, ascending; returns how many. */
 export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, camera: Camera,
   override: Material | null, slots: Uint32Array): number {
-  const found: Found[] = [], flat = eye.eyeToClip[15] === 1;
-  inventory.forEachShown(slots, (_, from, to) => findLarge(inventory.boxes.array, eye, { slots, from, to }, found));
-  found.sort((a, b) => b.size - a.size || a.slot - b.slot);
+  const flat = eye.eyeToClip[15] === 1;
+  if (found.slots.length < slots.length) {
+    const room = 2 * slots.length;
+    found.slots = new Uint32Array(room), (found.sizes = new Float64Array(room)), (found.order = new Uint32Array(room));
+  }
+  found.count = 0;
+  inventory.forEachShown(slots, (_, from, to) => findLarge(inventory.boxes.array, eye, { slots, from, to }));
+  orderOf(found.sizes, found.count, true, found.order);
   let drawn = 0, tried = 0;
-  for (const { slot } of found) {
+  for (let i = 0; i < found.count; ++i) {
+    const slot = found.slots[found.order[i]!]!;
     const thing = inventory.thingOf[slot]!;
     const shape = mayOcclude(thing.mesh, override, camera) ? shapeOf(thing, slot - thing.first) : null;
     if (!shape) continue;
@@ -106,8 +115,8 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
   return drawn;
 }
 
-// Slots that look large, and how large, in halves of the image's height.
-function findLarge(boxes: Float64Array, eye: Eye, { slots, from, to }: Range, found: Found[]): void {
+// Adds slots that look large, and how large, in halves of the image's height.
+function findLarge(boxes: Float64Array, eye: Eye, { slots, from, to }: Range): void {
   const m = eye.worldToEye, flat = eye.eyeToClip[15] === 1, scale = Math.abs(eye.eyeToClip[5]!) / 2;
   const [x, y, z] = [-m[2]!, -m[6]!, -m[10]!], [ox, oy, oz] = [eye.origin[0]!, eye.origin[1]!, eye.origin[2]!];
   const [nx, ny, nz] = [x > 0 ? 0 : 3, y > 0 ? 1 : 4, z > 0 ? 2 : 5], near = 1.001 * eye.near;
@@ -118,7 +127,7 @@ function findLarge(boxes: Float64Array, eye: Eye, { slots, from, to }: Range, fo
     if (!(nearest > near)) continue;
     const dx = boxes[at + 3]! - boxes[at]!, dy = boxes[at + 4]! - boxes[at + 1]!, dz = boxes[at + 5]! - boxes[at + 2]!;
     const size = (Math.sqrt(dx * dx + dy * dy + dz * dz) * scale) / (flat ? 1 : nearest);
-    if (size > least) found.push({ slot, size });
+    if (size > least) (found.slots[found.count] = slot), (found.sizes[found.count++] = size);
   }
 }
 
@@ -140,8 +149,6 @@ function draw(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, slot: num
   const stretch = smallestStretch(matrix);
   const keep = 1 - (1.01 * reach) / (shape.radius * stretch);
   if (!(keep > 0)) return false;
-  const transform = new Float64Array(16);
-  transform[15] = 1;
   for (let row = 0; row < 3; ++row) {
     let centre = 0;
     for (let column = 0; column < 3; ++column) {
@@ -162,9 +169,9 @@ export function determinantOf(m: ArrayLike<number>): number {
 // A lower bound of what the matrix makes of a unit vector.
 function smallestStretch(m: ArrayLike<number>): number {
   const determinant = Math.abs(determinantOf(m));
-  const lengths = [0, 4, 8].map((at) => Math.hypot(m[at]!, m[at + 1]!, m[at + 2]!));
-  const orthogonal = Math.abs(determinant - lengths[0]! * lengths[1]! * lengths[2]!) <= 1e-6 * determinant;
-  if (orthogonal) return 0.999 * Math.min(...lengths);
-  const norm = Math.hypot(...lengths);
-  return norm > 0 ? determinant / (norm * norm) : 0;
+  const a = squareOf(m, 0), b = squareOf(m, 4), c = squareOf(m, 8), product = Math.sqrt(a) * Math.sqrt(b) * Math.sqrt(c);
+  if (Math.abs(determinant - product) <= 1e-6 * determinant) return 0.999 * Math.sqrt(Math.min(a, b, c));
+  return a + b + c > 0 ? determinant / (a + b + c) : 0;
 }
+const squareOf = (m: ArrayLike<number>, at: number): number =>
+  m[at]! * m[at]! + m[at + 1]! * m[at + 1]! + m[at + 2]! * m[at + 2]!;

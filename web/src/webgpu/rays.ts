@@ -1,6 +1,6 @@
 // Boxes and the rays of a view, and what of Ye et al. 2023 runs on the CPU.
 import { refuse } from '../errors.js';
-import { calling, expectKind, type Input } from '../memory.js';
+import { calling, expectKind, expectLength, type Input } from '../memory.js';
 import { buffer, check, Owned, wasm } from '../runtime.js';
 import { viewBytes, writeView, type View } from '../views.js';
 
@@ -57,13 +57,23 @@ export class RaySet extends Owned {
       check(wasm().rays_aim!(this.pointer, at, columns, rows));
     });
   }
-  /** Casts the rays here. The arrays are copies. */
-  cast(method: CpuMethod): RayHits {
+  /** Casts the rays here. The arrays are copies; those of `into`, of an element a ray, are filled instead of new ones, so that
+   * casting every frame allocates nothing. */
+  cast(method: CpuMethod, into?: RayHits): RayHits {
     const number = cpuMethods.indexOf(method);
     if (number < 0) refuse(`cast: a method of ${method}, expected ${cpuMethods.join(', ')}`);
+    if (into) {
+      const { objects, distances } = into;
+      if (!(objects instanceof Uint32Array && distances instanceof Float32Array))
+        refuse('cast: into, expected objects as a Uint32Array and distances as a Float32Array');
+      for (const column of [objects, distances]) expectLength('cast: into', column, this.rays);
+    }
     wasm().rays_cast!(this.pointer, number);
-    return { objects: new Uint32Array(this.bytes('objects').slice().buffer),
-      distances: new Float32Array(this.bytes('distances').slice().buffer) };
+    const objects = new Uint32Array(buffer(), this.#where('objects')[0], this.rays);
+    const distances = new Float32Array(buffer(), this.#where('distances')[0], this.rays);
+    if (!into) return { objects: objects.slice(), distances: distances.slice() };
+    into.objects.set(objects), into.distances.set(distances);
+    return into;
   }
   /** The tree laid flat, depth first, 32 bytes a node: minimum, number of descendants (Arr_b), maximum, object or `noObject`.
    * A view of the module's memory, until the next call. */

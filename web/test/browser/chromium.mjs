@@ -38,11 +38,16 @@ export async function withAddress(address, use, { width = 1280, height = 720, be
   if (unexpected.length > 0) throw new Error(`the console says:\n${unexpected.join('\n')}`);
 }
 
-/** Bundles a script, and opens a page that runs it. `files` are served besides, by their address. */
-export async function withPage(script, use, files = {}) {
+// What lets a page read the clock to 5 µs instead of 100.
+const alone = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+
+/** Bundles a script, and opens a page that runs it. `files` are served besides, by their address; a page that `measures` has the
+ * finer clock. */
+export async function withPage(script, use, files = {}, { measures = false } = {}) {
   const bundle = await build({ entryPoints: [script], bundle: true, format: 'esm', target: 'esnext', write: false });
   const server = createServer((request, response) => {
     if (Object.hasOwn(files, request.url)) return void response.end(readFileSync(files[request.url]));
+    if (measures) for (const [name, value] of Object.entries(alone)) response.setHeader(name, value);
     const isScript = request.url === '/page.js';
     response.setHeader('Content-Type', isScript ? 'text/javascript' : 'text/html');
     response.end(isScript ? bundle.outputFiles[0].text
