@@ -1,5 +1,5 @@
-// What layers and distances cost a cull: where all of a chunk's objects have the same in common, and where
-// each object has its own; beside a world that has no columns.
+// What layers, distances and levels of detail cost a cull: where all of a chunk's objects have the same in
+// common, and where each object has its own; beside a world that has no columns.
 #include <benchmark/benchmark.h>
 
 #include <functional>
@@ -93,11 +93,46 @@ void random_columns(benchmark::State& state) {
   cull(state, world, 7);
 }
 
+// Each object with one of four tables, levels held and faded.
+void levels(benchmark::State& state) {
+  static Filtered world([](const Vec3&, Columns&) {});
+  static const bool given = [] {
+    scene::Random random(4);
+    std::vector<LevelTableId> tables, of_object;
+    for (const float largest : {200.0f, 100.0f, 50.0f, 25.0f}) {
+      const std::array sizes{largest, largest / 3, largest / 9, largest / 27};
+      tables.push_back(*world.world.add_levels(sizes));
+    }
+    std::vector<Handle> handles;
+    for (std::uint32_t id = 0; id < world.world.id_limit(); ++id) {
+      handles.push_back(world.world.handle(id));
+      of_object.push_back(tables[random.below(4)]);
+    }
+    or_throw(world.world.set_levels(handles, std::span<const LevelTableId>(of_object)));
+    return true;
+  }();
+  benchmark::DoNotOptimize(given);
+  const CullView view{.view = {looking(0.3f, tenth_of_view()), {}}};
+  const CullOptions options{.levels = {.hysteresis = 0.1f, .fade = 0.2f}};
+  std::vector<ObjectId> visible(cull_capacity(world.world));
+  std::vector<std::uint8_t> levels(visible.size()), fades(visible.size());
+  Culler culler;
+  CullResult result;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        result = *culler.cull(world.world, {&view, 1}, options, {visible, {}, levels, fades}));
+  state.counters["visible"] = static_cast<double>(result.count);
+  // Judged by the passes without levels.
+  std::vector<ObjectId> plain(visible.size());
+  if (culler.cull(world.world, view, plain)->count != result.count) state.SkipWithError("a wrong answer");
+}
+
 BENCHMARK(plain)->Name("columns/none")->Unit(benchmark::kMicrosecond);
 BENCHMARK(all_layers)->Name("columns/whole_layers")->Unit(benchmark::kMicrosecond);
 BENCHMARK(all_columns)->Name("columns/whole")->Unit(benchmark::kMicrosecond);
 BENCHMARK(districts)->Name("columns/districts")->Unit(benchmark::kMicrosecond);
 BENCHMARK(random_layers)->Name("columns/random_layers")->Unit(benchmark::kMicrosecond);
+BENCHMARK(levels)->Name("columns/levels")->Unit(benchmark::kMicrosecond);
 BENCHMARK(random_columns)->Name("columns/random")->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -155,7 +155,7 @@ public:
   explicit Play(Bytes& in) : in_(in) {}
 
   void step() {
-    const std::uint8_t operation = in_.byte() % 15;
+    const std::uint8_t operation = in_.byte() % 16;
     count_ = in_.byte() % (kMost + 1);
     for (Thing& t : things_) {
       t.handle = {};
@@ -164,9 +164,10 @@ public:
     }
     if (operation < 7) fill(in_, things_, count_);
     constexpr void (Play::*operations[])() = {
-        &Play::insert,       &Play::insert,  &Play::move,          &Play::draw_boxes, &Play::ask,
-        &Play::rays,         &Play::columns, &Play::remove,        &Play::begin,      &Play::draw_mesh,
-        &Play::draw_spheres, &Play::cull,    &Play::add_occluders, &Play::carry,      &Play::cull};
+        &Play::insert,        &Play::insert,    &Play::move,         &Play::draw_boxes,
+        &Play::ask,           &Play::rays,      &Play::columns,      &Play::remove,
+        &Play::begin,         &Play::draw_mesh, &Play::draw_spheres, &Play::cull,
+        &Play::add_occluders, &Play::carry,     &Play::cull,         &Play::shadows};
     (this->*operations[operation])();
     require(sightline_world_size(world_.get()) == standing_);
   }
@@ -210,6 +211,12 @@ private:
     const sightline_column layers = column_of(in_, &things_[0].layer, count_),
                            values = column_of(in_, &things_[0].value, count_);
     (void)done(sightline_world_set_layers(world_.get(), &handles, &layers));
+    float sizes[9];
+    for (std::size_t i = 0; i < std::size(sizes); ++i)
+      sizes[i] = in_.rarely() ? in_.single(1) : 900.0f - 100 * i;
+    std::uint32_t table = 0;
+    (void)done(sightline_world_add_levels(world_.get(), sizes, in_.byte() % 10u, &table));
+    (void)done(sightline_world_set_levels(world_.get(), &handles, &layers));
     const sightline_distances distances = distances_of(in_, things_, count_);
     if (done(sightline_world_set_distances(world_.get(), &handles, &distances)) && handles.count > 0) {
       const Thing& one = things_[handles.count - 1];
@@ -376,12 +383,44 @@ private:
       require(count <= size && (count == 0 || visible[count - 1] < size));
   }
 
+  // Of any light, beside any camera; and what the camera sees may be any ids at all.
+  void shadows() {
+    const sightline_view camera = view_of(in_);
+    sightline_light light = sightline_light_default();
+    light.kind = in_.byte() % (in_.rarely() ? 9u : 3u);
+    for (int a = 0; a < 3; ++a) light.direction[a] = in_.single(1), light.position[a] = in_.number(1);
+    if (in_.byte() & 1)
+      light.range = in_.single(10), light.reach = in_.single(10), light.cone = in_.single(1);
+    const sightline_depth_range depths{in_.single(1), in_.single(10)};
+    const sightline_depth_range* range = in_.byte() & 1 ? &depths : nullptr;
+    const std::uint32_t pixels = in_.byte() * 4u;
+    sightline_view shadow = camera;
+    sightline_cascade cascades[3];
+    (void)done(sightline_split_cascades(&light, &camera, range, in_.single(0.1), pixels, cascades, 3));
+    if (in_.byte() & 1)
+      (void)done(sightline_shadow_view(&light, &camera, range, pixels, in_.byte() % 7u, &shadow));
+    if (!done(sightline_shadow_casters_begin(casters_.get(), &shadow, &camera, range, in_.single(1),
+                                             in_.byte() & 1 ? in_.single(1) : 0)))
+      return;
+    shadow_ = shadow;
+    std::vector<std::uint32_t> ids(in_.byte() % 40);
+    for (std::uint32_t& id : ids) id = things_[in_.byte() % kMost].handle.index;
+    (void)done(sightline_shadow_casters_receive(casters_.get(), world_.get(), ids.data(),
+                                                in_.rarely() ? kTooMuch : ids.size(),
+                                                in_.byte() & 1 ? occlusion_.get() : nullptr));
+    int casts = 2;
+    (void)done(sightline_shadow_casters_may_cast(casters_.get(), &things_[0].box, &casts));
+    require(casts <= 1);
+  }
+
   void cull() {
     std::vector<sightline_cull_view> views(in_.byte() % 10);
     const bool automatic = in_.byte() & 1;
     for (sightline_cull_view& view : views) {
       const sightline_view camera = in_.byte() & 1 ? last_view_ : view_of(in_);
-      view = sightline_cull_view_of(&camera);
+      const bool casts = in_.byte() < 64;
+      view = sightline_cull_view_of(casts && !in_.rarely() ? &shadow_ : &camera);
+      if (casts) view.casters = casters_.get();
       if (automatic ? in_.rarely() : in_.byte() & 1) view.occlusion = occlusion_.get();
       if (in_.byte() & 1) view.layers = in_.byte();
       if (in_.byte() & 1) view.min_area = in_.single(1);
@@ -403,6 +442,9 @@ private:
       options.zones.end = [](void* user) { --*static_cast<int*>(user); };
     }
     if (in_.rarely()) options.zones.end = nullptr;
+    options.levels.view = in_.rarely() ? in_.byte() : 0, options.levels.key = in_.byte() % 9;
+    if (in_.byte() & 1) options.levels.hysteresis = in_.single(0.01), options.levels.fade = in_.single(0.01);
+    if (in_.rarely()) options.levels.scale = in_.single(0.1), options.levels.cut = 1;
     if (in_.rarely()) options.struct_size = in_.byte();
     const std::size_t needed = sightline_cull_capacity(world_.get(), &options);
     const std::size_t room = needed > 0 && in_.rarely() ? needed - 1 : needed;
@@ -410,6 +452,8 @@ private:
     std::vector<std::uint8_t> masks(room);
     sightline_cull_output output =
         sightline_cull_output_of(ids.data(), in_.byte() & 1 ? masks.data() : nullptr, room);
+    std::vector<std::uint8_t> levels(room), fades(room);
+    if (in_.byte() & 1) output.levels = levels.data(), output.fades = in_.byte() & 1 ? fades.data() : nullptr;
     if (in_.rarely()) output.capacity = kTooMuch;
     sightline_cull_result result;
     if (!done(sightline_cull(culler_.get(), world_.get(), views.data(), views.size(), &options, &output,
@@ -419,6 +463,7 @@ private:
     require(options.occlusion == SIGHTLINE_OCCLUSION_NONE || result.cost <= 1.05 * result.frustum_cost);
     for (std::size_t i = 0; i < result.count && options.values_for_ids == 0; ++i)
       require(ids[i] < sightline_world_id_limit(world_.get()) && (!output.masks || masks[i] != 0));
+    for (std::size_t i = 0; i < result.count && output.levels; ++i) require(levels[i] < SIGHTLINE_MAX_LEVELS);
   }
 
   Bytes& in_;
@@ -426,7 +471,9 @@ private:
   Owned<sightline_culler, sightline_culler_destroy> culler_{sightline_culler_create()};
   Owned<sightline_occlusion, sightline_occlusion_destroy> occlusion_{sightline_occlusion_create()};
   Owned<sightline_bvh, sightline_bvh_destroy> bvh_{sightline_bvh_create()};
-  sightline_view last_view_{};
+  Owned<sightline_shadow_casters, sightline_shadow_casters_destroy> casters_{
+      sightline_shadow_casters_create()};
+  sightline_view last_view_{}, shadow_{};
   std::vector<sightline_handle> handles_;
   std::vector<std::uint32_t> names_;  // of occluders
   std::size_t standing_ = 0, count_ = 0;

@@ -14,6 +14,7 @@
 #include <sightline/jobs.hpp>
 #include <sightline/occluder.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/status.hpp>
 #include <sightline/view.hpp>
 #include <sightline/world.hpp>
@@ -26,6 +27,9 @@ struct sightline_occluder {
 };
 struct sightline_occlusion {
   sightline::OcclusionBuffer buffer;
+};
+struct sightline_shadow_casters {
+  sightline::ShadowCasters casters;
 };
 
 namespace sightline::c_api {

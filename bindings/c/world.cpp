@@ -17,6 +17,7 @@ namespace {
 
 static_assert(sizeof(sightline_handle) == sizeof(Handle) &&
               offsetof(sightline_handle, generation) == offsetof(Handle, generation));
+static_assert(SIGHTLINE_MAX_LEVELS == kMaxLevels && SIGHTLINE_NO_LEVELS == kNoLevels);
 static_assert(SIGHTLINE_NO_OBJECT == kNoObject && SIGHTLINE_ALL_LAYERS == kAllLayers &&
               SIGHTLINE_MAX_VIEWS == kMaxViews && SIGHTLINE_OWN_VIEW == kOwnView &&
               SIGHTLINE_NO_OCCLUDER == kNoOccluder);
@@ -62,6 +63,8 @@ Status take(const sightline_cull_options* given, CullOptions& options) {
   const sightline_cull_costs& c = o.costs;
   options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
   options.zones = {o.zones.begin, o.zones.end, o.zones.user};
+  const sightline_level_options& l = o.levels;
+  options.levels = {l.view, l.key, l.hysteresis, l.fade, l.scale, l.cut != 0};
   return c_api::take(o.jobs, options.jobs);
 }
 
@@ -76,6 +79,8 @@ Status take(const sightline_cull_output& given, CullOutput& output) {
   }
   output.ids = {o.ids, o.capacity};
   if (o.masks) output.masks = {o.masks, o.capacity};
+  if (o.levels) output.levels = {o.levels, o.capacity};
+  if (o.fades) output.fades = {o.fades, o.capacity};
   return {};
 }
 
@@ -99,6 +104,7 @@ Status take(const sightline_cull_view* given, std::size_t count, Views& views) {
     views[i].occlusion = v.occlusion ? &v.occlusion->buffer : nullptr;
     views[i].layers = v.layers, views[i].min_area = v.min_area;
     views[i].distance_scale = v.distance_scale, views[i].distance_view = v.distance_view;
+    views[i].casters = v.casters ? &v.casters->casters : nullptr;
   }
   return {};
 }
@@ -250,6 +256,23 @@ sightline_status sightline_world_set_triangles(sightline_world* world, sightline
   return keep(world->world.set_triangles(handle_of(handle), points, about));
 }
 
+sightline_status sightline_world_add_levels(sightline_world* world, const float* sizes, size_t count,
+                                            uint32_t* name) {
+  if (!world || !name || !can_hold(sizes, count))
+    return refuse("add_levels: a pointer is NULL, or a count more than memory holds");
+  const Result<LevelTableId> added = world->world.add_levels({sizes, count});
+  if (!added) return keep(added.error());
+  *name = *added;
+  return SIGHTLINE_OK;
+}
+
+sightline_status sightline_world_set_levels(sightline_world* world, const sightline_handles* handles,
+                                            const sightline_column* tables) {
+  if (!world || !handles || !tables)
+    return refuse("set_levels: the world, the handles or the tables are NULL");
+  return keep(world->world.set_levels(read(*handles), read(*tables)));
+}
+
 size_t sightline_world_size(const sightline_world* world) {
   return world ? world->world.size() : 0;
 }
@@ -280,6 +303,11 @@ sightline_status sightline_world_layers(const sightline_world* world, sightline_
 sightline_status sightline_world_value(const sightline_world* world, sightline_handle handle,
                                        uint32_t* value) {
   return read_object(world, handle, value, [&](const World& w, Handle h) { *value = w.value(h); });
+}
+
+sightline_status sightline_world_levels(const sightline_world* world, sightline_handle handle,
+                                        uint32_t* table) {
+  return read_object(world, handle, table, [&](const World& w, Handle h) { *table = w.levels(h); });
 }
 
 sightline_status sightline_world_distances(const sightline_world* world, sightline_handle handle,

@@ -66,6 +66,7 @@ PYBIND11_MODULE(sightline, m) {
   m.attr("Refused") = py::reinterpret_borrow<py::object>(refused);
   add_views(m);
   add_occlusion(m);
+  add_shadows(m);
   add_world(m);
   add_frustum(m);
   add_rays(m);

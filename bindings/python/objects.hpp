@@ -10,6 +10,7 @@
 #include <string>
 
 #include <sightline/occlusion.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/view.hpp>
 #include <sightline/world.hpp>
 
@@ -24,6 +25,7 @@ struct Guarded {
 };
 
 using Occlusion = Guarded<OcclusionBuffer>;
+using Casters = Guarded<ShadowCasters>;
 
 /// Without the interpreter's lock while it lives: other threads of Python run on. No object's lock may be
 /// held when it ends, and nothing of Python may be used while one is.
@@ -61,6 +63,7 @@ void add_views(pybind11::module_& m);
 void add_world(pybind11::module_& m);
 void add_world_occluders(pybind11::class_<Guarded<World>>& world);
 void add_occlusion(pybind11::module_& m);
+void add_shadows(pybind11::module_& m);
 void add_frustum(pybind11::module_& m);
 void add_rays(pybind11::module_& m);
 void add_pvs(pybind11::module_& m);

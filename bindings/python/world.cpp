@@ -62,6 +62,16 @@ void set_distances(SharedWorld& world, const py::object& handles, const py::obje
   expect(changing(world, [&](World& w) { return w.set_distances(which, given); }));
 }
 
+std::uint32_t add_levels(SharedWorld& world, const std::vector<float>& sizes) {
+  return expect(changing(world, [&](World& w) { return w.add_levels(sizes); }));
+}
+
+void set_levels(SharedWorld& world, const py::object& handles, const py::object& tables) {
+  const Strided<const Handle> which = handles_of(handles);
+  const Strided<const std::uint32_t> given = column_of(tables, "tables");
+  expect(changing(world, [&](World& w) { return w.set_levels(which, given); }));
+}
+
 // Calls read(world, i, handle) for each handle; they may be stale.
 template <class Read>
 void read_each(const SharedWorld& world, const Strided<const Handle>& handles, Read read) {
@@ -138,6 +148,7 @@ struct ViewOfWorld {
   std::shared_ptr<Occlusion> occlusion = nullptr;
   float distance_scale = 1;
   std::optional<std::uint32_t> distance_view = {};
+  std::shared_ptr<Casters> casters = nullptr;
 };
 
 ViewOfWorld view_of(const py::handle& given) {
@@ -158,6 +169,7 @@ std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views) {
   std::vector<std::shared_mutex*> mutexes;
   for (const ViewOfWorld& v : views) {
     if (v.occlusion) mutexes.push_back(&v.occlusion->mutex);
+    if (v.casters) mutexes.push_back(&v.casters->mutex);
   }
   std::sort(mutexes.begin(), mutexes.end());
   mutexes.erase(std::unique(mutexes.begin(), mutexes.end()), mutexes.end());
@@ -169,11 +181,22 @@ std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views) {
 // Room for what a world holds now.
 struct Output {
   py::array_t<std::uint32_t> ids;
-  py::array_t<std::uint8_t> masks;
+  py::array_t<std::uint8_t> masks, levels, fades;
 
-  Output(const SharedWorld& world, const CullOptions& options, bool wants_masks) {
+  Output(const SharedWorld& world, const CullOptions& options, bool wants_masks, bool wants_levels) {
     const std::size_t room = looking(world, [&](const World& w) { return cull_capacity(w, options); });
     ids = new_array<std::uint32_t>(room), masks = new_array<std::uint8_t>(wants_masks ? room : 0);
+    levels = new_array<std::uint8_t>(wants_levels ? room : 0), fades = new_array<std::uint8_t>(levels.size());
+  }
+
+  // The ids alone, or a tuple of all that was wanted.
+  [[nodiscard]] py::object first(std::size_t count) const {
+    py::list out;
+    out.append(first_of(ids, count));
+    if (masks.size() > 0) out.append(first_of(masks, count));
+    if (levels.size() > 0) out.append(first_of(levels, count)), out.append(first_of(fades, count));
+    if (out.size() == 1) return out[0];
+    return py::tuple(out);
   }
 };
 
@@ -186,18 +209,21 @@ sightline::Occlusion occlusion_of(const std::string& name) {
 
 py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object& views, bool masks,
                 bool values, const std::string& occlusion, float object_cost, const std::string& coverage,
-                std::uint32_t scale) {
+                std::uint32_t scale, const std::optional<LevelOptions>& levels) {
   const std::vector<ViewOfWorld> given = views_of(views);
   std::vector<CullView> seen;
   for (const ViewOfWorld& v : given)
     seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area,
-                    v.distance_scale, v.distance_view.value_or(kOwnView)});
+                    v.distance_scale, v.distance_view.value_or(kOwnView),
+                    v.casters ? &v.casters->value : nullptr});
   CullOptions options{{}, values};
   options.occlusion = occlusion_of(occlusion), options.costs.object = object_cost;
   options.buffer = occlusion_options(coverage, scale);
+  options.levels = levels.value_or(LevelOptions{});
   for (;;) {
-    Output output(world, options, masks);
-    const CullOutput out{span_of(output.ids), span_of(output.masks)};
+    Output output(world, options, masks, levels.has_value());
+    const CullOutput out{span_of(output.ids), span_of(output.masks), span_of(output.levels),
+                         span_of(output.fades)};
     const Result<CullResult> result = changing_unlocked(culler, [&](Culler& c) {
       return looking(world, [&](const World& w) {
         const std::vector<Reading> locks = lock_all(given);
@@ -206,9 +232,7 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
     });
     // Another thread may have let the world grow meanwhile.
     if (!result && result.error().code() == StatusCode::buffer_too_small) continue;
-    const std::size_t count = expect(result).count;
-    if (!masks) return first_of(output.ids, count);
-    return py::make_tuple(first_of(output.ids, count), first_of(output.masks, count));
+    return output.first(expect(result).count);
   }
 }
 
@@ -248,6 +272,12 @@ void add_world(py::module_& m) {
            py::arg("values"))
       .def("set_distances", &set_distances, "Gives each object new distances, float32 (n, 2).",
            py::arg("handles"), py::arg("distances"))
+      .def("add_levels", &add_levels,
+           "Keeps a table of levels of detail, 1 to 7 sizes in pixels, descending, and returns its name: an\n"
+           "object has level i as long as the ball around its box is sizes[i] wide or wider.",
+           py::arg("sizes"))
+      .def("set_levels", &set_levels, "Gives each object a table of levels, uint32 (n,); 0: none.",
+           py::arg("handles"), py::arg("tables"))
       .def("contains", &contains, "bool (n,): whether the object still stands.", py::arg("handles"))
       .def("boxes", &boxes, "float64 (n, 2, 3): the boxes as they are kept; 0 for stale handles.",
            py::arg("handles"))
@@ -264,22 +294,37 @@ void add_world(py::module_& m) {
       .def(
           py::init([](const WorldView& view, std::uint32_t layers, float min_area,
                       std::shared_ptr<Occlusion> occlusion, float distance_scale,
-                      std::optional<std::uint32_t> distance_view) {
-            return ViewOfWorld{view, layers, min_area, std::move(occlusion), distance_scale, distance_view};
+                      std::optional<std::uint32_t> distance_view, std::shared_ptr<Casters> casters) {
+            return ViewOfWorld{view,           layers,        min_area,          std::move(occlusion),
+                               distance_scale, distance_view, std::move(casters)};
           }),
           "layers: sees objects whose layers share a bit with these; min_area: drops what covers fewer px2,\n"
           "approximately; occlusion: one that was begun with this same view, or None; distance_scale: times\n"
           "the objects' distances; distance_view: the place of the view from whose eye these are measured,\n"
-          "as a shadow cascade takes its camera's, or None: this one's.",
+          "as a shadow cascade takes its camera's, or None: this one's; casters: begun with this same view,\n"
+          "leaves only what can throw a shadow on what a camera sees, or None.",
           py::arg("view"), py::arg("layers") = kAllLayers, py::arg("min_area") = 0.0f,
           py::arg("occlusion") = std::shared_ptr<Occlusion>(), py::arg("distance_scale") = 1.0f,
-          py::arg("distance_view") = py::none())
+          py::arg("distance_view") = py::none(), py::arg("casters") = std::shared_ptr<Casters>())
       .def_readwrite("view", &ViewOfWorld::view)
       .def_readwrite("layers", &ViewOfWorld::layers)
       .def_readwrite("min_area", &ViewOfWorld::min_area)
       .def_readwrite("occlusion", &ViewOfWorld::occlusion)
       .def_readwrite("distance_scale", &ViewOfWorld::distance_scale)
-      .def_readwrite("distance_view", &ViewOfWorld::distance_view);
+      .def_readwrite("distance_view", &ViewOfWorld::distance_view)
+      .def_readwrite("casters", &ViewOfWorld::casters);
+
+  py::class_<LevelOptions>(m, "Levels", "How a cull chooses levels of detail, for all its views.")
+      .def(py::init([](std::uint32_t view, std::uint32_t key, float hysteresis, float fade, float scale,
+                       bool cut) { return LevelOptions{view, key, hysteresis, fade, scale, cut}; }),
+           "view: the place of the view by whose image objects have their sizes; key: whose memory, 0 to 7, "
+           "of\n"
+           "cameras that take turns; hysteresis: how far beyond a limit a level is kept, as a share of it; "
+           "fade:\n"
+           "how far above its lower limit a level begins to fade; scale: times the sizes; cut: nothing is\n"
+           "remembered from before.",
+           py::arg("view") = 0, py::arg("key") = 0, py::arg("hysteresis") = 0.0f, py::arg("fade") = 0.0f,
+           py::arg("scale") = 1.0f, py::arg("cut") = false);
 
   py::class_<LockedCuller>(m, "Culler", "Remembers from frame to frame what helps the next.")
       .def(py::init<>())
@@ -293,10 +338,13 @@ void add_world(py::module_& m) {
           "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides "
           "left\n"
           "out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that drawing an\n"
-          "object costs; 0: what report_frame_time() taught. coverage, scale: as Occlusion.begin has them.",
+          "object costs; 0: what report_frame_time() taught. coverage, scale: as Occlusion.begin has them.\n"
+          "levels=Levels(...): also each object's level of detail and, of 255, the share of the next coarser "
+          "one\n"
+          "that it fades into, uint8 (k,) each.",
           py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
           py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "centres",
-          py::arg("scale") = 1)
+          py::arg("scale") = 1, py::arg("levels") = py::none())
       .def(
           "report_frame_time",
           [](LockedCuller& culler, double seconds) {

@@ -33,6 +33,7 @@
 #include <sightline/c/occlusion.h>
 #include <sightline/c/pvs.h>
 #include <sightline/c/rays.h>
+#include <sightline/c/shadows.h>
 #include <sightline/c/status.h>
 #include <sightline/c/view.h>
 #include <sightline/c/world.h>

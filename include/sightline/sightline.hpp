@@ -11,6 +11,7 @@
 #include <sightline/projection.hpp>
 #include <sightline/pvs.hpp>
 #include <sightline/rays.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/version.hpp>

@@ -17,6 +17,7 @@
 #include <sightline/box_view.hpp>
 #include <sightline/jobs.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
@@ -53,6 +54,13 @@ struct ObjectColumns {
   /// to a millimetre and a millionth. Without: at any distance.
   Strided<const DistanceRange> distances = {};
 };
+
+/// Names a table of levels of detail that a world keeps.
+using LevelTableId = std::uint32_t;
+/// The table of objects that have no level but 0.
+inline constexpr LevelTableId kNoLevels = 0;
+/// The most levels of an object.
+inline constexpr std::size_t kMaxLevels = 8;
 
 /// Names an occluder that a world keeps for its objects to carry.
 using OccluderId = std::uint32_t;
@@ -111,6 +119,16 @@ public:
   /// stale_handle. Cost: as set_layers. Allocates: 8 bytes an id, some 12 an object, the first time.
   Status set_distances(Strided<const Handle> handles, Strided<const DistanceRange> distances);
 
+  /// Keeps a table of levels of detail for objects to share: sizes in pixels, descending, level 0 being the
+  /// finest. An object has level i as long as it is sizes[i] or larger, and less than sizes[i - 1]; smaller
+  /// than all of them it has level sizes.size(). It is as large as the diameter of the ball around its box,
+  /// as kept. Errors: bad_argument (no sizes or more than 7, and where they do not descend to above 0),
+  /// too_many beyond 65535 tables. Allocates: 32 bytes.
+  Result<LevelTableId> add_levels(std::span<const float> sizes);
+  /// Gives each object a table, or kNoLevels. Errors: bad_argument, stale_handle. Cost: linear. Allocates: 2
+  /// bytes an id, the first time.
+  Status set_levels(Strided<const Handle> handles, Strided<const LevelTableId> tables);
+
   /// Keeps an occluder for objects to carry, as many as like: what make_occluder made, or triangles and boxes
   /// put there by hand, and solid spheres. Its boxes are drawn where it has no triangles. All but triangles
   /// behind the first `solid_triangles` must lie inside what the objects show; those others are part of it.
@@ -149,6 +167,8 @@ public:
   [[nodiscard]] std::uint32_t value(Handle handle) const noexcept;
   /// The object's distances; {0, 0} for a stale handle.
   [[nodiscard]] DistanceRange distances(Handle handle) const noexcept;
+  /// The object's table of levels; kNoLevels for a stale handle.
+  [[nodiscard]] LevelTableId levels(Handle handle) const noexcept;
   /// The handle of the object that has this id now; a handle that no world contains where none has.
   [[nodiscard]] Handle handle(ObjectId id) const noexcept;
   /// How many objects there are.
@@ -181,6 +201,9 @@ struct CullView {
   /// The place in `views` of the one from whose eye distances are measured, so that a shadow cascade shows
   /// what its camera does; kOwnView: this one's.
   std::uint32_t distance_view = kOwnView;
+  /// Begun with this same view, a shadow map's: leaves only what can throw a shadow on what a camera sees;
+  /// null: leaves all. Another view's are refused.
+  const ShadowCasters* casters = nullptr;
 };
 
 /// Whether a cull draws occluders by itself.
@@ -213,6 +236,23 @@ struct CullZones {
   void* user = nullptr;                                   ///< handed to both
 };
 
+/// How levels of detail are chosen: once a call, for all its views. Read where levels are asked for and the
+/// world has tables.
+struct LevelOptions {
+  /// The place in `views` of the one by whose image objects have their sizes, so that shadow cascades draw
+  /// what their camera draws.
+  std::uint32_t view = 0;
+  /// Whose memory: below kMaxViews. A culler that sees several cameras or worlds in turns gives each its own.
+  std::uint32_t key = 0;
+  /// How far beyond a limit a size must be, as a share of it, for an object to change its level: 0 … 1. For
+  /// objects, by id, that the key's last cull had in view.
+  float hysteresis = 0;
+  /// How far above a level's lower limit, as a share of it, it begins to fade into the next.
+  float fade = 0;
+  float scale = 1;   ///< times the sizes: 2 has levels change at half of them; above 0
+  bool cut = false;  ///< the camera was cut: nothing is remembered from before
+};
+
 /// How a call culls; the same for all its views.
 struct CullOptions {
   JobSystem jobs = {};                    ///< the caller's threads; without them, the calling one
@@ -221,14 +261,19 @@ struct CullOptions {
   CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
   /// Which places of the images automatic occlusion answers for, and how finely.
   OcclusionOptions buffer = {};
-  CullZones zones = {};  ///< both functions, or none: what a cull spends its time on is told to nobody
+  CullZones zones = {};      ///< both functions, or none: what a cull spends its time on is told to nobody
+  LevelOptions levels = {};  ///< how levels of detail are chosen
 };
 
-/// Where a cull writes; both have cull_capacity() elements, but `masks` may be empty. What stands behind the
-/// count that comes back is undefined.
+/// Where a cull writes; all have cull_capacity() elements, but all but `ids` may be empty. What stands behind
+/// the count that comes back is undefined.
 struct CullOutput {
-  std::span<std::uint32_t> ids;        ///< the objects' ids, or their values
-  std::span<std::uint8_t> masks = {};  ///< bit v: view v may see the object
+  std::span<std::uint32_t> ids;         ///< the objects' ids, or their values
+  std::span<std::uint8_t> masks = {};   ///< bit v: view v may see the object
+  std::span<std::uint8_t> levels = {};  ///< of detail: 0 is the finest
+  /// Of 255, the share of the next coarser level, for who blends: an object of level i and fade f is drawn as
+  /// (255 - f) parts of level i and f of level i + 1. Only beside `levels`.
+  std::span<std::uint8_t> fades = {};
 };
 
 /// What a cull did.
@@ -261,12 +306,12 @@ public:
   /// Writes the ids of the objects that at least one of the 1 … kMaxViews views may see, and which views see
   /// each, in an order that depends on the calls so far alone, culls between moves among them: never on
   /// threads, SIMD width or processor. Nothing that is visible at some pixel centre is left out, but by
-  /// `layers`, `distances` and `min_area`; nothing at any place on the image where occlusion is asked for
-  /// with Coverage::area. Errors: bad_argument (no or too many views; an option out of range), bad_view,
-  /// buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows with what is
-  /// visible and with the boundary of the views, not with the world: 20 to 30 µs for the few thousand of a
-  /// million still boxes that a camera sees. Threads: only reads the world and the buffers. Allocates:
-  /// nothing once it has grown to the world's size.
+  /// `layers`, `distances`, `min_area` and `casters`; nothing at any place on the image where occlusion is
+  /// asked for with Coverage::area. Errors: bad_argument (no or too many views; an option out of range),
+  /// bad_view, buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows
+  /// with what is visible and with the boundary of the views, not with the world: 20 to 30 µs for the few
+  /// thousand of a million still boxes that a camera sees. Threads: only reads the world and the buffers.
+  /// Allocates: nothing once it has grown to the world's size.
   Result<CullResult> cull(const World& world, std::span<const CullView> views, const CullOptions& options,
                           const CullOutput& output) noexcept;
   ///

@@ -10,7 +10,14 @@
 #include <sightline/frustum.hpp>
 #include <sightline/types.hpp>
 
+namespace sightline {
+struct View;
+}
+
 namespace sightline::geometry {
+
+/// eye_position(), not rounded.
+glm::dvec3 eye_of(const View& view) noexcept;
 
 inline glm::dmat4 to_double(const Mat4& m) noexcept {
   return glm::dmat4(glm::make_mat4(m.m.data()));

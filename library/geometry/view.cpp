@@ -146,8 +146,12 @@ Mat4 world_to_clip(const View& view) noexcept {
   return to_mat4(to_double(view.eye_to_clip) * to_double(view.world_to_eye));
 }
 
+glm::dvec3 geometry::eye_of(const View& view) noexcept {
+  return {glm::inverse(to_double(view.world_to_eye))[3]};
+}
+
 Vec3 eye_position(const View& view) noexcept {
-  return to_vec3(glm::dvec3(glm::inverse(to_double(view.world_to_eye))[3]));
+  return to_vec3(eye_of(view));
 }
 
 Vec3 view_direction(const View& view) noexcept {

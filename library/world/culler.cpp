@@ -172,22 +172,17 @@ const WorldView& distance_view(std::span<const CullView> views, const CullView& 
   return own ? view.view : views[view.distance_view].view;
 }
 
-// The matrix is rigid: its transpose turns back.
-WorldPoint eye_of(const WorldView& view) noexcept {
-  const auto& m = view.view.world_to_eye.m;
-  const auto along = [&](std::size_t axis) {
-    double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) sum += double{m[4 * axis + i]} * double{m[12 + i]};
-    return -sum;
-  };
-  return {view.origin.x + along(0), view.origin.y + along(1), view.origin.z + along(2)};
+WorldPoint eye_in_world(const WorldView& view) noexcept {
+  const glm::dvec3 eye = geometry::eye_of(view.view);
+  return {view.origin.x + eye.x, view.origin.y + eye.y, view.origin.z + eye.z};
 }
 
 // Views that are the same are culled once; what no column asks for makes no difference.
 DifferentViews different_views(std::span<const CullView> views, const Columns& columns) noexcept {
   DifferentViews out;
   const auto same = [&](const CullView& a, const CullView& b) {
-    if (a.view != b.view || a.occlusion != b.occlusion || a.min_area != b.min_area) return false;
+    if (a.view != b.view || a.occlusion != b.occlusion || a.casters != b.casters || a.min_area != b.min_area)
+      return false;
     if (columns.has_layers ? a.layers != b.layers : (a.layers == 0) != (b.layers == 0)) return false;
     return !columns.has_distances ||
            (a.distance_scale == b.distance_scale && distance_view(views, a) == distance_view(views, b));
@@ -215,7 +210,9 @@ std::uint64_t find_entries(CullerState& state, std::span<const CullView> views,
   const auto of_different = std::span(different.first).first(different.count);
   state.maps.clear(), state.views.clear(), state.entries.clear(), state.origins.clear();
   for (std::size_t d = 0; d < different.count; ++d) state.tests[d] = SectorTest(views[of_different[d]].view);
-  for (const std::uint8_t v : of_different) state.distance_eyes[v] = eye_of(distance_view(views, views[v]));
+  if (state.world->columns.has_distances)
+    for (const std::uint8_t v : of_different)
+      state.distance_eyes[v] = eye_in_world(distance_view(views, views[v]));
   // Room for all sectors, so that a camera that turns allocates nothing.
   state.maps.reserve(sectors.size());
   state.origins.reserve(sectors.size());
@@ -270,6 +267,10 @@ Status check_view(const CullView& view, std::size_t index, std::size_t views) no
     return {StatusCode::bad_argument, "cull: a view's distance_scale is not above 0 or not finite", index};
   if (view.distance_view != kOwnView && view.distance_view >= views)
     return {StatusCode::bad_argument, "cull: a view's distance_view is none of the views", index};
+  if (view.casters) {
+    const Casters& casters = ShadowAccess::casters(*view.casters);
+    if (const Status fits = casters.tools->check(casters, view.view, index); !fits) return fits;
+  }
   if (!view.occlusion) return {};
   if (!view.occlusion->begun())
     return {StatusCode::stale_buffer, "cull: a view's occlusion buffer was never begun", index};
@@ -324,6 +325,17 @@ void write_values(const Columns& columns, std::span<ObjectId> ids) noexcept {
   for (ObjectId& id : ids) id = columns.values[id];
 }
 
+// What the passes are to ask of chunks and objects besides the views' frustums.
+const ColumnTests* column_tests(CullerState& state, std::span<const CullView> views,
+                                const DifferentViews& different) {
+  for (const CullView& view : views) {
+    if (!view.casters) continue;
+    if (!state.casting) state.casting = ShadowAccess::casters(*view.casters).tools->make();
+    return state.casting->prepare(state, views, different);
+  }
+  return state.world->column_tests;
+}
+
 // What the passes cost, and what else the world's occluders hide.
 void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
           const CullOptions& options, CullResult& result) {
@@ -371,6 +383,15 @@ void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result) {
 
 }  // namespace world
 
+namespace {
+
+// Of a world without tables.
+void write_no_levels(std::span<std::uint8_t> bytes, std::size_t count) {
+  if (!bytes.empty()) std::memset(bytes.data(), 0, std::min(count, bytes.size()));
+}
+
+}  // namespace
+
 struct Culler::State : world::CullerState {};
 
 std::size_t cull_capacity(const World& world, const CullOptions& options) noexcept {
@@ -399,12 +420,23 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
   const world::DifferentViews different = world::different_views(views, state.world->columns);
   CullResult result;
   result.nodes_visited = world::find_entries(state, views, different);
-  state.input = {state.maps, state.views, different.count, different.bits, {}, state.world->column_tests};
+  const world::ColumnTests* columns = world::column_tests(state, views, different);
+  state.input = {state.maps, state.views, different.count, different.bits, {}, columns};
+  world::Levels* const levels = output.levels.empty() ? nullptr : state.world->levels.get();
+  if (levels) {
+    if (const Status sound = levels->begin(state, views, different, options.levels, output); !sound)
+      return sound;
+  }
   state.out = output.ids.data();
   state.masks = output.masks.empty() ? nullptr : output.masks.data();
   world::run_passes(state, options.jobs, result);
   if (options.occlusion == Occlusion::automatic) world::hide(state, views, different, options, result);
   state.object_cost.drew(result.count);
+  if (levels) {
+    levels->write(state, result.count, output);
+  } else {
+    write_no_levels(output.levels, result.count), write_no_levels(output.fades, result.count);
+  }
   if (options.values_for_ids) world::write_values(state.world->columns, output.ids.first(result.count));
   return result;
 }

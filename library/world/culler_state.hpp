@@ -11,6 +11,7 @@
 
 #include "library/world/account.hpp"
 #include "library/world/sector_test.hpp"
+#include "library/world/shadow_casters.hpp"
 #include "library/world/world_cull.hpp"
 #include "library/world/world_state.hpp"
 
@@ -75,6 +76,8 @@ struct CullerState {
   Account account;
   ObjectCost object_cost;
   std::unique_ptr<Hiding> hiding;
+  std::unique_ptr<Casting> casting;
+  std::unique_ptr<LevelMemory> levels;
 };
 
 /// How many objects the caller draws of `count` in the output: once in each view, where masks tell.

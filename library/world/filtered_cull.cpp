@@ -213,21 +213,23 @@ PassCounts filtered_views(const PassInput& input, std::span<const GroupEntry> en
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
       const ChunkViewers viewers = viewers_of(input, at, bits, parted, i);
+      const std::size_t before = counts.written;
       if (viewers.part == 0 || (viewers.whole != 0 && masks == nullptr)) {
         counts.written += write_whole(chunk, viewers.whole, counts.written, ids, masks);
-        continue;
+      } else {
+        parts.count = 0;
+        for (std::uint32_t rest = viewers.part; rest != 0; rest &= rest - 1) {
+          const auto v = static_cast<std::size_t>(std::countr_zero(rest));
+          ObjectBits& seen = parts.seen[parts.count];
+          parts.bits[parts.count++] = input.bits[v];
+          counts.tested += chunk.count;
+          view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
+          if (parted[v] >> i & 1) seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
+          if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
+        }
+        counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
       }
-      parts.count = 0;
-      for (std::uint32_t rest = viewers.part; rest != 0; rest &= rest - 1) {
-        const auto v = static_cast<std::size_t>(std::countr_zero(rest));
-        ObjectBits& seen = parts.seen[parts.count];
-        parts.bits[parts.count++] = input.bits[v];
-        counts.tested += chunk.count;
-        view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
-        if (parted[v] >> i & 1) seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
-        if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
-      }
-      counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
+      if (input.levels) input.levels->note(chunk, at.views, ids + before, counts.written - before);
     }
   }
   return counts;

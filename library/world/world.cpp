@@ -213,6 +213,7 @@ Status World::remove(Strided<const Handle> handles) {
     s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
     if (s.occluders) s.occluders->forget(id);
+    if (s.levels) s.levels->forget(id);
     s.free_ids.push_back(id);
   }
   s.size -= handles.size();

@@ -289,7 +289,7 @@ void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
 
 PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept {
-  bool plain = input.hidden.empty();
+  bool plain = input.hidden.empty() && !input.levels;
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
   const bool alone = input.view_count == 1 && !masks;
   if (!plain || (input.columns && !alone)) return cull_filtered_groups(input, entries, out, masks);

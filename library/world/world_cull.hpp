@@ -10,6 +10,7 @@
 
 #include "library/occlusion/depth_tiles.hpp"
 #include "library/world/chunk_map.hpp"
+#include "library/world/levels.hpp"
 
 namespace sightline::world {
 
@@ -17,6 +18,8 @@ namespace sightline::world {
 using PlaneSet = std::uint8_t;
 inline constexpr PlaneSet kAllPlanes = 0x3f;
 inline constexpr PlaneSet kOutside = 0x80;
+
+struct CasterView;
 
 /// One view as a sector sees it: relative to the sector's origin.
 struct SectorView {
@@ -32,6 +35,7 @@ struct SectorView {
   std::uint32_t layers = kAllLayers;
   Vec3 distance_eye;  ///< from which distances are measured
   float distance_scale = 1;
+  const CasterView* casters = nullptr;  ///< of every view, where one of them has casters
 };
 
 /// A bit an object of a chunk. Whole words are kept in registers and stored once: loads that gather what
@@ -83,6 +87,7 @@ struct PassInput {
   /// Of each entry and each of its views the chunks that are known to be hidden, a bit each; or none.
   std::span<const std::uint32_t> hidden = {};
   const ColumnTests* columns = nullptr;  ///< null: the world has none that say who is seen
+  LevelNotes* levels = nullptr;          ///< null: nobody asks for levels of detail
 };
 
 /// What asking for chunks found.

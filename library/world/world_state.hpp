@@ -11,6 +11,7 @@
 
 #include "library/world/chunk_map.hpp"
 #include "library/world/columns.hpp"
+#include "library/world/levels.hpp"
 #include "library/world/world_occluders.hpp"
 
 namespace sightline::world {
@@ -55,6 +56,7 @@ struct WorldState {
   Columns columns;
   const ColumnTests* column_tests = nullptr;  ///< null: no column says who is seen
   std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
+  std::unique_ptr<Levels> levels;             ///< of detail; null: never had a table
   std::vector<std::uint32_t> touched;         ///< sectors that changed since tidy(), each once
   std::uint64_t tidied = 0;                   ///< how many sectors tidy() has looked at, ever
   std::size_t size = 0;

@@ -11,21 +11,18 @@ static sightline_handle handles[kCount];
 static const float wall[6] = {-50, -50, -5.5f, 50, 50, -4.5f};
 
 static size_t left(sightline_culler* culler, const sightline_world* world) {
-  const sightline_view ahead = view_ahead();
-  const sightline_cull_view view = sightline_cull_view_of(&ahead);
-  const sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
   sightline_cull_options options = sightline_cull_options_default();
   sightline_cull_result result;
   options.occlusion = SIGHTLINE_OCCLUSION_AUTOMATIC, options.costs.object = 100000;
-  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
+  EXPECT(cull_ahead(culler, world, &options, ids, kRoom, &result) == SIGHTLINE_OK);
   EXPECT(result.frustum_cost > 0 && result.cost <= 1.05 * result.frustum_cost);
   EXPECT(result.reserved[0] == 0 && result.reserved[1] == 0);
   const size_t count = result.count;
   options.coverage = SIGHTLINE_COVERAGE_AREA, options.scale = 2;
-  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
+  EXPECT(cull_ahead(culler, world, &options, ids, kRoom, &result) == SIGHTLINE_OK);
   EXPECT(result.count >= count);
   options.scale = 3;
-  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(cull_ahead(culler, world, &options, ids, kRoom, &result) == SIGHTLINE_BAD_ARGUMENT);
   return count;
 }
 

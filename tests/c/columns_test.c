@@ -138,9 +138,78 @@ static void refuse_distances(void) {
   sightline_world_destroy(world);
 }
 
+/* Each object's level by its size in pixels, of a thousand worlds. */
+static void try_levels(uint32_t seed) {
+  const size_t count = 1 + below(kMost - 1);
+  sightline_world* world = sightline_world_create();
+  sightline_culler* culler = sightline_culler_create();
+  for (size_t i = 0; i < count; ++i) {
+    for (int a = 0; a < 3; ++a)
+      things[i].centre[a] = between(-100, 100), things[i].half[a] = between(0.5f, 3);
+    things[i].layers = below(2);
+  }
+  const sightline_box_view boxes =
+      sightline_boxes_centre_half_float(things[0].centre, things[0].half, sizeof(thing), count);
+  const sightline_handles handles = sightline_handles_of(&things[0].handle, sizeof(thing), count);
+  const sightline_column tables = sightline_column_of(&things[0].layers, sizeof(thing), count);
+  const float sizes[3] = {between(20, 30), between(10, 15), between(2, 8)};
+  uint32_t table = 0;
+  EXPECT(sightline_world_insert(world, &boxes, &handles, NULL) == SIGHTLINE_OK);
+  EXPECT(sightline_world_add_levels(world, sizes, 3, &table) == SIGHTLINE_OK && table == 1);
+  EXPECT(sightline_world_set_levels(world, &handles, &tables) == SIGHTLINE_OK);
+  sightline_camera camera = sightline_camera_default();
+  sightline_view view;
+  for (int a = 0; a < 3; ++a) camera.eye[a] = (double)between(-60, 60);
+  EXPECT(sightline_camera_view(&camera, 640, 480, &view) == SIGHTLINE_OK);
+  const sightline_cull_view of = sightline_cull_view_of(&view);
+  static uint8_t levels[kRoom], fades[kRoom];
+  sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
+  output.levels = levels, output.fades = fades;
+  sightline_cull_options options = sightline_cull_options_default();
+  options.levels.fade = seed % 2 ? 0.5f : 0;
+  sightline_cull_result result;
+  EXPECT(sightline_cull(culler, world, &of, 1, &options, &output, &result) == SIGHTLINE_OK);
+  for (size_t i = 0; i < result.count; ++i) {
+    const sightline_handle handle = sightline_world_handle(world, ids[i]);
+    sightline_box box;
+    double distance = 0, radius = 0;
+    int expected = 0, unsure = 0;
+    EXPECT(sightline_world_box(world, handle, &box) == SIGHTLINE_OK);
+    for (int a = 0; a < 3; ++a) {
+      distance += pow(0.5 * (box.min[a] + box.max[a]) - camera.eye[a], 2);
+      radius += pow(0.5 * (box.max[a] - box.min[a]), 2);
+    }
+    EXPECT(sightline_world_levels(world, handle, &table) == SIGHTLINE_OK);
+    const double size = 480 * (double)view.eye_to_clip[5] * sqrt(radius / distance);
+    for (int k = 0; k < 3 && table == 1 && distance > radius; ++k) {
+      expected += size < (double)sizes[k];
+      unsure += fabs(size - (double)sizes[k]) < 1e-3 * size;
+    }
+    EXPECT(unsure || levels[i] == expected);
+    EXPECT(options.levels.fade > 0 || fades[i] == 0);
+  }
+  sightline_culler_destroy(culler);
+  sightline_world_destroy(world);
+}
+
+static void refuse_levels(void) {
+  sightline_world* world = sightline_world_create();
+  const float sizes[2] = {1, 2};
+  uint32_t name;
+  EXPECT_REFUSED(sightline_world_add_levels(world, sizes, 2, &name), SIGHTLINE_BAD_ARGUMENT, 1);
+  EXPECT_REFUSED(sightline_world_add_levels(world, sizes, 0, &name), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
+  EXPECT_REFUSED(sightline_world_add_levels(world, NULL, 2, &name), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
+  EXPECT_REFUSED(sightline_world_set_levels(world, NULL, NULL), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
+  sightline_world_destroy(world);
+}
+
 void test_columns(void) {
   size_t kept = 0;
   for (uint32_t seed = 0; seed < 1000; ++seed) kept += try_world(seed);
   EXPECT(kept > 1000);
   refuse_distances();
+  for (uint32_t seed = 0; seed < 1000; ++seed) try_levels(seed);
+  refuse_levels();
 }

@@ -24,17 +24,14 @@ static void end_zone(void* user) {
 }
 
 static void tell_zones(sightline_culler* culler, const sightline_world* world) {
-  const sightline_view ahead = view_ahead();
-  const sightline_cull_view view = sightline_cull_view_of(&ahead);
-  const sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
   sightline_cull_options options = sightline_cull_options_default();
   sightline_cull_result result;
   int calls[2] = {0, 0};
   options.zones.begin = begin_zone, options.zones.end = end_zone, options.zones.user = calls;
-  EXPECT(sightline_cull(culler, world, &view, 1, &options, &output, &result) == SIGHTLINE_OK);
+  EXPECT(cull_ahead(culler, world, &options, ids, kRoom, &result) == SIGHTLINE_OK);
   EXPECT(calls[0] == 3 && calls[1] == 3);
   options.zones.end = NULL;
-  EXPECT_REFUSED(sightline_cull(culler, world, &view, 1, &options, &output, &result), SIGHTLINE_BAD_ARGUMENT,
+  EXPECT_REFUSED(cull_ahead(culler, world, &options, ids, kRoom, &result), SIGHTLINE_BAD_ARGUMENT,
                  SIGHTLINE_NO_INDEX);
   EXPECT(calls[0] == 3);
 }
@@ -164,9 +161,6 @@ static void refuse_calls(sightline_culler* culler, const sightline_world* world)
 }
 
 static void refuse_options(sightline_culler* culler, const sightline_world* world) {
-  const sightline_view ahead = view_ahead();
-  const sightline_cull_view view = sightline_cull_view_of(&ahead);
-  const sightline_cull_output output = sightline_cull_output_of(ids, NULL, kRoom);
   sightline_cull_options wrong[6];
   for (int i = 0; i < 6; ++i) wrong[i] = sightline_cull_options_default();
   wrong[0].struct_size = 0, wrong[1].struct_size += 1;
@@ -174,7 +168,7 @@ static void refuse_options(sightline_culler* culler, const sightline_world* worl
   wrong[5].coverage = SIGHTLINE_COVERAGE_AREA + 1;
   for (int i = 0; i < 6; ++i) {
     sightline_cull_result r;
-    EXPECT_REFUSED(sightline_cull(culler, world, &view, 1, &wrong[i], &output, &r), SIGHTLINE_BAD_ARGUMENT,
+    EXPECT_REFUSED(cull_ahead(culler, world, &wrong[i], ids, kRoom, &r), SIGHTLINE_BAD_ARGUMENT,
                    SIGHTLINE_NO_INDEX);
     EXPECT(sightline_cull_capacity(world, &wrong[i]) == 0);
   }

@@ -29,6 +29,10 @@
 void expect_failure(sightline_status code, size_t index, int line);
 /* At the origin, along -z; 64 x 48 pixels. */
 sightline_view view_ahead(void);
+/* Culls for view_ahead() into `room` ids. */
+sightline_status cull_ahead(sightline_culler* culler, const sightline_world* world,
+                            const sightline_cull_options* options, uint32_t* ids, size_t room,
+                            sightline_cull_result* result);
 /* `count` boxes of 1 m, one behind another, from 5 m ahead on. */
 void row_of_boxes(sightline_box* boxes, int count);
 
@@ -37,6 +41,7 @@ void test_views(void);
 void test_world(void);
 void test_cull(void);
 void test_columns(void);
+void test_shadows(void);
 void test_automatic(void);
 void test_occlusion(void);
 void test_frustum(void);

@@ -20,6 +20,15 @@ sightline_view view_ahead(void) {
   return view;
 }
 
+sightline_status cull_ahead(sightline_culler* culler, const sightline_world* world,
+                            const sightline_cull_options* options, uint32_t* ids, size_t room,
+                            sightline_cull_result* result) {
+  const sightline_view ahead = view_ahead();
+  const sightline_cull_view view = sightline_cull_view_of(&ahead);
+  const sightline_cull_output output = sightline_cull_output_of(ids, NULL, room);
+  return sightline_cull(culler, world, &view, 1, options, &output, result);
+}
+
 void row_of_boxes(sightline_box* boxes, int count) {
   for (int i = 0; i < count; ++i) {
     const double z = -5.0 - 2.0 * i;
@@ -34,6 +43,7 @@ int main(void) {
   test_world();
   test_cull();
   test_columns();
+  test_shadows();
   test_automatic();
   test_occlusion();
   test_frustum();

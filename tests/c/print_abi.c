@@ -12,13 +12,15 @@ int main(void) {
   STRUCT(sightline_box, max);
   STRUCT(sightline_box_view, origin);
   STRUCT(sightline_camera, shift);
+  STRUCT(sightline_cascade, depths);
   STRUCT(sightline_column, count);
   STRUCT(sightline_cull_costs, reserved);
-  STRUCT(sightline_cull_options, zones);
-  STRUCT(sightline_cull_output, capacity);
+  STRUCT(sightline_cull_options, levels);
+  STRUCT(sightline_cull_output, fades);
   STRUCT(sightline_cull_result, reserved);
-  STRUCT(sightline_cull_view, distance_view);
+  STRUCT(sightline_cull_view, casters);
   STRUCT(sightline_cull_zones, user);
+  STRUCT(sightline_depth_range, far_plane);
   STRUCT(sightline_distance_range, max);
   STRUCT(sightline_distances, count);
   STRUCT(sightline_error, message);
@@ -26,6 +28,8 @@ int main(void) {
   STRUCT(sightline_handle, generation);
   STRUCT(sightline_handles, count);
   STRUCT(sightline_jobs, reserved);
+  STRUCT(sightline_level_options, cut);
+  STRUCT(sightline_light, reserved);
   STRUCT(sightline_object_columns, distances);
   STRUCT(sightline_occluder_parts, box_count);
   STRUCT(sightline_occluder_placement, origin);
@@ -58,6 +62,9 @@ int main(void) {
   VALUE(SIGHTLINE_OCCLUDES_EMPTY);
   VALUE(SIGHTLINE_OCCLUSION_NONE);
   VALUE(SIGHTLINE_OCCLUSION_AUTOMATIC);
+  VALUE(SIGHTLINE_LIGHT_DIRECTIONAL);
+  VALUE(SIGHTLINE_LIGHT_SPOT);
+  VALUE(SIGHTLINE_LIGHT_POINT);
   VALUE(SIGHTLINE_NO_OCCLUDER);
   VALUE(SIGHTLINE_OWN_VIEW);
   VALUE(SIGHTLINE_OUTSIDE);
@@ -67,6 +74,9 @@ int main(void) {
   VALUE(SIGHTLINE_NO_OBJECT);
   VALUE(SIGHTLINE_NO_CELL);
   VALUE(SIGHTLINE_ALL_LAYERS);
+  VALUE(SIGHTLINE_MAX_CASCADES);
+  VALUE(SIGHTLINE_MAX_LEVELS);
+  VALUE(SIGHTLINE_NO_LEVELS);
   VALUE(SIGHTLINE_MAX_VIEWS);
   VALUE(SIGHTLINE_CULL_PADDING);
   return 0;

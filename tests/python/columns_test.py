@@ -57,6 +57,33 @@ class Columns(Case):
                 kept, could = kept + expected.sum(), could + seen.sum()
         self.assertTrue(could / 10 < kept < could * 0.6)
 
+    def test_levels_are_those_of_numpy(self):
+        for seed in range(1000):
+            random = np.random.default_rng(seed)
+            n = int(random.integers(1, 120))
+            centre, half = random.uniform(-100, 100, (n, 3)), random.uniform(0.5, 3, (n, 3))
+            world = sightline.World()
+            handles = world.insert(np.stack([centre - half, centre + half], 1))
+            sizes = np.sort(random.uniform(2, 40, int(random.integers(1, 8))).astype(np.float32))[::-1]
+            table = world.add_levels(sizes.tolist())
+            tables = table * random.integers(0, 2, n).astype(np.uint32)
+            world.set_levels(handles, tables)
+            camera = random_camera(random)
+            ids, levels, fades = sightline.Culler().cull(world, camera, levels=sightline.Levels())
+            boxes = world.boxes(handles)
+            d = np.linalg.norm(boxes.mean(1) - eye_of(camera), axis=1)
+            r = 0.5 * np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
+            pixels = max(1280 * camera.eye_to_clip[0, 0], 720 * camera.eye_to_clip[1, 1])
+            size = np.where(d <= r, np.inf, pixels * r / d)
+            expected = (size[:, None] < sizes.astype(float)).sum(1) * (tables > 0)
+            unsure = (np.abs(size[:, None] / sizes - 1) < 1e-3).any(1)
+            self.assertFalse(((levels != expected[ids]) & ~unsure[ids]).any(), f"seed {seed}")
+            self.assertEqual(fades.sum(), 0)
+        culler = sightline.Culler()
+        culler.cull(world, camera, masks=True, levels=sightline.Levels(fade=1, hysteresis=0.1))
+        self.bad("hysteresis", culler.cull, world, camera, levels=sightline.Levels(hysteresis=1))
+        self.refused("bad_argument", "do not descend", world.add_levels, [1, 2], index=1)
+
     def test_scales_and_places_that_are_none(self):
         world, camera = sightline.World(), sightline.camera()
         for view in (sightline.CullView(camera, distance_scale=0), sightline.CullView(camera, distance_scale=np.nan),

@@ -6,6 +6,7 @@
 #include <new>
 
 #include <sightline/occlusion.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/world.hpp>
 
 #include "support/solid_boxes.hpp"
@@ -81,10 +82,13 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
   Culler culler;
   OcclusionBuffer buffer;
   const CullOptions options{.jobs = {run_here, nullptr, 4}};
+  const std::array sizes{100.0f, 20.0f, 5.0f};
+  const std::vector<LevelTableId> tables(boxes.size(), *world.add_levels(sizes));
+  ASSERT_TRUE(world.set_levels(handles, std::span<const LevelTableId>(tables)));
   const std::vector<std::uint32_t> layers(500, 4);
   ASSERT_TRUE(world.set_layers(std::span(handles).first(500), layers));
   std::vector<ObjectId> visible(cull_capacity(world, options));
-  std::vector<std::uint8_t> masks(visible.size());
+  std::vector<std::uint8_t> masks(visible.size()), levels(visible.size());
   std::size_t warm = 0, kept = 0;
   for (int frame = 0; frame < 40; ++frame) {
     // The first frame sees everything: nothing after it can need more room.
@@ -99,12 +103,42 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
     if (frame == 1) warm = allocations;
     ASSERT_TRUE(buffer.begin(views[0].view));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
-    kept += culler.cull(world, views, options, {visible, masks})->count;
+    kept += culler.cull(world, views, options, {visible, masks, levels, {}})->count;
     kept += culler.cull(world, views, options, {visible})->count;
     kept += culler.cull(world, views[0], visible)->count;
   }
   EXPECT_EQ(allocations - warm, 0u);
   EXPECT_GT(kept, 1000u);
+}
+
+TEST(Allocation, ShadowCastersAllocateNothingOnceWarm) {
+  scene::Random random(5);
+  std::vector<Box> boxes{{{-3000, -1, -3000}, {3000, 0, 3000}}};
+  for (int i = 0; i < 20000; ++i)
+    boxes.push_back(test::box_at({random.between(-3000, 3000), 5, random.between(-3000, 3000)}, {2, 5, 2}));
+  World world;
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  Culler culler;
+  OcclusionBuffer depth;
+  ShadowCasters casters;
+  std::vector<ObjectId> ids(cull_capacity(world)), shadows(ids.size());
+  std::size_t warm = 0, cast = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const Vec3 eye{random.between(-2000, 2000), 3, random.between(-2000, 2000)};
+    const WorldView camera{test::looking(eye, {random.between(-1, 1), 0, -1}), {}};
+    const WorldView map = *shadow_view({.direction = {1, -1, 1}}, camera, {0.1f, 300}, 1024);
+    if (frame == 3) warm = allocations;
+    ASSERT_TRUE(depth.begin(camera));
+    ASSERT_TRUE(depth.draw_boxes(BoxView(std::span(boxes).first(500))));
+    const CullView seen{.view = camera, .occlusion = &depth}, lit{.view = map, .casters = &casters};
+    const std::size_t count = culler.cull(world, seen, ids)->count;
+    ASSERT_TRUE(casters.begin(map, camera, {0.1f, 300}));
+    ASSERT_TRUE(casters.receive(world, std::span(ids).first(count), &depth));
+    cast += culler.cull(world, lit, shadows)->count;
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+  EXPECT_GT(cast, 20u);
 }
 
 TEST(Allocation, OcclusionInOneCallAllocatesNothingOnceWarm) {

@@ -260,6 +260,7 @@ export class Culler extends Owned {
     data.setUint32(164, view.layers ?? allLayers, true);
     data.setFloat32(168, view.minArea ?? 0, true);
     data.setFloat32(172, 1, true), data.setUint32(176, 0xffffffff, true);  // distances, which objects have none of here
+    data.setUint32(180, 0, true);  // casters: none
   }
 }
 

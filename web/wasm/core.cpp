@@ -148,6 +148,7 @@ static_assert(sizeof(WorldView) == 160 && offsetof(WorldView, origin) == 136);
 static_assert(sizeof(CullView) == 184 && offsetof(CullView, occlusion) == 160);
 static_assert(offsetof(CullView, layers) == 164 && offsetof(CullView, min_area) == 168);
 static_assert(offsetof(CullView, distance_scale) == 172 && offsetof(CullView, distance_view) == 176);
+static_assert(offsetof(CullView, casters) == 180);
 static_assert(sizeof(CullCosts) == 36 && offsetof(CullCosts, occludee) == 32);
 
 SIGHTLINE_WEB(culler_create) WebCuller* culler_create() {

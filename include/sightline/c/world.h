@@ -166,10 +166,33 @@ SIGHTLINE_API sightline_status sightline_world_distances(const sightline_world* 
                                                          sightline_handle handle,
                                                          sightline_distance_range* distances);
 
+/** The most levels of detail of an object. */
+#define SIGHTLINE_MAX_LEVELS 8
+/** The table of objects that have no level but 0. */
+#define SIGHTLINE_NO_LEVELS 0u
+
+/** Keeps a table of levels of detail for objects to share: `count` sizes in pixels, 1 to 7, descending. An
+ * object has level i as long as it is sizes[i] or larger and less than sizes[i - 1]; smaller than all of them
+ * it has level `count`. It is as large as the diameter of the ball around its box. Errors: BAD_ARGUMENT,
+ * TOO_MANY. Allocates: 32 bytes. */
+SIGHTLINE_API sightline_status sightline_world_add_levels(sightline_world* world, const float* sizes,
+                                                          size_t count, uint32_t* name);
+/** Gives each object a table of levels, or SIGHTLINE_NO_LEVELS. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost:
+ * linear. Allocates: 2 bytes an id, the first time. */
+SIGHTLINE_API sightline_status sightline_world_set_levels(sightline_world* world,
+                                                          const sightline_handles* handles,
+                                                          const sightline_column* tables);
+/** The object's table of levels. Errors: BAD_ARGUMENT, STALE_HANDLE. */
+SIGHTLINE_API sightline_status sightline_world_levels(const sightline_world* world, sightline_handle handle,
+                                                      uint32_t* table);
+
 /* --- culling --- */
 
 /** Of sightline_cull_view's distance_view: the view itself. */
 #define SIGHTLINE_OWN_VIEW 0xffffffffu
+
+/** Which objects can throw a shadow on what a camera sees: see <sightline/c/shadows.h>. */
+typedef struct sightline_shadow_casters sightline_shadow_casters;
 
 /** A camera, an eye, a shadow cascade: whatever sees the world. Made by sightline_cull_view_of(). */
 typedef struct sightline_cull_view {
@@ -182,6 +205,8 @@ typedef struct sightline_cull_view {
   float distance_scale;   /**< times the objects' distances: 2 shows them from twice as far; above 0 */
   uint32_t distance_view; /**< place of the view from whose eye distances are measured, as a shadow cascade
                              takes its camera's; SIGHTLINE_OWN_VIEW: this one's */
+  const sightline_shadow_casters* casters; /**< begun with this same view: leaves only what can throw a shadow
+                                              on what a camera sees; or NULL */
 } sightline_cull_view;
 
 /** A view that sees all layers, drops nothing small and has no occlusion; of zeros, which sightline_cull()
@@ -195,6 +220,7 @@ static inline sightline_cull_view sightline_cull_view_of(const sightline_view* v
   result.occlusion = NULL;
   result.view = view ? *view : none;
   result.distance_scale = 1, result.distance_view = SIGHTLINE_OWN_VIEW;
+  result.casters = NULL;
   return result;
 }
 
@@ -226,17 +252,28 @@ typedef struct sightline_cull_zones {
   void* user;              /**< handed to both */
 } sightline_cull_zones;
 
+/** How levels of detail are chosen: once a call, for all its views. Read where levels are asked for. */
+typedef struct sightline_level_options {
+  uint32_t view;    /**< the place of the view by whose image objects have their sizes */
+  uint32_t key;     /**< whose memory, below SIGHTLINE_MAX_VIEWS: a camera's of several that take turns */
+  float hysteresis; /**< how far beyond a limit a level is kept, as a share of it: 0 to below 1 */
+  float fade;       /**< how far above its lower limit a level begins to fade into the next, as a share */
+  float scale;      /**< times the sizes; above 0 */
+  uint32_t cut;     /**< 1: the camera was cut, nothing is remembered from before */
+} sightline_level_options;
+
 /** How a call culls; the same for all its views. Made by sightline_cull_options_default(). */
 typedef struct sightline_cull_options {
-  uint32_t struct_size;       /**< bytes of this struct */
-  uint32_t values_for_ids;    /**< 1: writes the objects' values instead of their ids */
-  sightline_jobs jobs;        /**< the caller's threads */
-  uint32_t occlusion;         /**< SIGHTLINE_OCCLUSION_... */
-  uint32_t reserved;          /**< 0 */
-  sightline_cull_costs costs; /**< finite, not negative; read by automatic occlusion */
-  uint32_t coverage;          /**< SIGHTLINE_COVERAGE_...: which places automatic occlusion answers for */
-  uint32_t scale;             /**< pixels of the view along a side of one of its buffer's: 1, 2 or 4 */
-  sightline_cull_zones zones; /**< told what a cull spends its time on */
+  uint32_t struct_size;           /**< bytes of this struct */
+  uint32_t values_for_ids;        /**< 1: writes the objects' values instead of their ids */
+  sightline_jobs jobs;            /**< the caller's threads */
+  uint32_t occlusion;             /**< SIGHTLINE_OCCLUSION_... */
+  uint32_t reserved;              /**< 0 */
+  sightline_cull_costs costs;     /**< finite, not negative; read by automatic occlusion */
+  uint32_t coverage;              /**< SIGHTLINE_COVERAGE_...: which places automatic occlusion answers for */
+  uint32_t scale;                 /**< pixels of the view along a side of one of its buffer's: 1, 2 or 4 */
+  sightline_cull_zones zones;     /**< told what a cull spends its time on */
+  sightline_level_options levels; /**< how levels of detail are chosen */
 } sightline_cull_options;
 
 /** Ids, by the calling thread, without occlusion. */
@@ -250,6 +287,8 @@ static inline sightline_cull_options sightline_cull_options_default(void) {
   options.costs = costs;
   options.coverage = SIGHTLINE_COVERAGE_CENTRES, options.scale = 1;
   options.zones.begin = NULL, options.zones.end = NULL, options.zones.user = NULL;
+  options.levels.view = options.levels.key = options.levels.cut = 0;
+  options.levels.hysteresis = options.levels.fade = 0, options.levels.scale = 1;
   return options;
 }
 
@@ -261,6 +300,8 @@ typedef struct sightline_cull_output {
   uint32_t* ids;        /**< the objects, or their values */
   uint8_t* masks;       /**< bit v: view v may see the object; NULL: not wanted */
   size_t capacity;      /**< elements of each */
+  uint8_t* levels;      /**< of detail, 0 the finest; NULL: not wanted */
+  uint8_t* fades;       /**< of 255, the share of the next coarser level; NULL: not wanted */
 } sightline_cull_output;
 
 /** Arrays of `capacity` elements; `masks` may be NULL. */
@@ -268,6 +309,7 @@ static inline sightline_cull_output sightline_cull_output_of(uint32_t* ids, uint
   sightline_cull_output output;
   output.struct_size = (uint32_t)sizeof output, output.reserved = 0;
   output.ids = ids, output.masks = masks, output.capacity = capacity;
+  output.levels = output.fades = NULL;
   return output;
 }
 
@@ -299,12 +341,13 @@ SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* cul
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
  * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
- * is left out, but by `layers`, `distances` and `min_area`. All views have the same struct_size. `options`
- * may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted
- * work x costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more
- * than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost:
- * grows with what is visible and with the boundary of the views, not with the world. Threads: only reads the
- * world and the occlusions. Allocates: nothing once the culler has grown to the world's size. */
+ * is left out, but by `layers`, `distances`, `min_area` and `casters`. All views have the same struct_size.
+ * `options` may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays,
+ * in counted work x costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's
+ * together no more than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is
+ * the view's. Cost: grows with what is visible and with the boundary of the views, not with the world.
+ * Threads: only reads the world and the occlusions. Allocates: nothing once the culler has grown to the
+ * world's size. */
 SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
                                               const sightline_cull_view* views, size_t view_count,
                                               const sightline_cull_options* options,
