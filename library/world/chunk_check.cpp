@@ -31,6 +31,8 @@ Status ChunkMap::check_chunk(std::uint32_t chunk) const {
   if (chunk_bounds(chunk) != c.bounds || !holds(c.bounds, tight(c)))
     return bad("chunk map: bounds too small of chunk", chunk);
   if (!loosely_ && c.bounds != tight(c)) return bad("chunk map: bounds not tight of chunk", chunk);
+  if (c.pool == kMovers && (mover_chunks_[c.parent] != chunk || (is_page(c) && pages_[c.previous] != chunk)))
+    return bad("chunk map: movers' lists without chunk", chunk);
   std::uint32_t live = 0;
   for (std::uint32_t slot = 0; slot < c.count; ++slot) {
     const ObjectId object = ids(c)[slot];
@@ -38,6 +40,8 @@ Status ChunkMap::check_chunk(std::uint32_t chunk) const {
     ++live;
     const Location& at = (*locations_)[object];
     if (at.chunk != chunk || at.slot() != slot) return bad("chunk map: wrong location of object", object);
+    if (c.pool == kMovers && is_page(c) && (object / kCapacity != c.previous || object % kCapacity != slot))
+      return bad("chunk map: another's place in the page of object", object);
     if (loosely_) continue;
     const Box box = box_at(c, slot);
     if (regions(box) != keys_[c.key].regions) return bad("chunk map: wrong key of object", object);

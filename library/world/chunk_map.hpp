@@ -10,7 +10,8 @@
 //
 // Where `movers` is asked for, move_loosely() lets what moves cost little: a chunk's bounds may be wider than
 // its boxes, an object that leaves them or moves frame after frame stands in chunks of movers, filed by when
-// it came and not by where it is, and rest() files those that no longer move.
+// it came and not by where it is, and rest() files those that no longer move. Once a third of all ids move
+// in no order, movers stand in pages: chunks in which each id has its place.
 #pragma once
 
 #include <array>
@@ -148,6 +149,15 @@ public:
   std::uint32_t move_run(std::uint32_t& chunk, std::uint32_t& slot, const ObjectId* objects,
                          const geometry::BoxBlock& boxes, std::size_t first, std::uint32_t count,
                          bool past_cache) noexcept;
+  /// To be called before objects are moved: says whether movers are to have pages from now on.
+  void expect_moves() noexcept;
+  [[nodiscard]] bool keeps_pages() const noexcept { return kHasPages && by_id_; }
+  /// Moves objects while each stands in its page, lies `within` and nothing but its own box changes; returns
+  /// how many did.
+  std::uint32_t move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
+                              const Box& within) noexcept;
+  /// Asks for the memory that moving these will need, where they lie far apart.
+  void prefetch_pages(std::span<const ObjectId> objects) const noexcept;
   /// Asks for the memory that moving an object will need; of an object that may have left, it asks in vain.
   void prefetch_chunk(ObjectId object) const noexcept;
   void prefetch_lanes(ObjectId object, bool many) const noexcept;
@@ -270,7 +280,7 @@ private:
     Box cell;  // of the centres that the k-d tree sends here
     std::uint32_t key = kNone, parent = kNone;
     // Chunks that could not be split: all centres equal. Of movers: the one begun after this, or what it
-    // became.
+    // became; and the page, or none.
     std::uint32_t next = kNone, previous = kNone;
     std::uint32_t group = kNone, index_in_group = 0;
     bool changed = false;
@@ -353,7 +363,11 @@ private:
   void make_dirty(std::uint32_t chunk);
   void note_grown(std::uint32_t chunk);
   void add_mover(ObjectId object, const Box& box);
+  std::uint32_t add_mover_chunk();
   std::uint32_t open_mover_chunk();
+  std::uint32_t open_page(ObjectId object);
+  void free_mover_chunk(std::uint32_t chunk);
+  [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept { return chunk.previous != kNone; }
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
   void tighten_grown(std::uint32_t chunk);
@@ -361,6 +375,11 @@ private:
   void rest_grown();
   [[nodiscard]] bool keeps_movers() const noexcept { return size_ >= kFewestForMovers; }
   static constexpr std::size_t kFewestForMovers = 1024;
+#ifdef __wasm__
+  static constexpr bool kHasPages = false;  // where each byte of code is loaded by whoever opens the page
+#else
+  static constexpr bool kHasPages = true;
+#endif
 
   std::uint32_t add_group(std::uint32_t node);
   void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);
@@ -402,7 +421,11 @@ private:
   std::vector<std::uint32_t> changed_;
   std::vector<std::uint32_t> dirty_;         // chunks that wait for flush()
   std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
-  std::vector<std::uint32_t> mover_chunks_;  // the last one is open
+  std::vector<std::uint32_t> mover_chunks_;  // each chunk's `parent` is its place here
+  std::uint32_t open_ = kNone;               // of these the one that takes the next mover
+  std::size_t scattered_ = 0, in_runs_ = 0;  // movers moved since expect_moves(), one by one and in runs
+  bool by_id_ = false;                       // which stands in its page instead
+  std::vector<std::uint32_t> pages_;         // the chunk of ids i * kCapacity … of each page i, or none
   std::vector<std::uint32_t> stale_;         // chunks whose summaries wait for settle_columns()
   std::uint32_t mover_node_ = kNone, mover_group_ = kNone;
   std::size_t grown_hand_ = 0, mover_hand_ = 0;  // where rest() goes on

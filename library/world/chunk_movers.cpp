@@ -43,6 +43,10 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   loosely_ = true;
   Location& at = (*locations_)[object];
   Chunk& c = chunks_[at.chunk];
+  if (c.pool == kMovers && keeps_pages() && !is_page(c)) {
+    leave(at.chunk, at.slot());
+    return add_mover(object, box);
+  }
   if (c.pool == kMovers) return move_mover(at.chunk, at.slot(), box);
   const bool for_movers = keeps_movers();
   if (for_movers && (moving.many || (moves_often(at, moving.tick) && moving.allowance > 0))) {
@@ -73,6 +77,7 @@ void ChunkMap::insert_moving(ObjectId object, const Box& box) {
 
 void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box) {
   Chunk& c = chunks_[chunk];
+  ++scattered_;
   if (!holds(c.bounds, box)) {
     c.bounds = widened(united(c.bounds, box));
     make_dirty(chunk);
@@ -121,9 +126,7 @@ void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   }
 }
 
-// The chunk that takes the next mover.
-std::uint32_t ChunkMap::open_mover_chunk() {
-  if (!mover_chunks_.empty() && chunks_[mover_chunks_.back()].count < kCapacity) return mover_chunks_.back();
+std::uint32_t ChunkMap::add_mover_chunk() {
   if (mover_node_ == kNone) {
     mover_node_ = static_cast<std::uint32_t>(nodes_.size());
     Node& node = nodes_.emplace_back();
@@ -132,20 +135,97 @@ std::uint32_t ChunkMap::open_mover_chunk() {
   }
   Pool& pool = pools_[kMovers];
   if (pool.ids.empty()) {
-    // For all at once; memory that is never written costs nothing.
-    const std::size_t room = size_ + size_ / 16 + 4 * kCapacity;
+    // For all at once, also while some have no page yet; memory that is never written costs nothing.
+    const std::size_t room = (kHasPages ? 2 : 1) * size_ + size_ / 16 + 4 * kCapacity;
     pool.ids.reserve(room), pool.lanes.reserve(6 * room);
   }
   const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers);
-  if (!mover_chunks_.empty()) chunks_[mover_chunks_.back()].next = added;
+  chunks_[added].parent = static_cast<std::uint32_t>(mover_chunks_.size());
   mover_chunks_.push_back(added);
   return added;
 }
 
+// The chunk that takes the next mover.
+std::uint32_t ChunkMap::open_mover_chunk() {
+  if (open_ != kNone && chunks_[open_].count < kCapacity) return open_;
+  const std::uint32_t added = add_mover_chunk();
+  if (open_ != kNone) chunks_[open_].next = added;
+  return open_ = added;
+}
+
+// The chunk of an id's page.
+std::uint32_t ChunkMap::open_page(ObjectId object) {
+  const std::uint32_t page = object / kCapacity;
+  if (page >= pages_.size())
+    pages_.resize(std::max<std::size_t>(page, locations_->size() / kCapacity) + 1, kNone);
+  if (pages_[page] != kNone) return pages_[page];
+  const std::uint32_t added = pages_[page] = add_mover_chunk();
+  Chunk& c = chunks_[added];
+  c.previous = page, c.count = kCapacity;
+  std::fill_n(ids(c), kCapacity, kNoObject);
+  return added;
+}
+
+void ChunkMap::expect_moves() noexcept {
+  // Where few move, each cull would read all pages for them; where the same ones move again and again in the
+  // order in which they stand, they stand well. Not at once to and fro.
+  constexpr std::size_t kBegin = 3, kEnd = 6;
+  const std::size_t of_ids = locations_->size() / (by_id_ ? kEnd : kBegin);
+  by_id_ = kHasPages && keeps_movers() && movers() >= of_ids && (by_id_ || scattered_ > in_runs_);
+  scattered_ = in_runs_ = 0;
+}
+
+std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
+                                      const Box& within) noexcept {
+  std::uint32_t at = kNone;
+  Chunk* c = nullptr;
+  const ObjectId* stand = nullptr;
+  float* to = nullptr;
+  Box bounds;
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    const std::uint32_t page = objects[i] / kCapacity, slot = objects[i] % kCapacity;
+    if (page != at) {
+      if (page >= pages_.size() || pages_[page] == kNone) return i;
+      at = page, c = &chunks_[pages_[page]], bounds = intersected(c->bounds, within);
+      stand = ids(*c), to = lanes(*c, 0);
+    }
+    const Box box = boxes[i];
+    if (stand[slot] != objects[i] || !holds(bounds, box)) return i;
+    const std::array<float, 6> values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+    for (std::uint32_t side = 0; side < 6; ++side) to[side * kCapacity + slot] = values[side];
+    c->moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+  }
+  return static_cast<std::uint32_t>(objects.size());
+}
+
+void ChunkMap::prefetch_pages(std::span<const ObjectId> objects) const noexcept {
+  constexpr std::size_t kDense = 4;  // ids an object: what lies closer is fetched by itself
+  const ObjectId first = objects.front(), last = objects.back();
+  if (first <= last && last - first < kDense * objects.size()) return;
+  for (const ObjectId object : objects) {
+    const std::uint32_t page = object / kCapacity, slot = object % kCapacity;
+    if (page >= pages_.size() || pages_[page] == kNone) continue;
+    const Chunk& c = chunks_[pages_[page]];
+    ask_ahead(&c), ask_ahead(ids(c) + slot);
+    for (std::uint32_t side = 0; side < 6; ++side) ask_ahead(lanes(c, side) + slot);
+  }
+}
+
+void ChunkMap::free_mover_chunk(std::uint32_t chunk) {
+  const Chunk& c = chunks_[chunk];
+  mover_chunks_[c.parent] = mover_chunks_.back();
+  chunks_[mover_chunks_.back()].parent = c.parent;
+  mover_chunks_.pop_back();
+  if (is_page(c)) pages_[c.previous] = kNone;
+  if (chunk == open_) open_ = kNone;
+  free_chunk(chunk);
+}
+
 void ChunkMap::add_mover(ObjectId object, const Box& box) {
-  const std::uint32_t chunk = open_mover_chunk();
+  const bool in_page = keeps_pages();
+  const std::uint32_t chunk = in_page ? open_page(object) : open_mover_chunk();
   Chunk& c = chunks_[chunk];
-  const std::uint32_t slot = c.count++;
+  const std::uint32_t slot = in_page ? object % kCapacity : c.count++;
   ++c.live;
   write(chunk, slot, object, box);
   c.moved[slot / 64] |= std::uint64_t{1} << slot % 64;
@@ -160,6 +240,11 @@ void ChunkMap::flush() {
     if (c.key == kNone) continue;  // it was freed
     if (c.group == kNone) {
       put_in_group(chunk, kNone, c.bounds);
+      continue;
+    }
+    if (c.pool == kMovers && c.live == 0 && (chunk != open_ || c.count == kCapacity)) {
+      add_objects(c.group, -static_cast<std::int32_t>(c.counted));
+      free_mover_chunk(chunk);
       continue;
     }
     set_bounds(chunk, c.bounds);
@@ -183,14 +268,8 @@ void ChunkMap::rest() {
     if (mover_hand_ >= mover_chunks_.size()) mover_hand_ = 0;
     const std::uint32_t chunk = mover_chunks_[mover_hand_];
     if (!rest_movers(chunk, budget)) break;
-    if (chunks_[chunk].key != kNone) {
-      ++mover_hand_;
-      continue;
-    }
-    // The last one stays the last, for it is open.
-    mover_chunks_[mover_hand_] = mover_chunks_.back();
-    mover_chunks_.pop_back();
-    if (mover_hand_ + 1 < mover_chunks_.size()) std::swap(mover_chunks_[mover_hand_], mover_chunks_.back());
+    // Where it was given up another has come in its place.
+    if (mover_hand_ < mover_chunks_.size() && mover_chunks_[mover_hand_] == chunk) ++mover_hand_;
   }
   flush();
 }
@@ -226,9 +305,9 @@ void ChunkMap::tighten_grown(std::uint32_t chunk) {
 }
 
 // Files those of a chunk's movers that rested since the last visit, as far as the budget goes; false where it
-// ended. A chunk of few is given up, and its movers stand together with the newest.
+// ended. A chunk of few is given up, and its movers stand where new ones do.
 bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
-  const bool open = chunk == mover_chunks_.back() && chunks_[chunk].count < kCapacity;
+  const bool open = chunk == open_ && chunks_[chunk].count < kCapacity;
   for (std::uint32_t slot = 0; slot < chunks_[chunk].count; ++slot) {
     const Chunk& c = chunks_[chunk];
     const ObjectId object = ids(c)[slot];
@@ -242,7 +321,8 @@ bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
   }
   chunks_[chunk].moved = {};
   if (open) return true;
-  if (chunks_[chunk].live <= kCapacity / 4) {
+  const bool due_here = is_page(chunks_[chunk]) && keeps_pages();
+  if (chunks_[chunk].live <= kCapacity / 4 && !due_here) {
     for (std::uint32_t slot = 0; slot < chunks_[chunk].count && chunks_[chunk].live > 0; ++slot) {
       const ObjectId object = ids(chunks_[chunk])[slot];
       if (object == kNoObject) continue;
@@ -250,11 +330,9 @@ bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
       leave(chunk, slot);
       add_mover(object, box);
     }
-    flush();
-    free_chunk(chunk);
-    return true;
   }
   flush();
+  if (chunks_[chunk].live == 0) return true;  // it was freed
   const Box before = chunks_[chunk].bounds;
   const Box now = widened(tight(chunks_[chunk]));
   set_bounds(chunk, now);

@@ -73,12 +73,29 @@ void WorldState::tidy(bool after_insertions) {
   touched.clear();
 }
 
+void WorldState::begin_generations() {
+  if (!generations.empty()) return;
+  generations.resize(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) note_generation(static_cast<ObjectId>(i));
+}
+
+void WorldState::note_generation(ObjectId id) {
+  if (generations.empty()) return;
+  if (id >= generations.size()) generations.resize(objects.size(), kFree);
+  generations[id] = objects[id].sector == ChunkMap::kNone ? kFree : objects[id].generation;
+}
+
 Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept {
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
-  const std::span<const ChunkMap::Location> objects = WorldAccess::state(world).objects;
+  const WorldState& state = WorldAccess::state(world);
+  const std::span<const ChunkMap::Location> objects = state.objects;
+  const std::span<const std::uint32_t> generations = state.generations;
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
+    if (handle.index < generations.size() && handle.generation != WorldState::kFree &&
+        generations[handle.index] == handle.generation)
+      continue;
     if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
         objects[handle.index].generation != handle.generation)
       return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
@@ -179,6 +196,7 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles) {
     s.columns.forget(id);
     s.sectors[sector].map->insert(id, geometry::relative_box(box, s.sectors[sector].origin));
     s.objects[id].sector = sector;
+    s.note_generation(id);
     handles.set(i, {id, s.objects[id].generation});
   });
   s.tidy(true);
@@ -212,6 +230,7 @@ Status World::remove(Strided<const Handle> handles) {
     s.touch(object.sector);
     s.sectors[object.sector].map->remove(id);
     object.sector = ChunkMap::kNone;
+    s.note_generation(id);
     if (s.occluders) s.occluders->forget(id);
     if (s.levels) s.levels->forget(id);
     s.free_ids.push_back(id);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "library/geometry/ask_ahead.hpp"
+#include "library/geometry/box_math.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_runs.hpp"
 #include "library/world/world_state.hpp"
@@ -28,6 +29,7 @@ public:
     first_ = first;
     const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
     for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
+    if (map_ != nullptr && map_->keeps_pages() && move_by_id(count)) return;
     begin_sector(s_.objects[ids_[0]].sector);
     const bool inside = read_boxes(count);
     if (geometry::kAsksByReading && !map_->is_mover(ids_[0])) ask_for_block(count);
@@ -50,12 +52,54 @@ private:
     s_.touch(sector);
     if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
     sector_ = sector, map_ = s_.sectors[sector].map.get();
+    map_->expect_moves();
+    if (map_->keeps_pages()) s_.begin_generations();
     run_chunk_ = ChunkMap::kNone;
+  }
+
+  // The same where movers stand in pages, of the sector that the last block began in. False, with nothing
+  // done, where this one begins elsewhere.
+  bool move_by_id(std::uint32_t count) {
+    const std::span<const ObjectId> ids(ids_.data(), count);
+    const Box* const boxes = structs(count);
+    ask_for_pages();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      i += map_->move_in_pages(ids.subspan(i), boxes + i, kInSector);
+      if (i == count) break;
+      if (i == 0 && s_.objects[ids[0]].sector != sector_) return false;
+      ask_ahead(first_ + i);
+      s_.objects[ids[i]].sector == sector_&& geometry::holds(kInSector, boxes[i])
+          ? map_->move_loosely(ids[i], boxes[i], moving_)
+          : move_anywhere(ids[i], boxes_[first_ + i]);
+    }
+    return true;
+  }
+
+  // The block's boxes about the sector's origin, one after another.
+  const Box* structs(std::uint32_t count) {
+    const WorldPoint& origin = s_.sectors[sector_].origin;
+    std::span<const Box> structs;
+    if (BoxReader::lies_as_structs(boxes_, origin, structs)) return structs.data() + first_;
+    BoxReader::lay_out(boxes_, first_, count, origin, block_);
+    for (std::uint32_t i = 0; i < count; ++i) laid_out_[i] = box_of_block(i);
+    return laid_out_.data();
+  }
+  [[nodiscard]] Box box_of_block(std::uint32_t i) const {
+    const auto& v = block_.values;
+    return {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}};
+  }
+
+  // For the next block.
+  void ask_for_pages() const {
+    std::array<ObjectId, kBlock> next;
+    std::size_t count = 0;
+    for (std::size_t i = first_ + kBlock; count < kBlock && i < handles_.size(); ++i)
+      next[count++] = handles_[i].index;
+    if (count > 0) map_->prefetch_pages({next.data(), count});
   }
 
   // Returns whether all surely have their centres in the sector.
   bool read_boxes(std::uint32_t count) {
-    constexpr auto kInside = static_cast<float>(kSectorSide / 2);
     const WorldPoint& origin = s_.sectors[sector_].origin;
     std::span<const Box> structs;
     if (BoxReader::lies_as_structs(boxes_, origin, structs))
@@ -87,8 +131,7 @@ private:
   void move_one(std::uint32_t i, bool inside) {
     const ObjectId id = ids_[i];
     if (!inside || s_.objects[id].sector != sector_) return move_anywhere(id, boxes_[first_ + i]);
-    const auto& v = block_.values;
-    map_->move_loosely(id, {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}}, moving_);
+    map_->move_loosely(id, box_of_block(i), moving_);
     expect_next(id);
   }
 
@@ -123,6 +166,11 @@ private:
   static constexpr std::size_t kPastCache = 400'000;  // boxes of 24 bytes
   bool past_cache_;
   std::size_t first_ = 0;
+  // What lies in it surely has its centre in the sector.
+  static constexpr auto kInside = static_cast<float>(kSectorSide / 2);
+  static constexpr float kJustInside = kInside - 0.001f;
+  static constexpr Box kInSector{{-kJustInside, -kJustInside, -kJustInside},
+                                 {kJustInside, kJustInside, kJustInside}};
   // A run that ends at once was not worth looking for: then some objects are moved one by one.
   static constexpr std::uint32_t kWorthARun = 4, kFruitless = 16;
   std::uint32_t patience_ = 0;
@@ -132,6 +180,7 @@ private:
   std::uint32_t run_chunk_ = ChunkMap::kNone, run_slot_ = 0;
   std::array<ObjectId, kBlock> ids_;
   geometry::BoxBlock block_;
+  std::array<Box, kBlock> laid_out_;
 };
 
 }  // namespace

@@ -53,6 +53,10 @@ struct WorldState {
   /// One an id, shared by all sectors' maps; where the sector is kNone the id is free.
   ChunkMap::Locations objects;
   std::vector<ObjectId> free_ids;
+  /// One an id once movers stand in pages: then so many move that what check_handles() reads must be little.
+  /// The generation, but kFree of free ids; of an object of that very generation it says nothing.
+  geometry::LargeVector<std::uint32_t> generations;
+  static constexpr std::uint32_t kFree = 0xffffffffu;
   Columns columns;
   const ColumnTests* column_tests = nullptr;  ///< null: no column says who is seen
   std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
@@ -79,6 +83,9 @@ struct WorldState {
   void tidy(bool after_insertions);
   /// To be called when a column that says who is seen has come to be, with an element for each id.
   void begin_column(const ColumnTests& tests);
+  void begin_generations();
+  /// To be called when an object has come to be or is gone.
+  void note_generation(ObjectId id);
   /// World::move, of what has been checked.
   void move(const Strided<const Handle>& handles, const BoxView& boxes);
   /// Counts frames; true where a new one begins.

@@ -23,6 +23,12 @@ std::size_t movers_of(const World& world) {
   return count;
 }
 
+bool keeps_pages(const World& world) {
+  for (const world::Sector& sector : WorldAccess::state(world).sectors)
+    if (sector.map && sector.map->keeps_pages()) return true;
+  return false;
+}
+
 void expect_sound(const World& world) {
   for (const world::Sector& sector : WorldAccess::state(world).sectors) {
     if (!sector.map) continue;
@@ -69,6 +75,12 @@ public:
     }
     ASSERT_TRUE(world_.move(handles, BoxView(boxes)));
     for (std::size_t i = 0; i < handles.size(); ++i) twin_[handles[i].index] = wide(boxes[i]);
+  }
+
+  // Lists them in another order.
+  void shuffle() {
+    for (std::size_t i = standing_.size(); i > 1; --i)
+      std::swap(standing_[i - 1], standing_[random_.below(static_cast<std::uint32_t>(i))]);
   }
 
   void remove(std::size_t count) {
@@ -168,6 +180,70 @@ TEST(Movers, SettleWhenTheyRest) {
   expect_sound(crowd.world());
   crowd.remove(crowd.size());
   EXPECT_TRUE(WorldAccess::state(crowd.world()).sector_of_cell.empty());
+}
+
+// Half of all, others each frame, within one sector and across two; come, gone and listed twice; at last
+// none.
+TEST(Movers, ThoseThatMoveInNoOrderStandInPages) {
+  for (const Box& around : {kOneSector, kTwoSectors}) {
+    Crowd crowd(34, around);
+    crowd.insert(6000);
+    bool kept = false;
+    for (int frame = 0; frame < 60; ++frame) {
+      crowd.shuffle();
+      crowd.move(0, 3000, frame % 5 == 0 ? 0.0f : 2.0f);
+      kept = kept || keeps_pages(crowd.world());
+      if (frame % 7 == 3) crowd.remove(40), crowd.insert(45);
+      crowd.move(crowd.size() - 1, 2, 1);
+      if (frame % 10 == 9) expect_sound(crowd.world()), crowd.expect_right();
+      crowd.cull();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_TRUE(kept);
+    EXPECT_GT(movers_of(crowd.world()), 5000u);
+    for (int frame = 0; frame < 1500 && movers_of(crowd.world()) > 0; ++frame)
+      crowd.move(0, 0, 1), crowd.cull();
+    EXPECT_EQ(movers_of(crowd.world()), 0u);
+    expect_sound(crowd.world());
+    crowd.expect_right();
+    crowd.move(0, 1, 1);
+    EXPECT_FALSE(keeps_pages(crowd.world()));
+  }
+}
+
+// A handle of before is refused there, too, and one that nobody was ever given.
+TEST(Movers, StaleHandlesAreRefusedWherePagesAre) {
+  World world;
+  Random random(36);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 3000; ++i) boxes.push_back(test::random_box(random, kOneSector));
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  Culler culler;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  for (int frame = 0; frame < 6; ++frame) {
+    std::vector<Handle> some;
+    std::vector<Box> to;
+    for (int i = 0; i < 2000; ++i) {
+      const std::uint32_t at = random.below(3000);
+      some.push_back(handles[at]), to.push_back(boxes[at]);
+    }
+    ASSERT_TRUE(world.move(some, BoxView(to)));
+    ASSERT_TRUE(culler.cull(world, CullView{.view = {*make_view({}, 64, 64), {}}}, visible));
+  }
+  ASSERT_TRUE(keeps_pages(world));
+  const Handle gone = handles[7];
+  ASSERT_TRUE(world.remove(std::span(&gone, 1)));
+  for (const Handle bad : {gone, Handle{gone.index, gone.generation + 1}, Handle{gone.index, 0xffffffffu},
+                           Handle{3000, 0}, Handle{kNoObject, 0}})
+    EXPECT_EQ(world.move(std::span(&bad, 1), BoxView(std::span(boxes).first(1))).code(),
+              StatusCode::stale_handle)
+        << bad.index << " " << bad.generation;
+  Handle anew;
+  ASSERT_TRUE(world.insert(BoxView(std::span(boxes).first(1)), std::span(&anew, 1)));
+  EXPECT_EQ(anew.index, gone.index);
+  EXPECT_TRUE(world.move(std::span(&anew, 1), BoxView(std::span(boxes).first(1))));
+  EXPECT_FALSE(world.move(std::span(&gone, 1), BoxView(std::span(boxes).first(1))));
 }
 
 // What moves a little stays where it stands: chunks are not searched again.
