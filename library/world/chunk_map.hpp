@@ -67,6 +67,12 @@ public:
   static constexpr std::uint32_t kSmallCapacity = 16;  ///< of a chunk that has never held more
   static constexpr std::uint32_t kGroupCapacity = 32;  ///< chunks a group
   static constexpr std::uint32_t kMaxDepth = 6;
+  /// Whether movers may stand in pages; not where each byte of code is loaded by whoever opens a web page.
+#ifdef __wasm__
+  static constexpr bool kHasPages = false;
+#else
+  static constexpr bool kHasPages = true;
+#endif
 
   /// Where an object stands, and what else is kept of it, so that all of it comes with one line of memory.
   struct alignas(16) Location {
@@ -151,7 +157,9 @@ public:
                          bool past_cache) noexcept;
   /// To be called before objects are moved: says whether movers are to have pages from now on.
   void expect_moves() noexcept;
-  [[nodiscard]] bool keeps_pages() const noexcept { return kHasPages && by_id_; }
+  [[nodiscard]] bool keeps_pages() const noexcept {
+    return kHasPages && by_id_;
+  }
   /// Moves objects while each stands in its page, lies `within` and nothing but its own box changes; returns
   /// how many did.
   std::uint32_t move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
@@ -168,13 +176,17 @@ public:
   void rest();
   static constexpr std::uint32_t kRound = 128;
   /// Whether rest() has anything to do.
-  [[nodiscard]] bool restless() const noexcept { return !grown_.empty() || movers() > 0; }
+  [[nodiscard]] bool restless() const noexcept {
+    return !grown_.empty() || movers() > 0;
+  }
   /// How many objects are movers.
   [[nodiscard]] std::size_t movers() const noexcept {
     return mover_node_ == kNone ? 0 : nodes_[mover_node_].objects;
   }
   /// The region that holds the movers' groups, a child of node 0 that first_child does not list; or kNone.
-  [[nodiscard]] std::uint32_t mover_node() const noexcept { return mover_node_; }
+  [[nodiscard]] std::uint32_t mover_node() const noexcept {
+    return mover_node_;
+  }
   [[nodiscard]] bool is_mover(ObjectId object) const noexcept {
     return chunks_[(*locations_)[object].chunk].pool == kMovers;
   }
@@ -208,9 +220,15 @@ public:
 
   [[nodiscard]] bool contains(ObjectId object) const noexcept;
   [[nodiscard]] Box box(ObjectId object) const noexcept;
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] const ChunkMapOptions& options() const noexcept { return options_; }
-  [[nodiscard]] const Location& location(ObjectId object) const noexcept { return (*locations_)[object]; }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return size_;
+  }
+  [[nodiscard]] const ChunkMapOptions& options() const noexcept {
+    return options_;
+  }
+  [[nodiscard]] const Location& location(ObjectId object) const noexcept {
+    return (*locations_)[object];
+  }
 
   /// Chunk numbers lie below this; free ones have a count of 0. A number may be reused.
   [[nodiscard]] std::uint32_t chunk_limit() const noexcept {
@@ -246,11 +264,17 @@ public:
   /// Writes the chunk's vertices; room for its count is needed. Returns how many.
   std::uint32_t write_vertices(std::uint32_t chunk, std::span<ChunkVertex> out) const noexcept;
 
-  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
-  [[nodiscard]] std::span<const Group> groups() const noexcept { return groups_; }
+  [[nodiscard]] std::span<const Node> nodes() const noexcept {
+    return nodes_;
+  }
+  [[nodiscard]] std::span<const Group> groups() const noexcept {
+    return groups_;
+  }
 
   /// Chunks whose objects or boxes changed since the last acknowledge_changes(), freed ones included.
-  [[nodiscard]] std::span<const std::uint32_t> changed_chunks() const noexcept { return changed_; }
+  [[nodiscard]] std::span<const std::uint32_t> changed_chunks() const noexcept {
+    return changed_;
+  }
   void acknowledge_changes() noexcept;
 
   /// Shrinks the bounds of quadtree nodes that moves and removals left too large; and once most chunks stand
@@ -303,7 +327,9 @@ private:
   };
   // A k-d reference is a split, or a chunk with the highest bit set.
   static constexpr std::uint32_t kChunkBit = 0x80000000u;
-  static constexpr bool is_chunk(std::uint32_t reference) { return reference & kChunkBit; }
+  static constexpr bool is_chunk(std::uint32_t reference) {
+    return reference & kChunkBit;
+  }
 
   struct Split {
     float at = 0;
@@ -317,7 +343,9 @@ private:
   const float* lanes(const Chunk& chunk, std::uint32_t side) const noexcept {
     return pools_[chunk.pool].lanes.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
   }
-  ObjectId* ids(const Chunk& chunk) noexcept { return pools_[chunk.pool].ids.data() + chunk.first_lane; }
+  ObjectId* ids(const Chunk& chunk) noexcept {
+    return pools_[chunk.pool].ids.data() + chunk.first_lane;
+  }
   const ObjectId* ids(const Chunk& chunk) const noexcept {
     return pools_[chunk.pool].ids.data() + chunk.first_lane;
   }
@@ -346,7 +374,9 @@ private:
   void note_change(std::uint32_t chunk);
   void note_shape(std::uint32_t chunk) noexcept;
   void arrange();
-  [[nodiscard]] bool has_columns() const noexcept { return columns_ && columns_->any(); }
+  [[nodiscard]] bool has_columns() const noexcept {
+    return columns_ && columns_->any();
+  }
   void resize_columns(Pool& pool) const;
   void load_columns(const Chunk& chunk, std::uint32_t slot) noexcept;
   void load_columns(const Chunk& chunk) noexcept;
@@ -367,19 +397,18 @@ private:
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
   void free_mover_chunk(std::uint32_t chunk);
-  [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept { return chunk.previous != kNone; }
+  [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
+    return chunk.previous != kNone;
+  }
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
   void tighten_grown(std::uint32_t chunk);
   bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
   void rest_grown();
-  [[nodiscard]] bool keeps_movers() const noexcept { return size_ >= kFewestForMovers; }
+  [[nodiscard]] bool keeps_movers() const noexcept {
+    return size_ >= kFewestForMovers;
+  }
   static constexpr std::size_t kFewestForMovers = 1024;
-#ifdef __wasm__
-  static constexpr bool kHasPages = false;  // where each byte of code is loaded by whoever opens the page
-#else
-  static constexpr bool kHasPages = true;
-#endif
 
   std::uint32_t add_group(std::uint32_t node);
   void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);

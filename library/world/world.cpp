@@ -74,13 +74,13 @@ void WorldState::tidy(bool after_insertions) {
 }
 
 void WorldState::begin_generations() {
-  if (!generations.empty()) return;
+  if (!ChunkMap::kHasPages || !generations.empty()) return;
   generations.resize(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) note_generation(static_cast<ObjectId>(i));
 }
 
 void WorldState::note_generation(ObjectId id) {
-  if (generations.empty()) return;
+  if (!ChunkMap::kHasPages || generations.empty()) return;
   if (id >= generations.size()) generations.resize(objects.size(), kFree);
   generations[id] = objects[id].sector == ChunkMap::kNone ? kFree : objects[id].generation;
 }
@@ -93,7 +93,7 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   const std::span<const std::uint32_t> generations = state.generations;
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
-    if (handle.index < generations.size() && handle.generation != WorldState::kFree &&
+    if (ChunkMap::kHasPages && handle.index < generations.size() && handle.generation != WorldState::kFree &&
         generations[handle.index] == handle.generation)
       continue;
     if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||

@@ -30,14 +30,17 @@ public:
     const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
     for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
     if (map_ != nullptr && map_->keeps_pages() && move_by_id(count)) return;
-    begin_sector(s_.objects[ids_[0]].sector);
-    const bool inside = read_boxes(count);
-    if (geometry::kAsksByReading && !map_->is_mover(ids_[0])) ask_for_block(count);
-    for (std::uint32_t i = 0; i < count;) {
-      if (inside && run_chunk_ != ChunkMap::kNone && patience_ == 0) {
-        const std::uint32_t moved =
-            map_->move_run(run_chunk_, run_slot_, &ids_[i], block_, i, count - i, past_cache_);
-        if (moved < kWorthARun && run_slot_ > 0) patience_ = kFruitless;
+    // A run that goes on needs nothing else of memory, not even to be told its sector.
+    bool inside = runs() && read_boxes(count);
+    std::uint32_t i = inside ? move_run(0, count) : 0;
+    if (i == 0) {
+      begin_sector(s_.objects[ids_[0]].sector);
+      inside = read_boxes(count);
+      if (geometry::kAsksByReading && !map_->is_mover(ids_[0])) ask_for_block(count);
+    }
+    while (i < count) {
+      if (inside && runs()) {
+        const std::uint32_t moved = move_run(i, count);
         i += moved;
         if (moved > 0) continue;
       }
@@ -48,6 +51,14 @@ public:
   }
 
 private:
+  [[nodiscard]] bool runs() const { return run_chunk_ != ChunkMap::kNone && patience_ == 0; }
+  std::uint32_t move_run(std::uint32_t i, std::uint32_t count) {
+    const std::uint32_t moved =
+        map_->move_run(run_chunk_, run_slot_, &ids_[i], block_, i, count - i, past_cache_);
+    if (moved < kWorthARun && run_slot_ > 0) patience_ = kFruitless;
+    return moved;
+  }
+
   void begin_sector(std::uint32_t sector) {
     s_.touch(sector);
     if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
@@ -211,7 +222,9 @@ void WorldState::let_rest() {
 void WorldState::move(const Strided<const Handle>& handles, const BoxView& boxes) {
   const bool new_frame = begin_frame();
   constexpr std::size_t kManyOf = 16, kOftenOf = 64;
+  constexpr std::size_t kFewestForGenerations = 1024, kShareForGenerations = 4;
   const std::size_t count = boxes.size();
+  if (count >= kFewestForGenerations && kShareForGenerations * count >= objects.size()) begin_generations();
   Moving moving{tick, kManyOf * count >= size, allowance};
   moving.allowance += static_cast<std::uint32_t>(count / kOftenOf);
   if (new_frame) moving.allowance = static_cast<std::uint32_t>(count / kOftenOf) + kFewestAtRest;

@@ -53,7 +53,8 @@ struct WorldState {
   /// One an id, shared by all sectors' maps; where the sector is kNone the id is free.
   ChunkMap::Locations objects;
   std::vector<ObjectId> free_ids;
-  /// One an id once movers stand in pages: then so many move that what check_handles() reads must be little.
+  /// One an id once so many move that what check_handles() reads must be little: a quarter of all at once, or
+  /// a third that stand in pages.
   /// The generation, but kFree of free ids; of an object of that very generation it says nothing.
   geometry::LargeVector<std::uint32_t> generations;
   static constexpr std::uint32_t kFree = 0xffffffffu;
