@@ -10,34 +10,13 @@
 #include <span>
 #include <vector>
 
-#include "bytes.hpp"
+#include "instances.hpp"
 
 namespace {
 
-void require(bool holds) {
-  if (!holds) __builtin_trap();
-}
+using namespace sightline::fuzz;
 
-// One of them: a status that means something, and an index that is one.
-bool done(sightline_status status) {
-  require(status >= SIGHTLINE_OK && status <= SIGHTLINE_BAD_FILE);
-  return status == SIGHTLINE_OK;
-}
-
-constexpr std::size_t kMost = 40, kTooMuch = static_cast<std::size_t>(-1);
-
-struct Bytes : sightline::fuzz::Bytes {
-  using sightline::fuzz::Bytes::Bytes;
-  // Mostly sane, sometimes any bits at all.
-  double number(double scale) {
-    const std::uint8_t kind = byte();
-    if (kind < 8) return take<double>();
-    if (kind < 40) return scale * 1e6 * take<std::int8_t>();
-    return scale * take<std::int16_t>() / 256.0;
-  }
-  float single(double scale) { return static_cast<float>(number(scale)); }
-  bool rarely() { return byte() == 0; }
-};
+constexpr std::size_t kMost = 40;
 
 // Objects as a caller has them, laid out so that nothing is aligned to more than it must.
 struct Thing {
@@ -50,7 +29,7 @@ struct Thing {
 };
 using Things = std::array<Thing, kMost>;
 
-void fill(Bytes& in, Things& things, std::size_t count) {
+void fill(CallBytes& in, Things& things, std::size_t count) {
   for (Thing& t : std::span(things).first(count)) {
     const bool any = in.byte() < 16;
     for (int a = 0; a < 3; ++a) {
@@ -68,7 +47,7 @@ void fill(Bytes& in, Things& things, std::size_t count) {
 
 // What a pointer, a stride and a count can be made of that is refused.
 template <class Pointer>
-void harm(Bytes& in, Pointer& first, std::size_t& stride, std::size_t& count) {
+void harm(CallBytes& in, Pointer& first, std::size_t& stride, std::size_t& count) {
   switch (in.byte() % 5) {
     case 0:
       first = nullptr;
@@ -87,7 +66,7 @@ void harm(Bytes& in, Pointer& first, std::size_t& stride, std::size_t& count) {
   }
 }
 
-sightline_box_view boxes_of(Bytes& in, Things& things, std::size_t count) {
+sightline_box_view boxes_of(CallBytes& in, Things& things, std::size_t count) {
   Thing* t = things.data();
   sightline_box_view view = in.byte() & 1
                                 ? sightline_boxes_centre_half_float(t->centre, t->half, sizeof *t, count)
@@ -100,25 +79,25 @@ sightline_box_view boxes_of(Bytes& in, Things& things, std::size_t count) {
   return view;
 }
 
-sightline_handles handles_of(Bytes& in, Things& things, std::size_t count) {
+sightline_handles handles_of(CallBytes& in, Things& things, std::size_t count) {
   sightline_handles handles = sightline_handles_of(&things[0].handle, sizeof(Thing), count);
   if (in.rarely()) harm(in, handles.first, handles.stride, handles.count);
   return handles;
 }
 
-sightline_column column_of(Bytes& in, const std::uint32_t* first, std::size_t count) {
+sightline_column column_of(CallBytes& in, const std::uint32_t* first, std::size_t count) {
   sightline_column column = sightline_column_of(first, sizeof(Thing), count);
   if (in.rarely()) harm(in, column.first, column.stride, column.count);
   return column;
 }
 
-sightline_distances distances_of(Bytes& in, const Things& things, std::size_t count) {
+sightline_distances distances_of(CallBytes& in, const Things& things, std::size_t count) {
   sightline_distances distances = sightline_distances_of(&things[0].range, sizeof(Thing), count);
   if (in.rarely()) harm(in, distances.first, distances.stride, distances.count);
   return distances;
 }
 
-sightline_view view_of(Bytes& in) {
+sightline_view view_of(CallBytes& in) {
   sightline_camera camera = sightline_camera_default();
   sightline_view view;
   for (int a = 0; a < 3; ++a) camera.eye[a] = in.number(1), camera.forward[a] = in.single(1);
@@ -139,23 +118,12 @@ sightline_view view_of(Bytes& in) {
   return view;
 }
 
-void run_here(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
-  for (std::uint32_t i = count; i-- > 0;) job(data, i);
-}
-
-template <class T, void (*destroy)(T*)>
-struct Destroy {
-  void operator()(T* object) const { destroy(object); }
-};
-template <class T, void (*destroy)(T*)>
-using Owned = std::unique_ptr<T, Destroy<T, destroy>>;
-
 class Play {
 public:
-  explicit Play(Bytes& in) : in_(in) {}
+  explicit Play(CallBytes& in) : in_(in) {}
 
   void step() {
-    const std::uint8_t operation = in_.byte() % 16;
+    const std::uint8_t operation = in_.byte() % 17;
     count_ = in_.byte() % (kMost + 1);
     for (Thing& t : things_) {
       t.handle = {};
@@ -164,10 +132,10 @@ public:
     }
     if (operation < 7) fill(in_, things_, count_);
     constexpr void (Play::*operations[])() = {
-        &Play::insert,        &Play::insert,    &Play::move,         &Play::draw_boxes,
-        &Play::ask,           &Play::rays,      &Play::columns,      &Play::remove,
-        &Play::begin,         &Play::draw_mesh, &Play::draw_spheres, &Play::cull,
-        &Play::add_occluders, &Play::carry,     &Play::cull,         &Play::shadows};
+        &Play::insert,       &Play::insert,   &Play::move,          &Play::draw_boxes, &Play::ask,
+        &Play::rays,         &Play::columns,  &Play::remove,        &Play::begin,      &Play::draw_mesh,
+        &Play::draw_spheres, &Play::cull,     &Play::add_occluders, &Play::carry,      &Play::cull,
+        &Play::shadows,      &Play::instances};
     (this->*operations[operation])();
     require(sightline_world_size(world_.get()) == standing_);
   }
@@ -333,8 +301,9 @@ private:
     std::vector<float> corners(9 * (in_.byte() % 40));
     for (float& f : corners) f = in_.single(1);
     const double origin[3] = {in_.number(1), in_.number(1), in_.number(1)};
+    const std::size_t points = corners.size() / 3;
     (void)done(sightline_world_set_triangles(world_.get(), things_[0].handle, corners.data(),
-                                             in_.rarely() ? corners.size() : corners.size() / 3,
+                                             points > 0 && in_.rarely() ? points - 1 : points,
                                              in_.byte() & 1 ? origin : nullptr));
   }
 
@@ -413,6 +382,10 @@ private:
     require(casts <= 1);
   }
 
+  void instances() {
+    instances_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get());
+  }
+
   void cull() {
     std::vector<sightline_cull_view> views(in_.byte() % 10);
     const bool automatic = in_.byte() & 1;
@@ -466,13 +439,14 @@ private:
     for (std::size_t i = 0; i < result.count && output.levels; ++i) require(levels[i] < SIGHTLINE_MAX_LEVELS);
   }
 
-  Bytes& in_;
+  CallBytes& in_;
   Owned<sightline_world, sightline_world_destroy> world_{sightline_world_create()};
   Owned<sightline_culler, sightline_culler_destroy> culler_{sightline_culler_create()};
   Owned<sightline_occlusion, sightline_occlusion_destroy> occlusion_{sightline_occlusion_create()};
   Owned<sightline_bvh, sightline_bvh_destroy> bvh_{sightline_bvh_create()};
   Owned<sightline_shadow_casters, sightline_shadow_casters_destroy> casters_{
       sightline_shadow_casters_create()};
+  sightline::fuzz::InstancesPlay instances_{in_};
   sightline_view last_view_{}, shadow_{};
   std::vector<sightline_handle> handles_;
   std::vector<std::uint32_t> names_;  // of occluders
@@ -483,7 +457,7 @@ private:
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Bytes in(data, size);
+  CallBytes in(data, size);
   Play play(in);
   for (int step = 0; step < 200 && !in.empty(); ++step) play.step();
   return 0;

@@ -4,6 +4,7 @@
 
 #include <sightline/sightline.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -73,6 +74,23 @@ Status take(const sightline_sphere_view& given, SphereView& spheres) noexcept;
 Status take(const sightline_jobs& given, JobSystem& jobs) noexcept;
 /// The same of a view, which must be sound.
 Status take(const sightline_view& given, WorldView& view) noexcept;
+
+/// The views stand as far apart as the caller's header has them.
+using Views = std::array<CullView, kMaxViews>;
+Status take(const sightline_cull_view* given, std::size_t count, Views& views) noexcept;
+
+inline Strided<const Handle> read(const sightline_handles& handles) noexcept {
+  return {handles.first, handles.count, handles.stride};
+}
+inline Strided<const std::uint32_t> read(const sightline_column& column) noexcept {
+  return {column.first, column.count, column.stride};
+}
+inline Strided<const DistanceRange> read(const sightline_distances& distances) noexcept {
+  return {distances.first, distances.count, distances.stride};
+}
+inline Handle handle_of(sightline_handle handle) noexcept {
+  return {handle.index, handle.generation};
+}
 
 /// Whether the pointers hold a mesh, and its sides.
 Status take_mesh(const float* positions, std::size_t position_count, const std::uint32_t* indices,

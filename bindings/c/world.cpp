@@ -25,19 +25,6 @@ static_assert(sizeof(sightline_occluder_placement) == sizeof(OccluderPlacement) 
               offsetof(sightline_occluder_placement, transform) == offsetof(OccluderPlacement, transform) &&
               offsetof(sightline_occluder_placement, origin) == offsetof(OccluderPlacement, origin));
 
-Strided<const Handle> read(const sightline_handles& handles) {
-  return {handles.first, handles.count, handles.stride};
-}
-Strided<const std::uint32_t> read(const sightline_column& column) {
-  return {column.first, column.count, column.stride};
-}
-Strided<const DistanceRange> read(const sightline_distances& distances) {
-  return {distances.first, distances.count, distances.stride};
-}
-Handle handle_of(sightline_handle handle) {
-  return {handle.index, handle.generation};
-}
-
 Status take(const sightline_object_columns& given, ObjectColumns& columns) {
   sightline_object_columns c = sightline_object_columns_default();
   if (!take_struct(&given, SIGHTLINE_FIRST_SIZE(sightline_object_columns, values), c) || c.reserved != 0) {
@@ -84,31 +71,6 @@ Status take(const sightline_cull_output& given, CullOutput& output) {
   return {};
 }
 
-using Views = std::array<CullView, kMaxViews>;
-
-// The views stand as far apart as the caller's header has them.
-Status take(const sightline_cull_view* given, std::size_t count, Views& views) {
-  if (count < 1 || count > kMaxViews) {
-    return {StatusCode::bad_argument, "cull: expected 1 to 8 views"};
-  }
-  const std::size_t stride = given->struct_size;
-  const auto* at = reinterpret_cast<const std::byte*>(given);
-  for (std::size_t i = 0; i < count; ++i, at += stride) {
-    sightline_cull_view v = sightline_cull_view_of(nullptr);
-    if (!take_struct(at, SIGHTLINE_FIRST_SIZE(sightline_cull_view, view), v) || v.struct_size != stride ||
-        v.reserved != 0) {
-      return {StatusCode::bad_argument,
-              "cull: a struct_size of a view is unknown, expected that of sightline_cull_view_of", i};
-    }
-    views[i].view = view_of(v.view);
-    views[i].occlusion = v.occlusion ? &v.occlusion->buffer : nullptr;
-    views[i].layers = v.layers, views[i].min_area = v.min_area;
-    views[i].distance_scale = v.distance_scale, views[i].distance_view = v.distance_view;
-    views[i].casters = v.casters ? &v.casters->casters : nullptr;
-  }
-  return {};
-}
-
 Status stale() {
   return {StatusCode::stale_handle, "world: the handle names no object that stands"};
 }
@@ -136,6 +98,29 @@ sightline_status read_object(const sightline_world* world, sightline_handle hand
 }
 
 }  // namespace
+
+// The views stand as far apart as the caller's header has them.
+Status c_api::take(const sightline_cull_view* given, std::size_t count, Views& views) noexcept {
+  if (count < 1 || count > kMaxViews) {
+    return {StatusCode::bad_argument, "cull: expected 1 to 8 views"};
+  }
+  const std::size_t stride = given->struct_size;
+  const auto* at = reinterpret_cast<const std::byte*>(given);
+  for (std::size_t i = 0; i < count; ++i, at += stride) {
+    sightline_cull_view v = sightline_cull_view_of(nullptr);
+    if (!take_struct(at, SIGHTLINE_FIRST_SIZE(sightline_cull_view, view), v) || v.struct_size != stride ||
+        v.reserved != 0) {
+      return {StatusCode::bad_argument,
+              "cull: a struct_size of a view is unknown, expected that of sightline_cull_view_of", i};
+    }
+    views[i].view = view_of(v.view);
+    views[i].occlusion = v.occlusion ? &v.occlusion->buffer : nullptr;
+    views[i].layers = v.layers, views[i].min_area = v.min_area;
+    views[i].distance_scale = v.distance_scale, views[i].distance_view = v.distance_view;
+    views[i].casters = v.casters ? &v.casters->casters : nullptr;
+  }
+  return {};
+}
 
 extern "C" {
 
@@ -340,7 +325,7 @@ sightline_status sightline_cull(sightline_culler* culler, const sightline_world*
   Views given;
   CullOptions how;
   CullOutput out;
-  if (const Status ok = take(views, view_count, given); !ok) return keep(ok);
+  if (const Status ok = c_api::take(views, view_count, given); !ok) return keep(ok);
   if (const Status ok = take(options, how); !ok) return keep(ok);
   if (const Status ok = take(*output, out); !ok) return keep(ok);
   const Result<CullResult> done = culler->culler.cull(world->world, {given.data(), view_count}, how, out);

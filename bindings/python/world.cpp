@@ -8,15 +8,14 @@
 #include <optional>
 
 #include "bindings/python/arrays.hpp"
+#include "bindings/python/cull_views.hpp"
 #include "bindings/python/objects.hpp"
 
 namespace sightline::python {
 
 namespace {
 
-using SharedWorld = Guarded<World>;
 using LockedCuller = Guarded<Culler>;
-using Reading = std::shared_lock<std::shared_mutex>;
 
 // Calls that check the caller's arrays and then rely on them keep the interpreter's lock.
 
@@ -141,21 +140,13 @@ std::size_t id_limit_of(const SharedWorld& world) {
   return looking(world, [](const World& w) { return w.id_limit(); });
 }
 
-struct ViewOfWorld {
-  WorldView view;
-  std::uint32_t layers = kAllLayers;
-  float min_area = 0;
-  std::shared_ptr<Occlusion> occlusion = nullptr;
-  float distance_scale = 1;
-  std::optional<std::uint32_t> distance_view = {};
-  std::shared_ptr<Casters> casters = nullptr;
-};
-
 ViewOfWorld view_of(const py::handle& given) {
   if (py::isinstance<WorldView>(given)) return {given.cast<WorldView>()};
   if (!py::isinstance<ViewOfWorld>(given)) refuse("cull: expected a View, a CullView, or some of them");
   return given.cast<ViewOfWorld>();
 }
+
+}  // namespace
 
 std::vector<ViewOfWorld> views_of(const py::object& given) {
   std::vector<ViewOfWorld> views;
@@ -164,9 +155,17 @@ std::vector<ViewOfWorld> views_of(const py::object& given) {
   return views;
 }
 
-// Locks of all that a cull reads, each once and always in the same order.
-std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views) {
-  std::vector<std::shared_mutex*> mutexes;
+std::vector<CullView> cull_views_of(const std::vector<ViewOfWorld>& views) {
+  std::vector<CullView> out;
+  for (const ViewOfWorld& v : views)
+    out.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area,
+                   v.distance_scale, v.distance_view.value_or(kOwnView),
+                   v.casters ? &v.casters->value : nullptr});
+  return out;
+}
+
+std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views,
+                              std::vector<std::shared_mutex*> mutexes) {
   for (const ViewOfWorld& v : views) {
     if (v.occlusion) mutexes.push_back(&v.occlusion->mutex);
     if (v.casters) mutexes.push_back(&v.casters->mutex);
@@ -177,6 +176,8 @@ std::vector<Reading> lock_all(const std::vector<ViewOfWorld>& views) {
   for (std::shared_mutex* mutex : mutexes) locks.emplace_back(*mutex);
   return locks;
 }
+
+namespace {
 
 // Room for what a world holds now.
 struct Output {
@@ -211,11 +212,7 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
                 bool values, const std::string& occlusion, float object_cost, const std::string& coverage,
                 std::uint32_t scale, const std::optional<LevelOptions>& levels) {
   const std::vector<ViewOfWorld> given = views_of(views);
-  std::vector<CullView> seen;
-  for (const ViewOfWorld& v : given)
-    seen.push_back({v.view, v.occlusion ? &v.occlusion->value : nullptr, v.layers, v.min_area,
-                    v.distance_scale, v.distance_view.value_or(kOwnView),
-                    v.casters ? &v.casters->value : nullptr});
+  const std::vector<CullView> seen = cull_views_of(given);
   CullOptions options{{}, values};
   options.occlusion = occlusion_of(occlusion), options.costs.object = object_cost;
   options.buffer = occlusion_options(coverage, scale);

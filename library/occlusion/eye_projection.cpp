@@ -45,12 +45,8 @@ Rows rows_of(const View& view, double scale) {
   return out;
 }
 
-}  // namespace
-
-EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin, std::uint32_t scale) noexcept {
-  const Rows rows = rows_of(view.view, scale);
-  const glm::dvec3 eye =
-      rows.eye + glm::dvec3(view.origin.x - origin.x, view.origin.y - origin.y, view.origin.z - origin.z);
+// Of rows about an eye. In line, so that nothing grows where nothing is placed.
+[[gnu::always_inline]] inline EyeProjection about_eye(const Rows& rows, const glm::dvec3& eye) {
   EyeProjection out;
   const Split about = split(eye);
   out.eye_high = about.rounded, out.eye_low = about.rest;
@@ -60,6 +56,21 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin, st
   out.nearness = to_vec4(-rows.forward, 0);
   out.orthographic = rows.orthographic;
   return out;
+}
+
+}  // namespace
+
+EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin, std::uint32_t scale) noexcept {
+  const Rows rows = rows_of(view.view, scale);
+  return about_eye(rows, rows.eye + glm::dvec3(view.origin.x - origin.x, view.origin.y - origin.y,
+                                               view.origin.z - origin.z));
+}
+
+EyeProjection placed_projection(const View& view, const glm::dmat4& placement, std::uint32_t scale) noexcept {
+  Rows rows = rows_of(view, scale);
+  const glm::dmat3 turned = glm::transpose(glm::dmat3(placement));
+  for (glm::dvec3* row : {&rows.x, &rows.y, &rows.w, &rows.forward}) *row = turned * *row;
+  return about_eye(rows, glm::dvec3(glm::inverse(placement) * glm::dvec4(rows.eye, 1)));
 }
 
 PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {

@@ -1,6 +1,8 @@
 // A view prepared for drawing and querying: coordinates about its eye.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <array>
 #include <cstdint>
 
@@ -33,6 +35,9 @@ struct PixelRays {
 /// Of the same view about another origin, in pixels `scale` times as wide as the view's.
 EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin,
                              std::uint32_t scale = 1) noexcept;
+/// The same of what stands in a space of its own: `placement` is from there to metres about the view's
+/// origin.
+EyeProjection placed_projection(const View& view, const glm::dmat4& placement, std::uint32_t scale) noexcept;
 PixelRays pixel_rays(const View& view, std::uint32_t scale = 1) noexcept;
 
 }  // namespace sightline::occlusion

@@ -15,6 +15,7 @@
 #include "library/geometry/linear.hpp"
 #include "library/geometry/mutant.h"
 #include "library/world/culler_state.hpp"
+#include "library/world/sector_walk-inl.hpp"
 
 namespace sightline {
 
@@ -24,114 +25,21 @@ using namespace geometry;
 
 namespace {
 
-std::uint8_t side_along(float normal, std::uint8_t axis, bool far) {
-  return static_cast<std::uint8_t>(axis + ((normal >= 0) != far ? 3 : 0));
-}
-
 SectorView sector_view(const CullView& culled, const WorldPoint& distance_eye, const Sector& sector) {
   const WorldView& view = culled.view;
   const WorldPoint &e = distance_eye, &o = sector.origin;
   SectorView out;
-  out.layers = culled.layers, out.distance_scale = culled.distance_scale;
   out.distance_eye = to_vec3(glm::dvec3(e.x - o.x, e.y - o.y, e.z - o.z));
-  const glm::dvec3 offset(sector.origin.x - view.origin.x, sector.origin.y - view.origin.y,
-                          sector.origin.z - view.origin.z);
   glm::dmat4 moved(1.0);
-  moved[3] = glm::dvec4(offset, 1.0);
+  moved[3] = glm::dvec4(o.x - view.origin.x, o.y - view.origin.y, o.z - view.origin.z, 1.0);
   const glm::dmat4 to_eye = to_double(view.view.world_to_eye) * moved;
-  const glm::dmat4 clip = to_double(view.view.eye_to_clip) * to_eye;
-  out.planes = frustum_of(clip, view_direction(view.view), sector.map->nodes()[0].bounds).planes;
-  for (std::size_t p = 0; p < Frustum::sides; ++p) {
-    const Vec3& n = out.planes[p].normal;
-    out.near_side[p] = {side_along(n.x, 0, false), side_along(n.y, 1, false), side_along(n.z, 2, false)};
-    out.far_side[p] = {side_along(n.x, 0, true), side_along(n.y, 1, true), side_along(n.z, 2, true)};
-  }
-  out.eye = to_vec3(glm::dvec3(glm::inverse(to_eye)[3]));
-  if (culled.min_area > 0) {
-    const Projector projector = make_projector(view.view, {});
-    out.orthographic = projector.orthographic;
-    out.area_scale =
-        std::numbers::pi_v<float> * projector.pixels_per_metre * projector.pixels_per_metre / culled.min_area;
-  }
+  aim(out, culled, to_eye, view_direction(view.view), sector.map->nodes()[0].bounds);
   if (culled.occlusion) {
     out.occluders = &OcclusionAccess::tiles(*culled.occlusion);
     out.projection = out.occluders->ask->projection(view, sector.origin, out.occluders->scale);
   }
   return out;
 }
-
-// The planes among `planes` that the box crosses, or kOutside; `failed` is tried first, and remembers.
-PlaneSet classify(const SectorView& view, const Box& box, PlaneSet planes, std::uint8_t& failed) {
-  const auto far_enough = [&](int p, bool far) {
-    const Plane& plane = view.planes[static_cast<std::size_t>(p)];
-    const bool x = (plane.normal.x >= 0) != far, y = (plane.normal.y >= 0) != far,
-               z = (plane.normal.z >= 0) != far;
-    return signed_distance(plane, x ? box.max.x : box.min.x, y ? box.max.y : box.min.y,
-                           z ? box.max.z : box.min.z) >= 0;
-  };
-  if ((planes >> failed & 1) && !far_enough(failed, false)) return kOutside;
-  PlaneSet crossing = 0;
-  for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
-    const int p = std::countr_zero(rest);
-    if (!far_enough(p, false)) {
-      failed = static_cast<std::uint8_t>(p);
-      return kOutside;
-    }
-    if (!far_enough(p, true)) crossing |= static_cast<PlaneSet>(1u << p);
-  }
-  return crossing;
-}
-
-using ViewPlanes = std::array<PlaneSet, kMaxViews>;
-
-// The region tree of one sector, depth first.
-class RegionWalk {
-public:
-  /// `sector` counts the sectors that some view may see, `failed` is the sector's.
-  RegionWalk(CullerState& state, std::uint32_t sector, std::size_t views, std::uint8_t* failed) noexcept
-      : state_(state), sector_(sector), views_(views), failed_(failed), map_(*state.maps[sector]) {}
-
-  std::uint64_t run() noexcept {
-    ViewPlanes all{};
-    for (std::size_t v = 0; v < views_; ++v)
-      all[v] = state_.views[sector_ * views_ + v].layers != 0 ? kAllPlanes : kOutside;
-    visit(0, all);
-    return visited_;
-  }
-
-private:
-  bool narrow(const Box& box, ViewPlanes& planes, std::uint8_t* failed) const noexcept {
-    bool any = false;
-    for (std::size_t v = 0; v < views_; ++v) {
-      if (planes[v] == kOutside) continue;
-      if (planes[v] != 0) {
-        planes[v] = classify(state_.views[sector_ * views_ + v], box, planes[v], failed[v]);
-      }
-      any = any || planes[v] != kOutside;
-    }
-    return any;
-  }
-
-  void visit(std::uint32_t index, ViewPlanes planes) noexcept {
-    const ChunkMap::Node& node = map_.nodes()[index];
-    ++visited_;
-    std::uint8_t* failed = failed_ + index * kMaxViews;
-    if (node.objects == 0 || !narrow(node.bounds, planes, failed)) return;
-    visited_ += node.groups.size();
-    find_groups(node, std::span(state_.views).subspan(sector_ * views_, views_), planes, sector_,
-                state_.entries);
-    if (index == 0 && map_.movers() > 0) visit(map_.mover_node(), planes);
-    if (node.first_child == ChunkMap::kNone) return;
-    for (std::uint32_t i = 0; i < 4; ++i) visit(node.first_child + i, planes);
-  }
-
-  CullerState& state_;
-  std::uint32_t sector_;
-  std::size_t views_;
-  std::uint8_t* failed_;
-  const ChunkMap& map_;
-  std::uint64_t visited_ = 0;
-};
 
 void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);

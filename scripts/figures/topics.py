@@ -31,6 +31,12 @@ def moving(quick):
                         name.removesuffix("worst_frame") + "world" if name.endswith("/worst_frame") else None)
 
 
+def instances(quick):
+    """A milliard objects in instances of worlds beside a plain world of those that a view may see."""
+    rows = google_benchmark("instances", 3, 0.02 if quick else 0.2, counters=(("GiB", "GiB", 1),))
+    return compare_with(rows, {f"instances/{form}": f"plain/{form}" for form in ("quarters", "turned")})
+
+
 def movers(quick):
     """What moves: a world's boxes, the chunks of the raster methods, a scene's objects under each method."""
     rows = google_benchmark("world", 3, 0.02, "^(build|move_|far_sectors/move)")
@@ -298,6 +304,6 @@ def web(quick):
     return rows
 
 
-TOPICS = {"world": world, "movers": movers, "moving": moving, "frustum": frustum, "occlusion": occlusion, "rays": rays,
-          "scenes": scenes, "surfaces": surfaces, "automatic": automatic, "memory": memory, "startup": startup, "large": large,
-          "bake": bake, "draw-calls": draw_calls, "web": web}
+TOPICS = {"world": world, "instances": instances, "movers": movers, "moving": moving, "frustum": frustum,
+          "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "automatic": automatic,
+          "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}

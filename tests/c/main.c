@@ -44,6 +44,7 @@ int main(void) {
   test_cull();
   test_columns();
   test_shadows();
+  test_instances();
   test_automatic();
   test_occlusion();
   test_frustum();

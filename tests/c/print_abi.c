@@ -27,12 +27,17 @@ int main(void) {
   STRUCT(sightline_frustum, origin);
   STRUCT(sightline_handle, generation);
   STRUCT(sightline_handles, count);
+  STRUCT(sightline_instance_options, zones);
+  STRUCT(sightline_instance_placement, origin);
+  STRUCT(sightline_instance_range, count);
+  STRUCT(sightline_instance_result, culled_occlusion);
   STRUCT(sightline_jobs, reserved);
   STRUCT(sightline_level_options, cut);
   STRUCT(sightline_light, reserved);
   STRUCT(sightline_object_columns, distances);
   STRUCT(sightline_occluder_parts, box_count);
   STRUCT(sightline_occluder_placement, origin);
+  STRUCT(sightline_placements, count);
   STRUCT(sightline_pvs_cells, visible_count);
   STRUCT(sightline_ray, max_distance);
   STRUCT(sightline_sphere_view, count);

@@ -290,6 +290,48 @@ void answer_world(const std::vector<NamedView>& views, Answers& out) {
   }
 }
 
+// A world in many places, turned and scaled; seen in part, and hidden in part.
+void answer_instances(const std::vector<NamedView>& views, Answers& out) {
+  scene::Random random(10);
+  std::vector<WorldBox> boxes;
+  for (int i = 0; i < 500; ++i) boxes.push_back(world_box(box_of(random, 3)));
+  std::vector<Handle> objects(boxes.size());
+  World world;
+  expect(world.insert(boxes, objects));
+  Instances instances;
+  const PlacedWorldId name = *instances.add_world(world);
+  std::vector<InstancePlacement> placements;
+  for (int i = 0; i < 40; ++i) {
+    const float size = random.between(0.1f, 0.5f), c = 0.8f * size, s = 0.6f * size;
+    const Vec3 at = random.inside(kSpace);
+    placements.push_back({name, {{c, 0, -s, 0, 0, size, 0, 0, s, 0, c, 0, at.x, at.y, at.z, 1}}, {}});
+  }
+  std::vector<Handle> handles(placements.size());
+  expect(instances.insert(placements, handles));
+  InstanceCuller culler;
+  OcclusionBuffer buffer;
+  const InstanceCullOptions options{.jobs = {test::run_threads, nullptr, out.threads}, .masks = true};
+  for (const NamedView& named : views) {
+    const WorldView view{named.view, {}};
+    expect(buffer.begin(view));
+    draw_occluders(buffer);
+    const std::array both{CullView{.view = view},
+                          CullView{.view = view, .occlusion = &buffer, .min_area = 4}};
+    for (const std::size_t count : {1, 2}) {
+      const auto seen = culler.cull(instances, std::span(both).first(count), options);
+      expect(seen.error());
+      if (!seen) continue;
+      Hash ranges;
+      for (const auto& [instance, first, objects_seen] : seen->ranges)
+        ranges.add(instance), ranges.add(first), ranges.add(objects_seen);
+      const std::string by = "instances." + std::to_string(count) + "_views." + named.name;
+      out.add(by, ranges);
+      out.add_all(by + ".ids", seen->ids);
+      out.add_all(by + ".masks", seen->masks);
+    }
+  }
+}
+
 void answer_rays(const std::vector<NamedView>& views, Answers& out) {
   scene::Random random(7);
   Boxes boxes;
@@ -329,6 +371,7 @@ int main() {
     answer_occlusion(all, out);
     answer_world(all, out);
     answer_columns(all, out);
+    answer_instances(all, out);
     answer_rays(all, out);
   });
   return others == 0 ? 0 : 1;

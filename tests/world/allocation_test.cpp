@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include <sightline/instances.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/shadows.hpp>
 #include <sightline/world.hpp>
@@ -109,6 +110,44 @@ TEST(Allocation, CullAllocatesNothingOnceWarm) {
   }
   EXPECT_EQ(allocations - warm, 0u);
   EXPECT_GT(kept, 1000u);
+}
+
+TEST(Allocation, CullingInstancesAllocatesNothingOnceWarm) {
+  scene::Random random(6);
+  World world;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 3000; ++i)
+    boxes.push_back(test::box_at({random.between(-90, 90), 5, random.between(-90, 90)}, {1, 1, 1}));
+  std::vector<Handle> objects(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), objects));
+  const std::array sizes{100.0f, 20.0f};
+  const std::vector<LevelTableId> tables(boxes.size(), *world.add_levels(sizes));
+  ASSERT_TRUE(world.set_levels(objects, std::span<const LevelTableId>(tables)));
+  Instances instances;
+  const PlacedWorldId name = *instances.add_world(world);
+  std::vector<InstancePlacement> placements(100, {name, {}, {}});
+  for (InstancePlacement& p : placements)
+    p.origin = {random.between(-1500, 1500), 0, random.between(-1500, 1500)};
+  std::vector<Handle> handles(placements.size());
+  ASSERT_TRUE(instances.insert(placements, handles));
+  InstanceCuller culler;
+  std::size_t warm = 0;
+  std::uint64_t seen = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    // The first frame sees everything.
+    const Vec3 eye = frame == 0 ? Vec3{0, 9000, 0.1f} : Vec3{random.between(-2000, 2000), 5, 0};
+    Camera camera{.eye = eye, .forward = frame == 0 ? Vec3{0, -1, -0.001f} : random.direction()};
+    camera.far_plane = 20000;
+    const CullView view{.view = {*make_view(camera, 640, 480), {}}, .min_area = 0.001f};
+    const std::array views{view, CullView{.view = view.view}};
+    if (frame == 1) warm = allocations;
+    const InstanceCullOptions options{.jobs = {run_here, nullptr, 4}, .masks = true, .levels = true};
+    seen += culler.cull(instances, views, options)->objects;
+    seen += culler.cull(instances, view)->objects;
+    seen += culler.cull(instances, views[1])->objects;
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+  EXPECT_GT(seen, 1000u);
 }
 
 TEST(Allocation, ShadowCastersAllocateNothingOnceWarm) {
