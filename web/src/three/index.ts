@@ -17,6 +17,7 @@ import { Inventory } from './inventory.js';
 import { fill, narrow, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { restore } from './restore.js';
+import type { Sender } from './sending.js';
 import type { Thing } from './things.js';
 import { Whole } from './whole.js';
 
@@ -292,11 +293,11 @@ export class SightlineCuller {
   #narrow(thing: Thing, main: Pass, shadows: Shadow[], renderer: Renderer, frame: Frame, nested: boolean): void {
     const { mesh, kind } = thing;
     if (kind === 'batched' && !Object.hasOwn(mesh, 'onBeforeRender')) {
-      mesh.onBeforeRender = (_renderer, scene, camera, geometry, material) => {
+      mesh.onBeforeRender = (by, scene, camera, geometry, material) => {
         const pass = scene === null ? this.#shadow : main;
-        fill(thing, pass?.ranges.get(thing), camera, geometry, material);
+        fill(thing, pass?.ranges.get(thing), by as Sender, camera, geometry, material);
       };
-      frame.restore.push(() => restore(mesh as BatchedMesh, 'onBeforeRender', undefined));
+      frame.restore.push(() => (thing.sending!.end(), restore(mesh as BatchedMesh, 'onBeforeRender', undefined)));
     }
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
