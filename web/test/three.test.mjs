@@ -40,6 +40,13 @@ test('of a batch that is culled what is drawn and has changed is sent alone', as
   });
 });
 
+test('a mirror shows all of a batch that it would show without the culler', async () => {
+  await withPage(page, async (tab) => {
+    await tab.waitForFunction(() => window.mirror);
+    assert.deepEqual(await tab.evaluate(() => window.mirror(24)), { differs: [], own: false });
+  });
+});
+
 test('WebGPURenderer draws the same with the culler', async () => {
   await withPage(new URL('browser/webgpu.mjs', import.meta.url).pathname, async (tab) => {
     await tab.waitForFunction(() => window.compare);

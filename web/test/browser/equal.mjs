@@ -242,6 +242,36 @@ window.batch = async (views) => {
   return result;
 };
 
+/** What a mirror shows of a batch, which draws the scene from elsewhere while it is drawn: views that differ. */
+window.mirror = async (views) => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height);
+  const scene = new THREE.Scene(), { all, side } = places(900), next = random(4), differs = [];
+  add(scene, 'batched', all, new THREE.MeshBasicMaterial());
+  const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 500), other = camera.clone();
+  const mirror = new THREE.Mesh(new THREE.PlaneGeometry(0.1, 0.1), new THREE.MeshBasicMaterial());
+  const target = new THREE.WebGLRenderTarget(width, height), seen = new Uint8Array(4 * width * height);
+  mirror.onBeforeRender = () => {
+    const own = renderer.getRenderTarget();
+    mirror.visible = false, renderer.setRenderTarget(target), renderer.render(scene, other);
+    mirror.visible = true, renderer.setRenderTarget(own);
+    renderer.readRenderTargetPixels(target, 0, 0, width, height, seen);
+  };
+  camera.add(mirror), mirror.position.set(0, 0, -1), scene.add(camera);
+  const culler = new SightlineCuller(scene, { occlusion: false });
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  for (let v = 0; v < views; ++v) {
+    look(camera, next, side), look(other, next, side), other.updateMatrixWorld();
+    if (v % 4 === 3) other.position.set(side / 2, 400, side / 2), other.lookAt(side / 2, 0, side / 2 + 1); // all is in view
+    const pictures = [false, true].map((on) => ((culler.enabled = on), [pixels(renderer, scene, camera), seen.slice()]));
+    if ([0, 1].some((k) => differing(pictures[0][k], pictures[1][k]) > 0)) differs.push(v);
+  }
+  culler.dispose(), target.dispose(), renderer.dispose(), renderer.forceContextLoss();
+  return { differs, own: Object.hasOwn(scene.children[0], 'onBeforeRender') };
+};
+
 /** Things that come, go, hide and change, one step after another; the names of the steps whose pictures differ. */
 window.changes = async () => {
   await ready;
