@@ -1,7 +1,7 @@
 // Which of a batch's matrices go to the GPU. Where one has changed three sends all; a culled batch needs those that are
 // drawn. So we send what is drawn and has changed, and while it is drawn its texture has the version that three sent last;
-// then its own again, so that without the culler three sends all as ever. (three's own `updateRanges` ask WebGL for its
-// state, for which Chromium waits longer than sending all takes.)
+// then its own again, so that without the culler three sends all as ever. (Through three's own `updateRanges`, which
+// ask WebGL for its state first, a frame took longer.)
 import type { Batch, DataTexture } from './batches.js';
 
 /** What is used of a WebGLRenderer. */
