@@ -24,7 +24,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::rays::HWY_NAMESPACE {
 
-constexpr std::size_t kPacket = 16;
+// Vectors of four floats wait for each other: more rays give them more to do.
+constexpr std::size_t kPacket = HWY_TARGET == HWY_WASM ? 32 : 16;
 
 // Rays that go down the tree together: where a node's boxes are met by any of them is found for eight boxes
 // at once, and a box that may be met is tested with all rays at once.
@@ -167,6 +168,7 @@ HWY_INLINE void offer(Packet& packet, const Beam& beam, const float* box, Object
     const auto hit = meet(packet, beam, box, part, best, entry);
     const auto lower = hn::RebindMask(p, hn::Lt(id, had));
     const auto nearer = hn::And(hit, hn::Or(hn::Lt(entry, best), lower));
+    if (bits_of(p, nearer) == 0) continue;  // most miss
     hn::Store(hn::IfThenElse(nearer, entry, best), p, packet.best + part);
     hn::Store(hn::IfThenElse(hn::RebindMask(pu, nearer), id, had), pu, packet.object + part);
   }
@@ -193,8 +195,8 @@ HWY_INLINE std::uint32_t still_going(const Packet& packet, std::uint32_t going, 
 }
 
 // Their directions have the same signs, and none is 0. Others than those `going` can meet nothing.
-HWY_INLINE void walk_together(const WideNode* nodes, Packet& packet, std::uint32_t going,
-                              std::uint64_t* stack, std::uint32_t* stack_rays, Work& work) {
+void walk_together(const WideNode* nodes, Packet& packet, std::uint32_t going, std::uint64_t* stack,
+                   std::uint32_t* stack_rays, Work& work) {
   const Beam beam = beam_of(packet);
   alignas(64) float t[kWide];
   std::size_t waits = 0;
@@ -231,56 +233,36 @@ HWY_INLINE void walk_together(const WideNode* nodes, Packet& packet, std::uint32
   }
 }
 
-constexpr std::uint32_t kAll = (1u << kPacket) - 1;
+constexpr std::uint32_t kAll = ~0u >> (32 - kPacket);
 
-// Rays that point into several octants part at once. Returns those that few go along with.
-std::uint32_t part_octants(const WideNode* nodes, Packet& packet, std::uint64_t* stack,
-                           std::uint32_t* stack_rays, Work& work) {
-  const P p;
-  std::uint32_t negative[3] = {}, parallel = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t part = 0; part < kPacket; part += hn::Lanes(p)) {
-      const VP inverse = hn::Load(p, packet.inverse[axis] + part);
-      negative[axis] |= bits_of(p, hn::Lt(inverse, hn::Zero(p))) << part;
-      parallel |= bits_of(p, hn::Eq(inverse, hn::Zero(p))) << part;
-    }
-  }
-  std::uint32_t alone = parallel;
-  for (std::uint32_t left = kAll & ~parallel; left != 0;) {
-    const int first = std::countr_zero(left);
-    std::uint32_t octant = left;
-    for (const std::uint32_t bits : negative) octant &= (bits >> first & 1) != 0 ? bits : ~bits;
-    left &= ~octant;
-    if (std::popcount(octant) < kFewestToBegin) {
-      alone |= octant;
-      continue;
-    }
-    // The others' places go to its first ray, and are over before they begin.
-    Packet some;
-    for (std::size_t i = 0; i < kPacket; ++i)
-      some.rays[i] = packet.rays[(octant >> i & 1) != 0 ? i : static_cast<std::size_t>(first)];
-    lay_out(some);
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      if ((octant >> i & 1) == 0) some.best[i] = -1;
-    }
-    walk_together(nodes, some, octant, stack, stack_rays, work);
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      if ((octant >> i & 1) != 0) packet.best[i] = some.best[i], packet.object[i] = some.object[i];
-    }
-  }
-  return alone;
-}
-
-// Casts packet.rays, but for those that few go along with: returns them.
-HWY_INLINE std::uint32_t cast_packet(const WideNode* nodes, Packet& packet, std::uint64_t* stack,
-                                     std::uint32_t* stack_rays, Work& work) {
-  lay_out(packet);
+// Whether all rays of a packet point into one octant, and none along a plane.
+HWY_INLINE bool are_alike(const Packet& packet) {
   bool alike = true;
   for (std::size_t axis = 4; axis < 7; ++axis) alike &= packet.least[axis] > 0 || packet.most[axis] < 0;
-  if (!alike) return part_octants(nodes, packet, stack, stack_rays, work);
-  walk_together(nodes, packet, kAll, stack, stack_rays, work);
-  return 0;
+  return alike;
 }
+
+// Which rays of a packet point into which octant, and in `parallel` those that point along a plane.
+struct Octants {
+  std::uint32_t rays[8] = {}, parallel = 0;
+
+  explicit Octants(const Packet& packet) {
+    const P p;
+    std::uint32_t negative[3] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t part = 0; part < kPacket; part += hn::Lanes(p)) {
+        const VP inverse = hn::Load(p, packet.inverse[axis] + part);
+        negative[axis] |= bits_of(p, hn::Lt(inverse, hn::Zero(p))) << part;
+        parallel |= bits_of(p, hn::Eq(inverse, hn::Zero(p))) << part;
+      }
+    }
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      rays[octant] = kAll & ~parallel;
+      for (std::uint32_t axis = 0; axis < 3; ++axis)
+        rays[octant] &= (octant >> axis & 1) != 0 ? negative[axis] : ~negative[axis];
+    }
+  }
+};
 
 }  // namespace sightline::rays::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -99,23 +99,80 @@ HWY_INLINE void cast_by_turns(const WideNode* nodes, const PreparedRay* rays, co
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// Packets of neighbours; whoever has no company is left to go by turns.
+// Casts rays in packets of neighbours that point into one octant.
+struct Packets {
+  const WideNode* nodes;
+  const PreparedRay* rays;
+  WideStack& stack;
+  Work& work;
+  Answers& answers;
+
+  Packets(const WideNode* of, const PreparedRay* given, WideStack& its_stack, Work& its_work, Answers& to)
+      : nodes(of), rays(given), stack(its_stack), work(its_work), answers(to) {}
+
+  // Sixteen rays.
+  void cast(const std::uint32_t* all) {
+    Packet packet;
+    lay_out_rays(packet, all, kPacket);
+    if (are_alike(packet)) return walk(packet, all, kPacket);
+    const Octants octants(packet);
+    leave_alone(all, octants.parallel);
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      std::uint32_t bits = octants.rays[octant], &count = waiting[octant];
+      if (std::popcount(bits) < kFewestToBegin) {
+        leave_alone(all, bits);
+        continue;
+      }
+      for (; bits != 0; bits &= bits - 1) parted[octant][count++] = all[std::countr_zero(bits)];
+      if (count < kPacket) continue;
+      lay_out_rays(packet, parted[octant], kPacket);
+      walk(packet, parted[octant], kPacket);
+      count -= kPacket;
+      std::copy_n(parted[octant] + kPacket, count, parted[octant]);
+    }
+  }
+  // Those that still wait.
+  void finish() {
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      if (waiting[octant] == 0) continue;
+      Packet packet;
+      lay_out_rays(packet, parted[octant], waiting[octant]);
+      walk(packet, parted[octant], waiting[octant]);
+    }
+  }
+  void leave_alone(const std::uint32_t* all, std::uint32_t bits) {
+    for (; bits != 0; bits &= bits - 1) stack.alone.push_back(all[std::countr_zero(bits)]);
+  }
+
+private:
+  // Of packets that parted, by octant: they go on with those of the next packets that part.
+  std::uint32_t parted[8][2 * kPacket], waiting[8] = {};
+
+  // The places of those that lack go to the first, and are over before they begin.
+  void lay_out_rays(Packet& packet, const std::uint32_t* all, std::size_t count) const {
+    for (std::size_t i = 0; i < kPacket; ++i) packet.rays[i] = &rays[all[i < count ? i : 0]];
+    lay_out(packet);
+    std::fill(packet.best + count, packet.best + kPacket, -1.0f);
+  }
+  void walk(Packet& packet, const std::uint32_t* all, std::size_t count) {
+    walk_together(nodes, packet, ~0u >> (32 - count), stack.entries.data(), stack.rays.data(), work);
+    for (std::size_t i = 0; i < count; ++i) answers.store(all[i], packet.best[i], packet.object[i]);
+  }
+};
+
+// Whoever has no company is left to go by turns.
 HWY_INLINE void cast_together(const WideNode* nodes, const PreparedRay* rays, const std::uint32_t* order,
                               std::size_t count, WideStack& stack, Work& work, Answers& answers) {
-  const auto index_of = [&](std::size_t i) { return static_cast<std::uint32_t>(order ? order[i] : i); };
   stack.alone.clear();
-  std::size_t next = 0;
-  for (; next + kPacket <= count; next += kPacket) {
-    Packet packet;
-    for (std::size_t i = 0; i < kPacket; ++i) packet.rays[i] = &rays[index_of(next + i)];
-    std::uint32_t alone = cast_packet(nodes, packet, stack.entries.data(), stack.rays.data(), work);
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      if ((alone >> i & 1) == 0) answers.store(index_of(next + i), packet.best[i], packet.object[i]);
-    }
-    for (; alone != 0; alone &= alone - 1)
-      stack.alone.push_back(index_of(next + static_cast<std::size_t>(std::countr_zero(alone))));
+  Packets packets(nodes, rays, stack, work, answers);
+  std::uint32_t all[kPacket];
+  for (std::size_t first = 0; first < count; first += kPacket) {
+    const std::size_t some = std::min(kPacket, count - first);
+    for (std::size_t i = 0; i < some; ++i)
+      all[i] = order ? order[first + i] : static_cast<std::uint32_t>(first + i);
+    some == kPacket ? packets.cast(all) : packets.leave_alone(all, (1u << some) - 1);
   }
-  for (; next < count; ++next) stack.alone.push_back(index_of(next));
+  packets.finish();
   cast_by_turns(nodes, rays, stack.alone.data(), stack.alone.size(), stack, work, answers);
 }
 #else

@@ -30,6 +30,23 @@ test('three.js draws the same with the culler, and less', async () => {
   });
 });
 
+test('of a batch that is culled what is drawn and has changed is sent alone', async () => {
+  await withPage(page, async (tab) => {
+    await tab.waitForFunction(() => window.batch);
+    const { differing, whole, some, moved } = await tab.evaluate((views) => window.batch(views), full ? 400 : 30);
+    assert.deepEqual(differing, []);
+    assert.ok(some > 100 && moved > 100, `${some} matrices sent, ${moved} moved`);
+    assert.ok(whole > 0 && whole < (full ? 1600 : 120), `all sent ${whole} times`);
+  });
+});
+
+test('a mirror shows all of a batch that it would show without the culler', async () => {
+  await withPage(page, async (tab) => {
+    await tab.waitForFunction(() => window.mirror);
+    assert.deepEqual(await tab.evaluate(() => window.mirror(24)), { differs: [], own: false });
+  });
+});
+
 test('WebGPURenderer draws the same with the culler', async () => {
   await withPage(new URL('browser/webgpu.mjs', import.meta.url).pathname, async (tab) => {
     await tab.waitForFunction(() => window.compare);

@@ -4,7 +4,12 @@ import type { BatchedMesh, Box3, Sphere } from 'three';
 import { forgetConvex } from './convex.js';
 import { restore } from './restore.js';
 
-interface DataTexture<T> { version: number; needsUpdate: boolean; image: { data: T } }
+export interface DataTexture<T> {
+  version: number;
+  needsUpdate: boolean;
+  image: { data: T; width: number };
+  updateRanges?: unknown[];
+}
 
 /** What three keeps of a batch; without it (it may be named otherwise one day) a batch is drawn as three would. */
 export interface BatchInside {

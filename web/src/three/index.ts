@@ -17,6 +17,7 @@ import { Inventory } from './inventory.js';
 import { fill, narrow, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { restore } from './restore.js';
+import type { Sender } from './sending.js';
 import type { Thing } from './things.js';
 import { Whole } from './whole.js';
 
@@ -291,13 +292,7 @@ export class SightlineCuller {
 
   #narrow(thing: Thing, main: Pass, shadows: Shadow[], renderer: Renderer, frame: Frame, nested: boolean): void {
     const { mesh, kind } = thing;
-    if (kind === 'batched' && !Object.hasOwn(mesh, 'onBeforeRender')) {
-      mesh.onBeforeRender = (_renderer, scene, camera, geometry, material) => {
-        const pass = scene === null ? this.#shadow : main;
-        fill(thing, pass?.ranges.get(thing), camera, geometry, material);
-      };
-      frame.restore.push(() => restore(mesh as BatchedMesh, 'onBeforeRender', undefined));
-    }
+    if (kind === 'batched') this.#narrowBatch(thing, main, frame);
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
     if (instanced.boundingSphere === null) instanced.computeBoundingSphere();
@@ -307,7 +302,24 @@ export class SightlineCuller {
     const range = main.ranges.get(thing);
     frame.restore.push(narrow(instanced, list, range ? range.to - range.from : 0));
   }
+
+  // What somebody else has put there stays, and the batch is drawn whole.
+  #narrowBatch(thing: Thing, main: Pass, frame: Frame): void {
+    const mesh = thing.mesh as BatchedMesh, own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeRender');
+    if (own && !this.#fills.has(own.value as object)) return;
+    const fills: BatchedMesh['onBeforeRender'] = (by, scene, camera, geometry, material, group) => {
+      // A render within this one that culls nothing.
+      if (this.#frames.at(-1) !== frame) return void wholeOf(mesh).call(mesh, by, scene, camera, geometry, material, group);
+      const pass = scene === null ? this.#shadow : main;
+      fill(thing, pass?.ranges.get(thing), by as Sender, camera, geometry, material);
+    };
+    this.#fills.add(fills), (mesh.onBeforeRender = fills);
+    frame.restore.push(() => (thing.sending!.end(), restore(mesh, 'onBeforeRender', own)));
+  }
+  readonly #fills = new WeakSet<object>();
 }
+
+const wholeOf = (mesh: BatchedMesh) => (Object.getPrototypeOf(mesh) as BatchedMesh).onBeforeRender;
 
 // Those that the camera sees, then those that only lights see; none where they are more than `most`.
 function instancesOf(thing: Thing, main: Pass, shadows: Shadow[], most: number): Uint32Array {

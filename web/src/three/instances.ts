@@ -5,6 +5,7 @@ import type { BufferGeometry, Camera, InstancedMesh, Material } from 'three';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
 import { restore } from './restore.js';
+import type { Sender } from './sending.js';
 import type { Thing } from './things.js';
 
 /** A thing's slots in a pass: ascending, from … to - 1 of `slots`. */
@@ -77,7 +78,7 @@ const matrix = new Matrix4(), eye = new Vector3(), forward = new Vector3();
 let instances = new Uint32Array(0), order = new Uint32Array(0), depths = new Float64Array(0);
 
 /** Lists what of a batch a pass sees, as three lists what its frustum holds: in the same order. */
-export function fill(thing: Thing, range: Range | undefined, camera: Camera, geometry: BufferGeometry,
+export function fill(thing: Thing, range: Range | undefined, renderer: Sender, camera: Camera, geometry: BufferGeometry,
   material: Material): void {
   const batch = thing.mesh as Batch;
   let count = collect(batch, thing.first, range);
@@ -94,6 +95,7 @@ export function fill(thing: Thing, range: Range | undefined, camera: Camera, geo
     for (let k = 0; k < count; ++k) order[k] = k;
   }
   list(batch, bytes, count);
+  thing.sending!.begin(renderer, batch, thing.version, instances, count);
 }
 
 // Those of a range that are shown.

@@ -5,6 +5,7 @@ import { isKnownInside, listen, unlisten, type Batch, type Told } from './batche
 import { boxOf, pointsOf, type Points } from './bounds.js';
 import { writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
+import { Sending } from './sending.js';
 
 export interface Thing {
   readonly mesh: Mesh;
@@ -23,6 +24,7 @@ export interface Thing {
   source: unknown;
   version: number;
   readonly told: Told | undefined;
+  readonly sending: Sending | undefined;
 }
 
 /** What is known by slot, of instanced ones their mesh's matrix by the first; and the slots whose boxes have changed. */
@@ -61,7 +63,8 @@ export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count:
   const { geometry } = mesh;
   return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
-    told: kind === 'batched' ? listen(mesh as Batch) : undefined };
+    told: kind === 'batched' ? listen(mesh as Batch) : undefined,
+    sending: kind === 'batched' ? new Sending(count) : undefined };
 }
 
 export function disposeOf({ mesh, matrices, told }: Thing): void {
@@ -129,9 +132,14 @@ function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxe
 }
 
 function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved }: Known): void {
-  const { geometry, _matricesTexture: { version, image: { data } }, _instanceInfo: infos } = mesh, told = thing.told!;
+  const { geometry, _matricesTexture: { version, image: { data } }, _instanceInfo: infos } = mesh;
+  const told = thing.told!, sending = thing.sending!;
   const all = isMoved || told.all || data !== thing.source || geometry !== thing.geometry;
   if (!all && told.instances.length === 0 && version === thing.version) return;
+  // Somebody has written there by themselves.
+  const isWritten = version !== thing.version + told.versions;
+  if (isWritten || told.all || data !== thing.source) sending.noteAll(version);
+  else for (const i of told.instances) sending.note(i, version);
   const world = mesh.matrixWorld.elements;
   const write = (i: number) => {
     const info = infos[i];
@@ -143,8 +151,7 @@ function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved
     for (let i = 0; i < infos.length; ++i) write(i);
   } else {
     for (const i of told.instances) thing.matrices!.take(data, i), write(i);
-    // Somebody has written there by themselves.
-    if (version !== thing.version + told.versions) thing.matrices!.compare(data, 0, infos.length, write);
+    if (isWritten) thing.matrices!.compare(data, 0, infos.length, write);
   }
   thing.source = data, (thing.version = version), (thing.geometry = geometry);
   told.instances.length = told.versions = 0, (told.all = false);

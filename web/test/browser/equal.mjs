@@ -194,6 +194,84 @@ window.above = async () => {
   return result;
 };
 
+/** Frame after frame with the culler alone, in which instances of a batch move, some also while they are drawn; then each view as
+ * three draws it. Pictures that differ, and how often all matrices were sent, or some. */
+window.batch = async (views) => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height);
+  const scene = new THREE.Scene(), { all, side } = places(1500), move = add(scene, 'batched', all, new THREE.MeshBasicMaterial());
+  const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 500), next = random(9), gl = renderer.getContext();
+  const culler = new SightlineCuller(scene, { occlusion: false }), result = { differing: [], whole: 0, some: 0, moved: 0 };
+  const { width: texels } = scene.children[0]._matricesTexture.image, send = gl.texSubImage2D;
+  gl.texSubImage2D = function (...given) {
+    if (culler.enabled && given[7] === gl.FLOAT) ++result[given[4] === texels ? 'whole' : 'some'];
+    return send.apply(this, given);
+  };
+  const moveSome = (most) => {
+    for (let left = Math.floor(most * next()); left > 0; --left) {
+      const i = Math.floor(next() * all.length);
+      all[i] = { ...all[i], at: [next() * side, all[i].size[1] / 2, next() * side] };
+      move(i, all[i]), ++result.moved;
+    }
+  };
+  let whileDrawn = false;
+  scene.children[0].material.onBeforeRender = () => whileDrawn && moveSome(3);
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  for (let v = 0; v < views; ++v) {
+    culler.enabled = true;
+    for (let frame = 0; frame < 6; ++frame) {
+      look(camera, next, side, v % 5 === 0 ? 60 : 1.6), moveSome(v % 7 === 0 ? 700 : 20);
+      whileDrawn = v % 3 === 0 && frame % 2 === 0;
+      renderer.render(scene, camera);
+    }
+    whileDrawn = false, moveSome(20);
+    const after = pixels(renderer, scene, camera);
+    culler.enabled = false;
+    if (differing(pixels(renderer, scene, camera), after) > 0) result.differing.push(v);
+    if (v === views >> 1) { // as a browser takes contexts away
+      const lost = gl.getExtension('WEBGL_lose_context'), { log } = console;
+      console.log = () => {}; // three's own words
+      lost.loseContext(), await new Promise((gone) => setTimeout(gone, 50));
+      lost.restoreContext(), await new Promise((back) => setTimeout(back, 200));
+      console.log = log;
+    }
+  }
+  culler.dispose(), renderer.dispose(), renderer.forceContextLoss();
+  return result;
+};
+
+/** What a mirror shows of a batch, which draws the scene from elsewhere while it is drawn: views that differ. */
+window.mirror = async (views) => {
+  await ready;
+  const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  renderer.setSize(width, height);
+  const scene = new THREE.Scene(), { all, side } = places(900), next = random(4), differs = [];
+  add(scene, 'batched', all, new THREE.MeshBasicMaterial());
+  const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 500), other = camera.clone();
+  const mirror = new THREE.Mesh(new THREE.PlaneGeometry(0.1, 0.1), new THREE.MeshBasicMaterial());
+  const target = new THREE.WebGLRenderTarget(width, height), seen = new Uint8Array(4 * width * height);
+  mirror.onBeforeRender = () => {
+    const own = renderer.getRenderTarget();
+    mirror.visible = false, renderer.setRenderTarget(target), renderer.render(scene, other);
+    mirror.visible = true, renderer.setRenderTarget(own);
+    renderer.readRenderTargetPixels(target, 0, 0, width, height, seen);
+  };
+  camera.add(mirror), mirror.position.set(0, 0, -1), scene.add(camera);
+  const culler = new SightlineCuller(scene, { occlusion: false });
+  await new Promise((loaded) => setTimeout(loaded, 50));
+  for (let v = 0; v < views; ++v) {
+    look(camera, next, side), look(other, next, side), other.updateMatrixWorld();
+    if (v % 4 === 3) other.position.set(side / 2, 400, side / 2), other.lookAt(side / 2, 0, side / 2 + 1); // all is in view
+    const pictures = [false, true].map((on) => ((culler.enabled = on), [pixels(renderer, scene, camera), seen.slice()]));
+    if ([0, 1].some((k) => differing(pictures[0][k], pictures[1][k]) > 0)) differs.push(v);
+  }
+  culler.dispose(), target.dispose(), renderer.dispose(), renderer.forceContextLoss();
+  return { differs, own: Object.hasOwn(scene.children[0], 'onBeforeRender') };
+};
+
 /** Things that come, go, hide and change, one step after another; the names of the steps whose pictures differ. */
 window.changes = async () => {
   await ready;
