@@ -1,4 +1,4 @@
-// A milliard objects in ten thousand instances of a world of 100,000, beside a plain world of what its view
+// 10⁹ objects in ten thousand instances of a world of 100,000, beside a plain world of what its view
 // may see, which holds the same objects each by itself.
 #include <benchmark/benchmark.h>
 

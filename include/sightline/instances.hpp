@@ -39,7 +39,7 @@ struct InstancePlacement {
 };
 
 /// Places of worlds. Each world is kept once, however many instances show it, and an instance takes some 250
-/// bytes: ten thousand of a world of 100,000 objects are a milliard objects in ten megabytes.
+/// bytes: ten thousand of a world of 100,000 objects are 10⁹ objects in ten megabytes.
 ///
 /// Instances are objects as World has them: their handles name them, a box each, which holds all of the world
 /// that they show. A refused call changes nothing. Unless a function says otherwise: Errors: none. Cost:

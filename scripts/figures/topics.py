@@ -32,7 +32,7 @@ def moving(quick):
 
 
 def instances(quick):
-    """A milliard objects in instances of worlds beside a plain world of those that a view may see."""
+    """10⁹ objects in instances of worlds beside a plain world of those that a view may see."""
     rows = google_benchmark("instances", 3, 0.02 if quick else 0.2, counters=(("GiB", "GiB", 1),))
     return compare_with(rows, {f"instances/{form}": f"plain/{form}" for form in ("quarters", "turned")})
 
