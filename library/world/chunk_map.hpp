@@ -155,8 +155,9 @@ public:
   std::uint32_t move_run(std::uint32_t& chunk, std::uint32_t& slot, const ObjectId* objects,
                          const geometry::BoxBlock& boxes, std::size_t first, std::uint32_t count,
                          bool past_cache) noexcept;
-  /// To be called before objects are moved: says whether movers are to have pages from now on.
-  void expect_moves() noexcept;
+  /// To be called before objects are moved, many of all or not: says whether movers are to have pages from
+  /// now on.
+  void expect_moves(bool many) noexcept;
   [[nodiscard]] bool keeps_pages() const noexcept {
     return kHasPages && by_id_;
   }

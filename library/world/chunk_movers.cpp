@@ -166,12 +166,12 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
   return added;
 }
 
-void ChunkMap::expect_moves() noexcept {
+void ChunkMap::expect_moves(bool many) noexcept {
   // Where few move, each cull would read all pages for them; where the same ones move again and again in the
   // order in which they stand, they stand well. Not at once to and fro.
   constexpr std::size_t kBegin = 3, kEnd = 6;
   const std::size_t of_ids = locations_->size() / (by_id_ ? kEnd : kBegin);
-  by_id_ = kHasPages && keeps_movers() && movers() >= of_ids && (by_id_ || scattered_ > in_runs_);
+  by_id_ = kHasPages && keeps_movers() && movers() >= of_ids && (by_id_ || (many && scattered_ > in_runs_));
   scattered_ = in_runs_ = 0;
 }
 

@@ -63,7 +63,7 @@ private:
     s_.touch(sector);
     if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
     sector_ = sector, map_ = s_.sectors[sector].map.get();
-    map_->expect_moves();
+    map_->expect_moves(moving_.many);
     if (map_->keeps_pages()) s_.begin_generations();
     run_chunk_ = ChunkMap::kNone;
   }
