@@ -44,9 +44,7 @@ struct LargePages {
     const bool large = bytes >= kPage;
     void* memory = ::operator new (bytes, std::align_val_t{large ? kPage : kLine});
 #ifdef __linux__
-    // Small pages that somebody touched and freed would stay small: they are given back first. Wishes, no
-    // more.
-    if (large) madvise(memory, bytes / kPage * kPage, MADV_DONTNEED), madvise(memory, bytes, MADV_HUGEPAGE);
+    if (large) madvise(memory, bytes, MADV_HUGEPAGE);  // before anybody touches it; a wish, no more
 #endif
     return static_cast<T*>(memory);
   }

@@ -45,33 +45,23 @@ void run_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<CullerState*>(data);
   const Zone zone(state.zones, "sightline: chunks and objects");
   Job& job = state.jobs[index];
-  const auto entries = std::span(state.entries).subspan(job.first_entry, job.entries);
+  const auto entries = std::span(state.entries).subspan(job.first, job.count);
   PassInput input = state.input;
   if (!input.hidden.empty())
-    input.hidden = input.hidden.subspan(job.first_entry * input.view_count, job.entries * input.view_count);
+    input.hidden = input.hidden.subspan(job.first * input.view_count, job.count * input.view_count);
   ObjectId* ids = state.out + job.first_output;
   std::uint8_t* masks = state.masks ? state.masks + job.first_output : nullptr;
   job.counts = cull_groups(input, entries, ids, masks);
 }
 
-// Parts of about equally many objects; each writes to where it would stand if all were visible.
 std::uint32_t split_work(CullerState& state, std::uint32_t threads) {
-  const auto objects_of = [&](const GroupEntry& e) {
+  const auto objects_of = [&](std::size_t entry) {
+    const GroupEntry& e = state.entries[entry];
     return state.maps[e.sector]->groups()[e.group].objects;
   };
   std::size_t total = 0;
-  for (const GroupEntry& entry : state.entries) total += objects_of(entry);
-  std::uint32_t jobs = 0;
-  std::size_t before = 0;
-  for (std::size_t e = 0; e < state.entries.size(); ++e) {
-    if (jobs == 0 || (jobs < threads && before >= total * jobs / threads)) {
-      state.jobs[jobs] = {e, 0, before + jobs * kCullPadding, {}};
-      ++jobs;
-    }
-    ++state.jobs[jobs - 1].entries;
-    before += objects_of(state.entries[e]);
-  }
-  return jobs;
+  for (std::size_t e = 0; e < state.entries.size(); ++e) total += objects_of(e);
+  return split_jobs(state.jobs, state.entries.size(), total, threads, objects_of);
 }
 
 // Whose eye a view's distances are measured from.

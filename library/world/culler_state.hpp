@@ -17,11 +17,30 @@
 
 namespace sightline::world {
 
+/// What one job takes of the passes' entries, or of instances' parts, and where in the output it writes.
 struct Job {
-  std::size_t first_entry = 0, entries = 0;
+  std::size_t first = 0, count = 0;
   std::size_t first_output = 0;
   PassCounts counts;
 };
+
+/// Shares `items` of `total` objects out among jobs of about equally many objects each; each writes to where
+/// it would stand if all were visible. Returns how many jobs there are.
+template <class ObjectsOf>
+std::uint32_t split_jobs(std::span<Job> jobs, std::size_t items, std::size_t total, std::uint32_t threads,
+                         const ObjectsOf& objects_of) {
+  std::uint32_t count = 0;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < items; ++i) {
+    if (count == 0 || (count < threads && before >= total * count / threads)) {
+      jobs[count] = {i, 0, before + count * kCullPadding, {}};
+      ++count;
+    }
+    ++jobs[count - 1].count;
+    before += objects_of(i);
+  }
+  return count;
+}
 
 /// Of several views those that differ.
 struct DifferentViews {

@@ -3,11 +3,8 @@
 #include "library/world/instance_cull.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
-
-#include <sightline/projection.hpp>
 
 #include "library/geometry/mutant.h"
 
@@ -20,21 +17,20 @@ namespace {
 // The levels of a part's objects, in the order in which the passes write them.
 class PartLevels final : public LevelNotes {
 public:
-  PartLevels(const WorldLevels& levels, const LevelScale& scale, float placed, std::uint8_t* out,
-             std::uint8_t* fades) noexcept
-      : levels_(levels), scale_(scale), out_(out), fades_(fades) {
+  PartLevels(const WorldLevels& levels, const LevelScale& scale, std::size_t view, float placed,
+             std::uint8_t* out, std::uint8_t* fades) noexcept
+      : levels_(levels), scale_(scale), view_(view), out_(out), fades_(fades) {
     if (scale.orthographic) scale_.squared *= placed * placed;
   }
 
   void note(const ChunkMap::ChunkView& chunk, const SectorView* views, const ObjectId* ids,
             std::size_t count) noexcept override {
     alignas(64) std::array<float, ChunkMap::kCapacity> sizes;
-    find_sizes(chunk, views[scale_.view].eye, scale_.orthographic, scale_.squared, sizes.data());
+    find_sizes(chunk, views[view_].eye, scale_.orthographic, scale_.squared, sizes.data());
     std::size_t slot = 0;
     for (const ObjectId id : std::span(ids, count)) {
       while (chunk.objects[slot] != id) ++slot;
-      const std::uint16_t table = id < levels_.table_of.size() ? levels_.table_of[id] : std::uint16_t{0};
-      write(levels_.tables[table], sizes[slot]);
+      write(levels_.table(id), sizes[slot]);
     }
   }
 
@@ -42,19 +38,18 @@ private:
   void write(const LevelTable& table, float size) noexcept {
     std::uint32_t level = 0;
     for (const float limit : table.sizes) level += size < limit;
-    const float limit = table.sizes[level], band = limit * scale_.fade;
-    const float share = band > 0 ? std::clamp((limit + band - size) / band, 0.0f, 1.0f) : 0;
     *out_++ = static_cast<std::uint8_t>(level);
-    *fades_++ = static_cast<std::uint8_t>(255 * share);
+    *fades_++ = fade_at(size, table.sizes[level], scale_.fade);
   }
 
   const WorldLevels& levels_;
   LevelScale scale_;
+  std::size_t view_;
   std::uint8_t *out_, *fades_;
 };
 
 // Writes a part behind the job's first `written`.
-void cull_part(InstanceCullerState& state, InstancePart& part, InstanceJob& job) {
+void cull_part(InstanceCullerState& state, InstancePart& part, Job& job) {
   const CullerState& inner = state.inner;
   const std::size_t views = state.views.size();
   part.first = job.first_output + job.counts.written;
@@ -67,7 +62,7 @@ void cull_part(InstanceCullerState& state, InstancePart& part, InstanceJob& job)
   const bool levels = state.options->levels;
   const auto* chosen = levels ? static_cast<const WorldLevels*>(part.world->levels.get()) : nullptr;
   static const WorldLevels none;
-  PartLevels notes(chosen ? *chosen : none, state.levels_by, part.scale,
+  PartLevels notes(chosen ? *chosen : none, state.levels_by, state.options->level_options.view, part.scale,
                    levels ? &state.levels[part.first] : nullptr, levels ? &state.fades[part.first] : nullptr);
   if (chosen) input.levels = &notes;
   const auto entries = std::span(inner.entries).subspan(part.first_entry, part.entries);
@@ -89,28 +84,12 @@ void cull_part(InstanceCullerState& state, InstancePart& part, InstanceJob& job)
 void run_instance_job(void* data, std::uint32_t index) {
   auto& state = *static_cast<InstanceCullerState*>(data);
   const Zone zone(state.options->zones, "sightline: objects of instances");
-  InstanceJob& job = state.jobs[index];
-  for (InstancePart& part : std::span(state.parts).subspan(job.first_part, job.parts))
-    cull_part(state, part, job);
-}
-
-// Parts of about equally many objects for each job; each writes to where it would stand if all were visible.
-std::uint32_t split_parts(InstanceCullerState& state, std::size_t total, std::uint32_t threads) {
-  std::uint32_t jobs = 0;
-  std::size_t before = 0;
-  for (std::size_t p = 0; p < state.parts.size(); ++p) {
-    if (jobs == 0 || (jobs < threads && before >= total * jobs / threads)) {
-      state.jobs[jobs] = {p, 0, before + jobs * kCullPadding, {}};
-      ++jobs;
-    }
-    ++state.jobs[jobs - 1].parts;
-    before += state.parts[p].most;
-  }
-  return jobs;
+  Job& job = state.jobs[index];
+  for (InstancePart& part : std::span(state.parts).subspan(job.first, job.count)) cull_part(state, part, job);
 }
 
 // Moves what a job wrote to `to`, and says so to its parts.
-void move_output(InstanceCullerState& state, const InstanceJob& job, std::size_t to) {
+void move_output(InstanceCullerState& state, const Job& job, std::size_t to) {
   const std::size_t from = job.first_output, count = job.counts.written;
   if (from == to) return;
   // What is not wanted may be there from an earlier cull, with less room.
@@ -119,8 +98,7 @@ void move_output(InstanceCullerState& state, const InstanceJob& job, std::size_t
   };
   move(state.ids, true), move(state.masks, state.options->masks);
   move(state.levels, state.options->levels), move(state.fades, state.options->levels);
-  for (InstancePart& part : std::span(state.parts).subspan(job.first_part, job.parts))
-    part.first -= from - to;
+  for (InstancePart& part : std::span(state.parts).subspan(job.first, job.count)) part.first -= from - to;
 }
 
 // Only grows, and not where nothing is wanted.
@@ -140,14 +118,9 @@ Status check_options(std::span<const CullView> views, const InstanceCullOptions&
     return bad_option("instances: most_objects is out of range, expected 2^31 or less");
   if (!options.levels) return {};
   const LevelOptions& levels = options.level_options;
-  if (levels.view >= views.size()) return bad_option("instances: the levels' view is none of the views");
   if (levels.hysteresis != 0)
     return bad_option("instances: the levels' hysteresis is not 0, and nothing is remembered of instances");
-  if (!(levels.fade >= 0) || !std::isfinite(levels.fade))
-    return bad_option("instances: the levels' fade is negative or not finite");
-  if (!(levels.scale > 0) || !std::isfinite(levels.scale))
-    return bad_option("instances: the levels' scale is not above 0 or not finite");
-  return {};
+  return check_level_sizes(levels, views.size());
 }
 
 bool holds_all(const WorldBounds& outer, const WorldBounds& inner) {
@@ -170,12 +143,6 @@ Status check_worlds(const InstancesState& instances) {
     if (!world.culled.load(std::memory_order_relaxed)) world.culled.store(true, std::memory_order_relaxed);
   }
   return {};
-}
-
-LevelScale level_scale(std::span<const CullView> views, const LevelOptions& options) {
-  const Projector projector = make_projector(views[options.view].view.view, {});
-  const float scale = 2 * projector.pixels_per_metre * options.scale;
-  return {static_cast<std::uint8_t>(options.view), projector.orthographic, scale * scale, options.fade};
 }
 
 // Culls the instances' boxes: state.instances, and with several views who sees each. `min_area` speaks of
@@ -224,13 +191,13 @@ void list_ranges(InstanceCullerState& state, InstanceCullResult& result) {
   result.ranges = state.ranges;
 }
 
-}  // namespace
-
-void write_parts(InstanceCullerState& state, InstanceCullResult& result) {
+// Writes what the parts' passes see of `total` objects, in jobs, into the state's ids, masks, levels and
+// fades, and where it stands into the parts.
+void write_parts(InstanceCullerState& state, std::size_t total, InstanceCullResult& result) {
   const InstanceCullOptions& options = *state.options;
-  std::size_t total = 0;
-  for (const InstancePart& part : state.parts) total += part.most;
-  const std::uint32_t jobs = split_parts(state, total, options.jobs.run ? options.jobs.threads : 1);
+  const auto objects_of = [&](std::size_t part) { return state.parts[part].most; };
+  const std::uint32_t threads = options.jobs.run ? options.jobs.threads : 1;
+  const std::uint32_t jobs = split_jobs(state.jobs, state.parts.size(), total, threads, objects_of);
   const std::size_t room = total + kCullPadding * (jobs + 1);
   make_room(state.ids, room);
   make_room(state.masks, room, options.masks);
@@ -241,7 +208,7 @@ void write_parts(InstanceCullerState& state, InstanceCullResult& result) {
     run_instance_job(&state, 0);
   }
   std::size_t written = 0;
-  for (const InstanceJob& job : std::span(state.jobs).first(jobs)) {
+  for (const Job& job : std::span(state.jobs).first(jobs)) {
     move_output(state, job, written);
     written += job.counts.written;
     result.tested += job.counts.tested, result.nodes_visited += job.counts.chunks;
@@ -253,6 +220,8 @@ void write_parts(InstanceCullerState& state, InstanceCullResult& result) {
     result.levels = std::span(state.levels).first(written),
     result.fades = std::span(state.fades).first(written);
 }
+
+}  // namespace
 
 }  // namespace world
 
@@ -278,14 +247,15 @@ Result<InstanceCullResult> InstanceCuller::cull(const Instances& instances, std:
   state.views = views, state.options = &options;
   const Result<CullResult> outer = world::cull_boxes_of(state, placed);
   if (!outer) return outer.error();
-  if (options.levels) state.levels_by = world::level_scale(views, options.level_options);
+  if (options.levels)
+    state.levels_by = world::level_scale(views[options.level_options.view].view, options.level_options);
   world::find_parts(state, placed, outer->count);
   std::size_t most = 0;
   for (const world::InstancePart& part : state.parts) most += part.most;
   if (most > options.most_objects)
     return Status(StatusCode::too_many, "instances: the views may see more objects than most_objects");
   InstanceCullResult result;
-  world::write_parts(state, result);
+  world::write_parts(state, most, result);
   result.tested += outer->tested, result.nodes_visited += outer->nodes_visited + state.nodes_visited;
   result.culled_occlusion += outer->culled_occlusion;
   world::list_ranges(state, result);

@@ -32,19 +32,6 @@ struct SeenInstance {
   std::uint32_t part = 0;
 };
 
-/// How large an object is on the image that chooses levels.
-struct LevelScale {
-  std::uint8_t view = 0;
-  bool orthographic = false;
-  float squared = 0, fade = 0;
-};
-
-struct InstanceJob {
-  std::size_t first_part = 0, parts = 0;
-  std::size_t first_output = 0;
-  PassCounts counts;
-};
-
 struct InstanceCullerState {
   Culler outer;  ///< of the instances' boxes
   std::vector<ObjectId> instances;
@@ -55,7 +42,7 @@ struct InstanceCullerState {
   std::vector<InstancePart> parts;
   std::vector<SeenInstance> seen;
   std::vector<std::uint32_t> whole;  ///< one a world: the part that is all of it, or kNone
-  std::array<InstanceJob, kMaxJobs> jobs;
+  std::array<Job, kMaxJobs> jobs;    ///< of parts
 
   std::span<const CullView> views;
   const InstanceCullOptions* options = nullptr;
@@ -70,9 +57,5 @@ struct InstanceCullerState {
 
 /// Adds the parts of instance `id`, which `by` may see, a bit each.
 void find_part(InstanceCullerState& state, const InstancesState& instances, ObjectId id, std::uint8_t by);
-
-/// Writes what the parts' passes see, in jobs, into the state's ids, masks, levels and fades, and where it
-/// stands into the parts. Adds the counts to `result`.
-void write_parts(InstanceCullerState& state, InstanceCullResult& result);
 
 }  // namespace sightline::world

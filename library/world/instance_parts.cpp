@@ -153,7 +153,7 @@ void find_part(InstanceCullerState& state, const InstancesState& instances, Obje
   for (const Sector& sector : world.sectors) {
     if (!sector.map) continue;
     for (std::size_t v = 0; v < state.views.size(); ++v) {
-      const bool sees = by >> v & 1, needed = sees || (chooses && v == state.levels_by.view);
+      const bool sees = by >> v & 1, needed = sees || (chooses && v == state.options->level_options.view);
       SectorView& view = state.inner.views.emplace_back(no_view());
       if (needed) view = placed.of(v, sector, world.columns.has_distances);
       if (!sees) view.layers = 0;

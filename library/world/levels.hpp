@@ -58,6 +58,11 @@ public:
                const LevelOptions& options, const CullOutput& output) override;
   void write(const CullerState& state, std::size_t count, const CullOutput& output) const noexcept override;
 
+  /// An object's.
+  [[nodiscard]] const LevelTable& table(ObjectId object) const noexcept {
+    return tables[object < table_of.size() ? table_of[object] : 0];
+  }
+
   /// The first has no levels but 0.
   std::vector<LevelTable> tables{LevelTable{}};
   geometry::LargeVector<std::uint16_t> table_of;  ///< one an id, or fewer: 0 behind
@@ -68,6 +73,18 @@ struct KnownLevel {
   std::uint16_t cull = 0;  ///< when that was, as LevelMemory counts; 0: never
   std::uint8_t level = 0, fade = 0;
 };
+
+/// How large objects are on the image that chooses levels, and how they fade.
+struct LevelScale {
+  bool orthographic = false;
+  float squared = 0;  ///< (2 · pixels a metre · the options' scale)²
+  float fade = 0;
+};
+LevelScale level_scale(const WorldView& view, const LevelOptions& options) noexcept;
+/// Whether the options' view is one of so many, and their fade and scale are sound.
+Status check_level_sizes(const LevelOptions& options, std::size_t views) noexcept;
+/// From 0, above the band over a level's lower end, to 255 at it; 0 where there is no band.
+std::uint8_t fade_at(float size, float end, float fade) noexcept;
 
 /// The sizes in pixels of all of a chunk's objects, by their bounding spheres: the root of
 /// squared_scale·(radius / distance)², in an orthographic view without the distance; infinite around the eye.

@@ -27,10 +27,8 @@ public:
     // A cull has passes of its own for what automatic occlusion leaves: their objects were noted by the
     // first.
     last_ = options.cut ? cull : static_cast<std::uint16_t>(cull - 1);
-    const Projector projector = make_projector(view.view, {});
-    const float scale = 2 * projector.pixels_per_metre * options.scale;
-    orthographic_ = projector.orthographic, squared_scale_ = scale * scale;
-    finer_ = 1 + options.hysteresis, coarser_ = 1 - options.hysteresis, fade_ = options.fade;
+    scale_ = level_scale(view, options);
+    finer_ = 1 + options.hysteresis, coarser_ = 1 - options.hysteresis;
     if (SIGHTLINE_MUTANT(levels_without_memory)) finer_ = coarser_ = 1;
   }
 
@@ -43,7 +41,7 @@ public:
     }
     alignas(64) std::array<float, ChunkMap::kCapacity> sizes;
     const std::size_t by = SIGHTLINE_MUTANT(levels_by_each_view) ? 0 : decider_;
-    find_sizes(chunk, views[by].eye, orthographic_, squared_scale_, sizes.data());
+    find_sizes(chunk, views[by].eye, scale_.orthographic, scale_.squared, sizes.data());
     std::size_t slot = 0;
     for (const ObjectId id : std::span(ids, count)) {
       while (chunk.objects[slot] != id) ++slot;
@@ -53,9 +51,8 @@ public:
 
 private:
   void choose(ObjectId id, float size) noexcept {
-    const std::uint16_t table = id < levels_->table_of.size() ? levels_->table_of[id] : std::uint16_t{0};
     KnownLevel& known = known_[id];
-    const auto& limits = levels_->tables[table].sizes;
+    const auto& limits = levels_->table(id).sizes;
     // Objects that were seen keep their level until the size is well beyond its limits. Without branches,
     // which nobody could predict.
     const bool seen = known.cull != 0 && (known.cull == last_ || known.cull == cull_);
@@ -63,23 +60,15 @@ private:
     std::uint32_t least = 0, most = 0;
     for (const float limit : limits) least += size < limit * coarser, most += size < limit * finer;
     const std::uint32_t level = std::max(std::min<std::uint32_t>(known.level, most), least);
-    known = {cull_, static_cast<std::uint8_t>(level), fade_at(size, limits[level])};
-  }
-
-  // From 0, above the band over the level's lower limit, to 255 at its end; 0 where there is none.
-  [[nodiscard]] std::uint8_t fade_at(float size, float limit) const noexcept {
-    if (fade_ == 0) return 0;
-    const float end = limit * finer_, band = end * fade_;
-    const float share = std::max(std::min((end + band - size) / band, 1.0f), 0.0f);
-    return limit > 0 ? static_cast<std::uint8_t>(255 * share) : std::uint8_t{0};
+    known = {cull_, static_cast<std::uint8_t>(level), fade_at(size, limits[level] * finer_, scale_.fade)};
   }
 
   const WorldLevels* levels_ = nullptr;
   KnownLevel* known_ = nullptr;
   std::uint16_t cull_ = 0, last_ = 0;
   std::size_t decider_ = 0;
-  bool orthographic_ = false;
-  float squared_scale_ = 0, finer_ = 1, coarser_ = 1, fade_ = 0;
+  LevelScale scale_;
+  float finer_ = 1, coarser_ = 1;
 };
 
 // By key, as the culls of a key follow one another.
@@ -116,10 +105,22 @@ Status bad(const char* message) {
 }
 
 Status check_levels(const LevelOptions& options, std::size_t views) {
-  if (options.view >= views) return bad("cull: the levels' view is none of the views");
   if (options.key >= kMaxViews) return bad("cull: the levels' key is out of range, expected 0 to 7");
   if (!(options.hysteresis >= 0 && options.hysteresis < 1))
     return bad("cull: the levels' hysteresis is out of range, expected 0 to below 1");
+  return check_level_sizes(options, views);
+}
+
+}  // namespace
+
+LevelScale level_scale(const WorldView& view, const LevelOptions& options) noexcept {
+  const Projector projector = make_projector(view.view, {});
+  const float scale = 2 * projector.pixels_per_metre * options.scale;
+  return {projector.orthographic, scale * scale, options.fade};
+}
+
+Status check_level_sizes(const LevelOptions& options, std::size_t views) noexcept {
+  if (options.view >= views) return bad("cull: the levels' view is none of the views");
   if (!(options.fade >= 0) || !std::isfinite(options.fade))
     return bad("cull: the levels' fade is negative or not finite");
   if (!(options.scale > 0) || !std::isfinite(options.scale))
@@ -127,7 +128,11 @@ Status check_levels(const LevelOptions& options, std::size_t views) {
   return {};
 }
 
-}  // namespace
+std::uint8_t fade_at(float size, float end, float fade) noexcept {
+  const float band = end * fade;
+  const float share = band > 0 ? std::max(std::min((end + band - size) / band, 1.0f), 0.0f) : 0;
+  return static_cast<std::uint8_t>(255 * share);
+}
 
 void WorldLevels::forget(ObjectId object) noexcept {
   if (object < table_of.size()) table_of[object] = 0;
