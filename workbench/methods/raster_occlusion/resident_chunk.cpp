@@ -66,9 +66,10 @@ struct FacesPush {
   std::uint32_t across_edge;
 };
 
-/// The blocks of which tiles are worth making: those that chunks touch, but for chunks that fill much of the
-/// picture, which are hardly ever hidden. Chunks that come one after the other are near each other: of most
-/// runs of them one look shows that they touch no more than those before.
+/// The blocks of which tiles are worth making: those that chunks touch, but for chunks so small that their
+/// pixels are looked at one by one, and for those that fill much of the picture, which are hardly ever
+/// hidden: their objects cost less than the tiles. Chunks that come one after the other are near each other:
+/// of most runs of them one look shows that they touch no more than those before.
 class BlocksToMake {
 public:
   BlocksToMake(const View& view, const Box& extent) : projector_(make_projector(view, extent)) {}
@@ -88,7 +89,8 @@ public:
   }
 
 private:
-  static constexpr float kMuch = 0.25f;
+  static constexpr float kFew = 256;     ///< pixels, as kMostPixels in resident_tiles.h
+  static constexpr float kMuch = 0.01f;  ///< of the picture
 
   void end_run() {
     const std::span run = std::span(run_).first(std::exchange(length_, 0));
@@ -98,7 +100,8 @@ private:
     for (const Box& box : run) {
       const Rect image = image_of(box);
       const float area = (image.max_x - image.min_x) * (image.max_y - image.min_y);
-      if (area < kMuch * projector_.width * projector_.height) touched_ = with(touched_, image);
+      if (area > kFew && area < kMuch * projector_.width * projector_.height)
+        touched_ = with(touched_, image);
     }
   }
 

@@ -5,6 +5,7 @@
 
 #include "boxes.h"
 #include "resident.h"
+#include "workbench/device/shaders/frame_depth.h"
 #include "resident_tiles.h"
 layout(local_size_x = kGroup) in;
 #include "workbench/device/shaders/invocation.h"
@@ -15,7 +16,10 @@ void main() {
   const ChunkIn chunk = chunks_in.at[invocation()];
   const vec3 centre = chunk.bounds.centre_radius.xyz;
   const vec3 half_extent = widened(centre, chunk.bounds.half_extent.xyz);
-  if (!reaches_near_plane(centre, half_extent) && !tiles_leave_open(footprint(centre, half_extent))) return;
+  if (!reaches_near_plane(centre, half_extent)) {
+    const Footprint print = footprint(centre, half_extent);
+    if (!tiles_leave_open(print) || !pixels_leave_open(print)) return;
+  }
   const uint first = atomicAdd(test.parts, chunk.parts), end = first + chunk.parts;
   for (uint part = 0; part < chunk.parts; ++part) {
     parts.at[first + part] = (chunk.chunk & kWhollyIn) | (kParts * (chunk.chunk & ~kWhollyIn) + part);

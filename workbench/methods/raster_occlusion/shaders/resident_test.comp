@@ -5,9 +5,9 @@
 
 #include "boxes.h"
 #include "resident.h"
-#include "resident_tiles.h"
 #include "state.h"
 #include "workbench/device/shaders/frame_depth.h"
+#include "resident_tiles.h"
 layout(local_size_x = kGroup) in;
 #include "workbench/device/shaders/invocation.h"
 
@@ -17,7 +17,6 @@ layout(local_size_x = kGroup) in;
 
 // Pixels. A smaller box is cheap to rasterise, and may miss the pixel's middle next to its point.
 const float kLarge = 8;
-const uint kMostPixels = 256;  // to look at one by one
 
 // Whether a point of the box can be seen. If it can, so can the box's face before it, and the raster test would
 // say the same.
@@ -38,26 +37,6 @@ bool shows_somewhere(vec3 centre, vec3 half_extent) {
   bool shown = shows(centre - away * min(min(share.x, share.y), share.z), slack);
   for (uint i = 0; i < 8 && !shown; ++i) shown = shows(corner(centre, 0.95 * half_extent, i), slack);
   return shown;
-}
-
-// Whether some pixel of a small footprint leaves the box open: far away a tile, too, holds many objects and
-// the gaps between them.
-bool pixels_leave_open(Footprint print) {
-  const uvec2 edge = image_size() - 1;
-  const uvec2 first = min(uvec2(max(print.low, vec2(0))), edge);
-  const uvec2 last = min(uvec2(max(print.high, vec2(0))), edge), span = last - first + 1;
-  const vec2 scale = 1 / vec2(image_size());
-  bool open = print.whole || span.x * span.y > kMostPixels;
-  // Two rows and columns at a time, of an odd number the last ones once more.
-  const uvec2 end = max(last, first + 1) - 1;
-  uvec2 at = first;
-  for (bool more = !open; more;) {
-    open = !hides(farthest(textureGather(frame_depth, vec2(at + 1) * scale)), print.nearest);
-    more = !open && at != end;
-    const bool ends = at.x == end.x;
-    at = uvec2(ends ? first.x : min(at.x + 2, end.x), ends ? min(at.y + 2, end.y) : at.y);
-  }
-  return open;
 }
 
 void name_candidate(uint object) {

@@ -4,18 +4,31 @@ bool hides(float depth, float nearest) {
   return view.reversed != 0 ? nearest < depth : nearest > depth;
 }
 
-// Of a box that touches more, looking costs more than what it spares.
-const uint kMostTiles = 1024;
+// Pixels, from the first to the last; none where the last comes before it.
+struct PixelRange {
+  ivec2 first, last;
+};
+bool is_empty(PixelRange range) {
+  return any(greaterThan(range.first, range.last));
+}
 
-// Whether some tile of the footprint leaves it open, or nobody knows, as where tiles are not made. Beside the
-// picture there are none.
+// Those in the picture whose middles the footprint may hold: nothing is drawn of a box that holds none.
+PixelRange pixels_of(Footprint print) {
+  const vec2 size = vec2(image_size());
+  return PixelRange(ivec2(ceil(clamp(print.low - 0.5, vec2(0), size))),
+                    ivec2(floor(clamp(print.high - 0.5, vec2(-1), size - 1))));
+}
+
+// Of a box that touches more, looking costs more than what it spares.
+const uint kMostTiles = 1024, kMostPixels = 256;
+
+// Whether some tile of the footprint leaves it open, or nobody knows, as where tiles are not made.
 bool tiles_leave_open(Footprint print) {
-  const vec2 image = vec2(image_size());
   if (print.whole) return true;
-  if (any(lessThan(print.high, vec2(0))) || any(greaterThan(print.low, image))) return false;
-  const uvec2 edge = tiles_in_image() - 1;
-  const uvec2 first = min(uvec2(max(print.low, vec2(0))) / kDepthTile, edge);
-  const uvec2 last = min(uvec2(min(print.high, image)) / kDepthTile, edge), span = last - first + 1;
+  const PixelRange pixels = pixels_of(print);
+  if (is_empty(pixels)) return false;
+  const uvec2 first = uvec2(pixels.first) / kDepthTile, last = uvec2(pixels.last) / kDepthTile;
+  const uvec2 span = last - first + 1;
   const uint columns = tiles_in_image().x;
   const bool made = all(greaterThanEqual(first, kBlock * blocks.xy)) &&
                     all(lessThan(last, kBlock * (blocks.xy + blocks.zw)));
@@ -24,6 +37,29 @@ bool tiles_leave_open(Footprint print) {
     open = !hides(tiles.at[tile.y * columns + tile.x], print.nearest);
     const bool ends = tile.x == last.x;
     tile = uvec2(ends ? first.x : tile.x + 1, ends ? tile.y + 1 : tile.y);
+  }
+  return open;
+}
+
+// Whether some pixel of a small footprint leaves the box open: far away a tile, too, holds many objects and
+// the gaps between them.
+bool pixels_leave_open(Footprint print) {
+  const PixelRange pixels = pixels_of(print);
+  if (!print.whole && is_empty(pixels)) return false;
+  const ivec2 span = pixels.last - pixels.first + 1;
+  const vec2 scale = 1 / vec2(image_size());
+  bool open = print.whole || span.x * span.y > kMostPixels;
+  // Two rows and columns at a time, of an odd number the last ones once more.
+  const ivec2 end = max(pixels.last - 1, pixels.first);
+  ivec2 at = pixels.first;
+  for (bool more = !open; more;) {
+    vec4 depths = textureGather(frame_depth, vec2(at + 1) * scale);
+    if (span.x == 1) depths.yz = depths.xw;
+    if (span.y == 1) depths.xy = depths.wz;
+    open = !hides(farthest(depths), print.nearest);
+    more = !open && at != end;
+    const bool ends = at.x == end.x;
+    at = ivec2(ends ? pixels.first.x : min(at.x + 2, end.x), ends ? min(at.y + 2, end.y) : at.y);
   }
   return open;
 }
