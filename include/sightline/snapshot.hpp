@@ -1,11 +1,12 @@
 // Worlds as bytes: saved, loaded as a whole, or brought in sector by sector within a memory budget, while
 // another thread checks and copies what comes next.
 //
-//   sightline::Result<sightline::WorldStream> stream = sightline::WorldStream::open(mapped_file);
+//   sightline::World world;
+//   sightline::Result<sightline::WorldStream> stream = sightline::WorldStream::open(mapped_file, world);
 //   std::thread loader([&] { while (!done) if (!stream->work()) wait_a_moment(); });
 //   for (;;) {                                                  // a frame
 //     stream->update({&view, 1}, {.budget = 512u << 20});       // what came, goes and is to come
-//     culler.cull(stream->world(), view, ids);
+//     culler.cull(world, view, ids);
 //   }
 #pragma once
 
@@ -22,8 +23,8 @@ namespace sightline {
 
 /// Where save() writes: called with one piece of the bytes after another; false ends the saving.
 struct SnapshotSink {
-  bool (*write)(void* user, std::span<const std::byte> bytes) = nullptr;
-  void* user = nullptr;  ///< handed to `write`
+  bool (*write)(void* user, std::span<const std::byte> bytes) = nullptr;  ///< puts the bytes behind the last
+  void* user = nullptr;                                                   ///< handed to `write`
 };
 
 /// Writes a world's objects: boxes, handles, columns and tables of levels, but not what objects carry
@@ -62,8 +63,8 @@ struct StreamSector {
 
 /// Which sectors update() wants in.
 struct StreamOptions {
-  /// Bytes that sectors may take, those that are coming and those that changed among them; what a world has
-  /// besides, an id's 16 bytes and its columns, is not counted.
+  /// Bytes that sectors may take, those that are coming and those that changed among them, as saved; only the
+  /// latter may take more. What a world has besides, an id's 16 bytes and its columns, is not counted.
   std::size_t budget = std::numeric_limits<std::size_t>::max();
   /// Metres around the eyes within which sectors are wanted that no view touches, after those that views
   /// touch.
@@ -79,7 +80,7 @@ struct StreamReport {
   std::size_t memory = 0;   ///< bytes that those in and coming take
 };
 
-/// A world that lies in bytes and comes in by sectors, nearest first.
+/// Brings a world that lies in bytes in by sectors, nearest first.
 ///
 /// What is out is as if it were not there: culls do not see it, and its handles are stale until it is in
 /// again, when they name the same objects as before. A sector that was changed while in stays in. What its
@@ -88,21 +89,20 @@ struct StreamReport {
 /// it comes.
 ///
 /// Unless a function says otherwise: Errors: none. Cost: constant. Threads: those of World's for changing
-/// it; work() alone may run on others at the same time. Allocates: nothing.
+/// it; work() alone may run on others at the same time, and has returned when the stream goes. Allocates:
+/// nothing.
 class WorldStream {
 public:
-  /// Checks all but the sectors, which are checked when they come.
-  /// Errors: bad_file, as load(). Cost: linear in sectors and ids, some 2 ns an id. Threads: any. Allocates:
-  /// 16 bytes an id, what columns take by id, some 300 bytes a sector.
-  static Result<WorldStream> open(std::span<const std::byte> bytes);
+  /// Checks all but the sectors, which are checked when they come. `world`, a new one, becomes that of the
+  /// bytes with all sectors out; it is then culled and changed as any other, and must live, though it may be
+  /// moved, as long as the stream. Errors: bad_file, as load(); bad_argument for a world that is in use.
+  /// Cost: linear in sectors and ids, some 2 ns an id. Threads: any. Allocates: 16 bytes an id, what columns
+  /// take by id, some 300 bytes a sector.
+  static Result<WorldStream> open(std::span<const std::byte> bytes, World& world);
   ~WorldStream();
   WorldStream(WorldStream&&) noexcept;
   WorldStream& operator=(WorldStream&&) noexcept;
 
-  /// What is in; to be culled and changed as any other.
-  World& world() noexcept;
-  /// The same, for reading.
-  [[nodiscard]] const World& world() const noexcept;
   /// How many sectors there are.
   [[nodiscard]] std::size_t size() const noexcept;
   /// One of them; {} beyond size().
@@ -111,13 +111,12 @@ public:
   /// object was in before.
   [[nodiscard]] bool stands_out(Handle handle) const noexcept;
 
-  /// To be called once a frame, before culling. Puts the sectors into the world that work() has made ready;
-  /// wants those that the 1 … kMaxViews views touch, nearest first, then those near by, as far as the budget
-  /// goes; and takes out the farthest of the others where room is needed.
-  /// Errors: bad_argument, bad_view, as Culler::cull, of which it reads the views alone. Cost: some 100 ns a
-  /// sector and view; an object that comes or goes 5 to 10 ns, or 200 where others were put into its sector
-  /// meanwhile. Allocates:
-  /// its lists, the first time; columns' rows.
+  /// To be called once a frame, before culling. Puts one of the sectors in that work() has made ready; wants
+  /// those that the 1 … kMaxViews views touch, nearest first, then those near by, as far as the budget goes;
+  /// and takes out the farthest of the others where room is needed. Errors: bad_argument, bad_view, as
+  /// Culler::cull, of which it reads the views alone. Cost: some 100 ns a sector and view; an object that
+  /// comes or goes 5 to 10 ns, or 200 where others were put into its sector meanwhile. Allocates: its lists,
+  /// the first time; columns' rows.
   Result<StreamReport> update(std::span<const CullView> views, const StreamOptions& options = {});
   /// Checks one of the wanted sectors and copies it, for the next update() to put in; false where none
   /// waits. Cost: some 5 to 10 ns an object. Threads: any, several at once. Allocates: the sector.

@@ -62,8 +62,8 @@ Status check_sectors(SnapshotDirectory& out, const SnapshotTail& tail) {
     const SectorEntry& e = out.sectors[i];
     if (!is_sound(e, rows) || e.bytes > tail.directory - at)
       return damaged("snapshot: the entry of a sector is not sound, at this byte",
-                     tail.directory + i * sizeof(SectorEntry));
-    out.first_bytes.push_back(at);
+                     static_cast<std::size_t>(tail.directory) + i * sizeof(SectorEntry));
+    out.first_bytes.push_back(static_cast<std::size_t>(at));
     at += e.bytes, out.objects += e.objects;
   }
   if (at != tail.directory) return damaged("snapshot: its sectors do not end where their entries begin", at);
@@ -75,9 +75,14 @@ Status check_sectors(SnapshotDirectory& out, const SnapshotTail& tail) {
 }
 
 Status check_rest(const SnapshotDirectory& out, std::uint64_t at) {
-  for (std::size_t i = 0; i < out.free_ids.size(); ++i)
-    if (out.free_ids[i].id >= out.id_limit())
-      return damaged("snapshot: a free id is out of range, at this byte", at + i * sizeof(FreeId));
+  std::vector<bool> met(out.free_ids.empty() ? 0 : out.id_limit());
+  for (std::size_t i = 0; i < out.free_ids.size(); ++i) {
+    const std::uint32_t id = out.free_ids[i].id;
+    if (id >= met.size() || met[id])
+      return damaged("snapshot: a free id is out of range or stands twice, at this byte",
+                     at + i * sizeof(FreeId));
+    met[id] = true;
+  }
   at += out.free_ids.size() * sizeof(FreeId);
   for (std::size_t i = 0; i < out.tables.size(); ++i)
     if (!is_sound(out.tables[i]))

@@ -115,11 +115,13 @@ struct SnapshotDirectory {
   std::uint32_t columns = 0;
   std::uint64_t objects = 0;
   std::vector<SectorEntry> sectors;
-  std::vector<std::uint64_t> first_bytes;  ///< of these
+  std::vector<std::size_t> first_bytes;  ///< of these
   std::vector<FreeId> free_ids;
   std::vector<SnapshotTable> tables;
 
-  [[nodiscard]] std::size_t id_limit() const noexcept { return objects + free_ids.size(); }
+  [[nodiscard]] std::size_t id_limit() const noexcept {
+    return static_cast<std::size_t>(objects) + free_ids.size();
+  }
   [[nodiscard]] Bytes sector(std::size_t i) const noexcept {
     return bytes.subspan(first_bytes[i], sectors[i].bytes);
   }

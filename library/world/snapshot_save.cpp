@@ -141,6 +141,7 @@ private:
     SnapshotTail tail;
     tail.directory = at_, tail.objects = s_.size, tail.magic = kSnapshotMagic;
     std::vector<FreeId> free_ids;
+    free_ids.reserve(s_.free_ids.size());
     for (const ObjectId id : s_.free_ids) free_ids.push_back({id, s_.objects[id].generation});
     std::vector<SnapshotTable> tables;
     if (levels_)

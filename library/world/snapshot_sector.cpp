@@ -167,7 +167,7 @@ private:
 
   const SnapshotDirectory& directory_;
   const SectorEntry& entry_;
-  std::uint64_t at_;
+  std::size_t at_;
   SnapshotRows rows_;
   WordReader words_;
   SectorPiece& piece_;

@@ -25,20 +25,20 @@ void for_each_object(const ChunkMap& map, const Take& take) {
 
 }  // namespace
 
-Status SnapshotWorld::begin(SnapshotDirectory directory) {
+bool SnapshotWorld::is_new(const World& world) noexcept {
+  const WorldState& s = WorldAccess::state(world);
+  const bool has_columns = s.columns.any() || s.columns.has_values;
+  return s.objects.empty() && s.sectors.empty() && !s.levels && !s.occluders && !has_columns;
+}
+
+void SnapshotWorld::begin(SnapshotDirectory directory, World& world) {
   directory_ = std::move(directory);
-  WorldState& s = state();
+  state_ = &WorldAccess::state(world);
+  WorldState& s = *state_;
   const std::size_t ids = directory_.id_limit();
   s.objects.resize(ids, {ChunkMap::kOut, 0, ChunkMap::kNone, 0});
-  std::size_t byte = directory_.bytes.size() - sizeof(SnapshotTail) -
-                     directory_.tables.size() * sizeof(SnapshotTable) -
-                     directory_.free_ids.size() * sizeof(FreeId);
   for (const FreeId& free : directory_.free_ids) {
-    ChunkMap::Location& at = s.objects[free.id];
-    if (std::exchange(at.chunk, ChunkMap::kNone) == ChunkMap::kNone)
-      return {StatusCode::bad_file, "snapshot: an id is free twice, again at this byte", byte};
-    byte += sizeof(FreeId);
-    at.generation = free.generation;
+    s.objects[free.id].chunk = ChunkMap::kNone, s.objects[free.id].generation = free.generation;
     s.free_ids.push_back(free.id);
   }
   s.sectors.resize(directory_.sectors.size());
@@ -50,18 +50,17 @@ Status SnapshotWorld::begin(SnapshotDirectory directory) {
   if (c.has_values) c.values.resize(ids, 0);
   if (c.has_distances) c.distances.resize(ids);
   if (c.any()) s.column_tests = c.has_distances ? &kDistanceTests : &kLayerTests;
-  if (directory_.tables.empty()) return {};
+  if (directory_.tables.empty()) return;
   auto levels = std::make_unique<WorldLevels>();
   for (const SnapshotTable& table : directory_.tables) levels->tables.push_back({table.sizes});
   if (directory_.columns & Has::kLevels) levels->table_of.resize(ids);
   s.levels = std::move(levels);
-  return {};
 }
 
 // Says of each object where it stands. One that stands elsewhere, or is free, ends that, and all is as
 // before.
 Status SnapshotWorld::claim(std::size_t sector, const ChunkMap& map) {
-  WorldState& s = state();
+  WorldState& s = *state_;
   std::size_t claimed = 0;
   bool sound = true;
   for_each_object(map, [&](ObjectId id, std::uint32_t chunk, std::uint32_t slot) {
@@ -82,7 +81,7 @@ Status SnapshotWorld::claim(std::size_t sector, const ChunkMap& map) {
 }
 
 void SnapshotWorld::read_columns(const SectorPiece& piece) {
-  WorldState& s = state();
+  WorldState& s = *state_;
   const SnapshotRows rows(directory_.columns);
   auto* levels = static_cast<WorldLevels*>(s.levels.get());
   const std::uint32_t* at = piece.rows.data();
@@ -108,7 +107,7 @@ void SnapshotWorld::read_columns(const SectorPiece& piece) {
 
 // Into a sector that others' objects have begun.
 void SnapshotWorld::file_each(const ChunkMap& map, std::uint32_t into) {
-  WorldState& s = state();
+  WorldState& s = *state_;
   s.touch(into);
   ChunkMapParts::for_each_chunk(map, [&](std::uint32_t, const ChunkMap::ChunkView& c) {
     for (std::uint32_t i = 0; i < c.count; ++i) {
@@ -122,7 +121,7 @@ void SnapshotWorld::file_each(const ChunkMap& map, std::uint32_t into) {
 }
 
 Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
-  WorldState& s = state();
+  WorldState& s = *state_;
   const auto& [x, y, z] = directory_.sectors[i].cell;
   if (const Status sound = claim(i, *piece.map); !sound) return sound;
   read_columns(piece);
@@ -147,7 +146,7 @@ Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
 }
 
 void SnapshotWorld::take_out(std::size_t i) {
-  WorldState& s = state();
+  WorldState& s = *state_;
   Sector& sector = s.sectors[i];
   for_each_object(*sector.map, [&](ObjectId id, std::uint32_t, std::uint32_t) {
     go_out(s.objects[id], true);

@@ -21,11 +21,12 @@ inline constexpr std::uint32_t kGenerationIsKnown = 1;
 /// so that with all of them in, a cull goes through them in the order that it always had.
 class SnapshotWorld {
 public:
-  /// Nothing is in.
-  Status begin(SnapshotDirectory directory);
+  /// Whether nobody has done anything with the world yet.
+  static bool is_new(const World& world) noexcept;
+  /// Of a new world; nothing is in. It stays the one meant when its World is moved.
+  void begin(SnapshotDirectory directory, World& world);
   [[nodiscard]] const SnapshotDirectory& directory() const noexcept { return directory_; }
-  World& world() noexcept { return world_; }
-  [[nodiscard]] const World& world() const noexcept { return world_; }
+  [[nodiscard]] const WorldState& state() const noexcept { return *state_; }
 
   /// Reads a sector that is not in. May run on any thread.
   Status read(std::size_t sector, SectorPiece& piece) const {
@@ -37,18 +38,16 @@ public:
   void take_out(std::size_t sector);
   /// Whether a sector that was put in is as it was then.
   [[nodiscard]] bool unchanged(std::size_t sector) const noexcept {
-    return state().sectors[sector].snapshot == sector;
+    return state_->sectors[sector].snapshot == sector;
   }
 
 private:
-  WorldState& state() noexcept { return WorldAccess::state(world_); }
-  [[nodiscard]] const WorldState& state() const noexcept { return WorldAccess::state(world_); }
   Status claim(std::size_t sector, const ChunkMap& map);
   void read_columns(const SectorPiece& piece);
   void file_each(const ChunkMap& map, std::uint32_t into);
 
   SnapshotDirectory directory_;
-  World world_;
+  WorldState* state_ = nullptr;
 };
 
 /// A sector that update() asked for, on its way through work().
@@ -87,7 +86,11 @@ struct StreamState {
   std::array<Request, 16> requests;
   std::vector<SectorRank> ranks;
 
-  void collect();
+  /// update() of views and options that were checked; puts in so many sectors that are ready.
+  StreamReport update(std::span<const CullView> views, const StreamOptions& options, std::size_t most);
+
+private:
+  void collect(std::size_t most);
   void withdraw();
   void rank(std::span<const CullView> views);
   void choose(const StreamOptions& options);

@@ -34,12 +34,13 @@ bool is_in(SectorState state) noexcept {
 }  // namespace
 
 // Puts in what work() has made ready, and learns what was changed meanwhile.
-void StreamState::collect() {
+void StreamState::collect(std::size_t most) {
   for (std::size_t i = 0; i < sectors.size(); ++i)
     if (sectors[i].state == SectorState::in && !snapshot.unchanged(i))
       sectors[i].state = SectorState::changed;
   for (Request& request : requests) {
-    if (request.state.load(std::memory_order_acquire) != Request::ready) continue;
+    if (most == 0 || request.state.load(std::memory_order_acquire) != Request::ready) continue;
+    --most;
     Sector& sector = sectors[request.sector];
     if (!request.error) {
       sector.error = request.error;
@@ -137,6 +138,16 @@ void StreamState::order(std::size_t budget) {
   }
 }
 
+StreamReport StreamState::update(std::span<const CullView> views, const StreamOptions& options,
+                                 std::size_t most) {
+  collect(most);
+  withdraw();
+  rank(views);
+  choose(options);
+  order(options.budget);
+  return report();
+}
+
 StreamReport StreamState::report() const {
   StreamReport out;
   out.memory = memory;
@@ -151,6 +162,20 @@ StreamReport StreamState::report() const {
 
 }  // namespace world
 
+namespace {
+
+Status check_stream(std::span<const CullView> views, const StreamOptions& options) noexcept {
+  if (views.empty() || views.size() > kMaxViews)
+    return {StatusCode::bad_argument, "stream: expected 1 to 8 views", views.size()};
+  if (!(options.ahead >= 0))
+    return {StatusCode::bad_argument, "stream: the metres ahead are negative or not a number"};
+  for (std::size_t v = 0; v < views.size(); ++v)
+    if (const Status sound = check(views[v].view); !sound) return {StatusCode::bad_view, sound.message(), v};
+  return {};
+}
+
+}  // namespace
+
 struct WorldStream::State : world::StreamState {};
 
 WorldStream::WorldStream(State* state) noexcept : state_(state) {}
@@ -163,7 +188,9 @@ WorldStream& WorldStream::operator=(WorldStream&& other) noexcept {
   return *this;
 }
 
-Result<WorldStream> WorldStream::open(std::span<const std::byte> bytes) {
+Result<WorldStream> WorldStream::open(std::span<const std::byte> bytes, World& into) {
+  if (!world::SnapshotWorld::is_new(into))
+    return Status(StatusCode::bad_argument, "stream: the world is in use, expected a new one");
   Result<world::SnapshotDirectory> directory = world::read_directory(bytes);
   if (!directory) return directory.error();
   WorldStream stream(new State);
@@ -175,16 +202,10 @@ Result<WorldStream> WorldStream::open(std::span<const std::byte> bytes) {
     sector.memory = world::ChunkMapParts::memory(e, directory->columns);
     state.sectors.push_back(sector);
   }
-  if (const Status sound = state.snapshot.begin(*std::move(directory)); !sound) return sound;
+  state.snapshot.begin(*std::move(directory), into);
   return stream;
 }
 
-World& WorldStream::world() noexcept {
-  return state_->snapshot.world();
-}
-const World& WorldStream::world() const noexcept {
-  return state_->snapshot.world();
-}
 std::size_t WorldStream::size() const noexcept {
   return state_->sectors.size();
 }
@@ -198,13 +219,13 @@ StreamSector WorldStream::sector(std::size_t index) const noexcept {
   return {world::placed_box(entry.bounds, sector.origin),
           entry.objects,
           sector.memory,
-          static_cast<std::size_t>(directory.first_bytes[index]),
+          directory.first_bytes[index],
           changed ? SectorState::changed : sector.state,
           sector.error};
 }
 
 bool WorldStream::stands_out(Handle handle) const noexcept {
-  const auto& objects = WorldAccess::state(world()).objects;
+  const auto& objects = state_->snapshot.state().objects;
   if (handle.index >= objects.size()) return false;
   const auto& at = objects[handle.index];
   return at.chunk == world::ChunkMap::kOut &&
@@ -212,20 +233,8 @@ bool WorldStream::stands_out(Handle handle) const noexcept {
 }
 
 Result<StreamReport> WorldStream::update(std::span<const CullView> views, const StreamOptions& options) {
-  if (views.empty() || views.size() > kMaxViews)
-    return Status(StatusCode::bad_argument, "stream: expected 1 to 8 views", views.size());
-  if (!(options.ahead >= 0))
-    return Status(StatusCode::bad_argument, "stream: the metres ahead are negative or not a number");
-  for (std::size_t v = 0; v < views.size(); ++v)
-    if (const Status sound = check(views[v].view); !sound)
-      return Status(StatusCode::bad_view, sound.message(), v);
-  State& state = *state_;
-  state.collect();
-  state.withdraw();
-  state.rank(views);
-  state.choose(options);
-  state.order(options.budget);
-  return state.report();
+  if (const Status sound = check_stream(views, options); !sound) return sound;
+  return state_->update(views, options, 1);
 }
 
 bool WorldStream::work() {
@@ -241,29 +250,31 @@ bool WorldStream::work() {
 }
 
 Result<StreamReport> WorldStream::bring_in(std::span<const CullView> views, const StreamOptions& options) {
+  if (const Status sound = check_stream(views, options); !sound) return sound;
   StreamOptions touched = options;
   touched.ahead = 0;
   for (;;) {
-    const Result<StreamReport> report = update(views, touched);
+    const StreamReport report = state_->update(views, touched, state_->requests.size());
     bool worked = false;
-    while (report && work()) worked = true;
+    while (work()) worked = true;
     // Others may be at work on what is missing.
-    if (!worked && (!report || report->coming == 0)) return report;
+    if (!worked && report.coming == 0) return report;
   }
 }
 
 Result<World> load(std::span<const std::byte> bytes) {
   Result<world::SnapshotDirectory> directory = world::read_directory(bytes);
   if (!directory) return directory.error();
+  World loaded;
   world::SnapshotWorld snapshot;
-  if (const Status sound = snapshot.begin(*std::move(directory)); !sound) return sound;
+  snapshot.begin(*std::move(directory), loaded);
   for (std::size_t i = 0; i < snapshot.directory().sectors.size(); ++i) {
     world::SectorPiece piece;
     Status sound = snapshot.read(i, piece);
     if (sound) sound = snapshot.put_in(i, piece);
     if (!sound) return sound;
   }
-  return std::move(snapshot.world());
+  return loaded;
 }
 
 }  // namespace sightline

@@ -64,12 +64,11 @@ std::size_t damage(FileBytes& bytes, Random& random, std::uint32_t kind) {
 }
 
 // Brings in what comes, and does with it what anybody might.
-void use(WorldStream& stream, Random& random) {
+void use(WorldStream& stream, World& world, Random& random) {
   const CullView view = overview();
   const auto report = stream.bring_in({&view, 1});
   ASSERT_TRUE(report) << report.error().message();
   EXPECT_EQ(report->in + report->damaged, stream.size());
-  World& world = stream.world();
   std::vector<Handle> handles;
   for (std::size_t i = 0; i < world.id_limit(); ++i)
     if (const Handle h = world.handle(static_cast<ObjectId>(i)); world.contains(h)) handles.push_back(h);
@@ -94,7 +93,8 @@ TEST(DamagedSnapshot, IsRefusedOrLeavesItsDamagedSectorsOut) {
     const std::size_t at = damage(bytes, random, i % 5);
     if (bytes == sound) continue;
     EXPECT_EQ(load(bytes).error().code(), StatusCode::bad_file);
-    auto stream = WorldStream::open(bytes);
+    World streamed;
+    auto stream = WorldStream::open(bytes, streamed);
     if (!stream) {
       ++refused;
       EXPECT_EQ(stream.error().code(), StatusCode::bad_file);
@@ -120,10 +120,10 @@ TEST(DamagedSnapshot, IsRefusedOrLeavesItsDamagedSectorsOut) {
               (sector.first_byte <= at && (s + 1 == stream->size() || at < stream->sector(s + 1).first_byte));
     }
     EXPECT_TRUE(named) << "the sector that was hit is not among those named";
-    EXPECT_EQ(stream->world().size(), objects);
-    test::expect_sound(stream->world());
-    for (const auto& [id, mask, level] : test::seen(stream->world(), {&view, 1}))
-      EXPECT_EQ(stream->world().box(stream->world().handle(id)), world.box(world.handle(id)));
+    EXPECT_EQ(streamed.size(), objects);
+    test::expect_sound(streamed);
+    for (const auto& [id, mask, level] : test::seen(streamed, {&view, 1}))
+      EXPECT_EQ(streamed.box(streamed.handle(id)), world.box(world.handle(id)));
   }
   EXPECT_GT(refused, 60);
   EXPECT_GT(parted, 60);
@@ -138,10 +138,11 @@ TEST(DamagedSnapshot, WithRightChecksumsDoesNoHarmEither) {
     FileBytes bytes = sound;
     for (std::uint32_t k = 1 + random.below(3); k > 0 && !bytes.empty(); --k) damage(bytes, random, i % 5);
     test::forge_checksums(bytes);
-    auto stream = WorldStream::open(bytes);
+    World world;
+    auto stream = WorldStream::open(bytes, world);
     if (!stream) continue;
     ++opened;
-    use(*stream, random);
+    use(*stream, world, random);
   }
   EXPECT_GT(opened, 100);
 }
@@ -156,7 +157,8 @@ TEST(DamagedSnapshot, NoCountOfTheDirectoryIsBelieved) {
       FileBytes bytes = sound;
       std::memcpy(bytes.data() + at, &value, sizeof value);
       test::forge_checksums(bytes);
-      if (auto stream = WorldStream::open(bytes)) use(*stream, random);
+      World world;
+      if (auto stream = WorldStream::open(bytes, world)) use(*stream, world, random);
       if (HasFatalFailure()) return;
     }
   }
@@ -172,15 +174,16 @@ TEST(DamagedSnapshot, AnIdThatStandsTwiceLeavesTheSecondSectorOut) {
   const std::size_t id = sizeof(world::SnapshotHead) + 4 * (3 + 6), length = 4 * (3 + 8);
   std::memcpy(bytes.data() + id + length, bytes.data() + id, 4);
   test::forge_checksums(bytes);
-  auto stream = WorldStream::open(bytes);
+  World streamed;
+  auto stream = WorldStream::open(bytes, streamed);
   ASSERT_TRUE(stream) << stream.error().message();
   const CullView view = overview();
   const auto report = stream->bring_in({&view, 1}, {.ahead = 0});
   ASSERT_TRUE(report);
   EXPECT_EQ(report->damaged, 1u);
-  EXPECT_EQ(stream->world().size(), 1u);
-  EXPECT_TRUE(stream->world().contains(handles[0]));
-  EXPECT_FALSE(stream->world().contains(handles[1]));
+  EXPECT_EQ(streamed.size(), 1u);
+  EXPECT_TRUE(streamed.contains(handles[0]));
+  EXPECT_FALSE(streamed.contains(handles[1]));
 }
 
 }  // namespace

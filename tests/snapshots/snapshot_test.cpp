@@ -154,7 +154,7 @@ TEST(Snapshot, AnEmptyWorldIsOneToo) {
   Result<World> loaded = load(test::saved(empty));
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->size(), 0u);
-  EXPECT_EQ(WorldStream::open(test::saved(empty))->size(), 0u);
+  EXPECT_EQ(WorldStream::open(test::saved(empty), empty)->size(), 0u);
 }
 
 TEST(Snapshot, FarSectorsAndHugeBoxesKeepTheirBits) {
@@ -193,9 +193,10 @@ TEST(Snapshot, WhatCannotBeSavedIsRefused) {
   const SnapshotSink full{[](void*, std::span<const std::byte>) { return false; }, nullptr};
   EXPECT_EQ(save(played.world, full).code(), StatusCode::too_many);
   const test::FileBytes bytes = test::saved(played.world);
-  auto stream = WorldStream::open(bytes);
-  ASSERT_TRUE(stream);
-  EXPECT_EQ(save(stream->world(), full).code(), StatusCode::bad_argument);
+  EXPECT_EQ(WorldStream::open(bytes, played.world).error().code(), StatusCode::bad_argument);
+  World streamed;
+  ASSERT_TRUE(WorldStream::open(bytes, streamed));
+  EXPECT_EQ(save(streamed, full).code(), StatusCode::bad_argument);
 }
 
 }  // namespace

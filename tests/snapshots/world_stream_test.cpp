@@ -47,13 +47,14 @@ CullView looking_from(const Vec3& eye, float heading, float far_plane = 4000) {
 }
 
 // What all of the ground's boxes show, less those whose sectors are out, is what is seen.
-void expect_all_that_is_in(const Ground& ground, const WorldStream& stream, const CullView& view) {
+void expect_all_that_is_in(const Ground& ground, const World& world, const WorldStream& stream,
+                           const CullView& view) {
   std::set<ObjectId> seen;
-  for (const auto& [id, mask, level] : test::seen(stream.world(), {&view, 1})) seen.insert(id);
+  for (const auto& [id, mask, level] : test::seen(world, {&view, 1})) seen.insert(id);
   for (const auto& [id, mask, level] : test::seen(ground.world, {&view, 1})) {
     const Handle handle = ground.world.handle(id);
-    ASSERT_NE(stream.world().contains(handle), stream.stands_out(handle)) << id;
-    ASSERT_EQ(seen.erase(id), stream.world().contains(handle)) << id;
+    ASSERT_NE(world.contains(handle), stream.stands_out(handle)) << id;
+    ASSERT_EQ(seen.erase(id), world.contains(handle)) << id;
   }
   ASSERT_TRUE(seen.empty()) << "more is seen than there is";
 }
@@ -66,9 +67,10 @@ std::size_t memory_of_all(const WorldStream& stream) {
 
 TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
   const Ground ground;
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
-  EXPECT_EQ(stream->world().size(), 0u);
+  EXPECT_EQ(world.size(), 0u);
   Random random(1);
   for (int i = 0; i < 40; ++i) {
     const CullView view =
@@ -76,7 +78,7 @@ TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
     const auto report = stream->bring_in({&view, 1});
     ASSERT_TRUE(report);
     ASSERT_EQ(report->missing, 0u);
-    expect_all_that_is_in(ground, *stream, view);
+    expect_all_that_is_in(ground, world, *stream, view);
   }
   const CullView view = looking_from({0, 0, 0}, 0);
   for (StreamReport report; report.in < stream->size();) {
@@ -84,15 +86,16 @@ TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
     while (stream->work()) {
     }
   }
-  test::expect_same_objects(ground.world, stream->world());
+  test::expect_same_objects(ground.world, world);
   const CullView wide = looking_from({0, 0, -kSide}, 0, 3 * kSide);
-  EXPECT_EQ(test::seen(ground.world, {&wide, 1}), test::seen(stream->world(), {&wide, 1}));
-  EXPECT_EQ(test::saved(stream->world()), ground.bytes);
+  EXPECT_EQ(test::seen(ground.world, {&wide, 1}), test::seen(world, {&wide, 1}));
+  EXPECT_EQ(test::saved(world), ground.bytes);
 }
 
 TEST(WorldStream, StaysWithinItsBudgetBesideAThreadThatReads) {
   const Ground ground;
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
@@ -119,18 +122,19 @@ TEST(WorldStream, StaysWithinItsBudgetBesideAThreadThatReads) {
     ASSERT_EQ(in, report->memory);
     came = std::max(came, report->in), complete += report->missing == 0;
     if (frames % 8 == 0) ASSERT_EQ(report->missing, 0u);
-    expect_all_that_is_in(ground, *stream, view);
+    expect_all_that_is_in(ground, world, *stream, view);
   }
   done = true;
   for (std::thread& reader : readers) reader.join();
   EXPECT_GT(came, 3u);
   EXPECT_GE(complete, frames / 8);
-  test::expect_sound(stream->world());
+  test::expect_sound(world);
 }
 
 TEST(WorldStream, HandlesNameTheSameObjectsAgain) {
   const Ground ground(5000);
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
   const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
                  there = looking_from({kSide, 0, kSide}, 3.9f);
@@ -139,27 +143,27 @@ TEST(WorldStream, HandlesNameTheSameObjectsAgain) {
     ASSERT_TRUE(stream->bring_in({i % 2 ? &here : &there, 1}, options));
     std::size_t in = 0;
     for (const Handle handle : ground.handles) {
-      ASSERT_NE(stream->world().contains(handle), stream->stands_out(handle));
-      if (!stream->world().contains(handle)) continue;
+      ASSERT_NE(world.contains(handle), stream->stands_out(handle));
+      if (!world.contains(handle)) continue;
       ++in;
-      ASSERT_EQ(stream->world().box(handle), ground.world.box(handle));
+      ASSERT_EQ(world.box(handle), ground.world.box(handle));
     }
-    EXPECT_EQ(in, stream->world().size());
+    EXPECT_EQ(in, world.size());
     EXPECT_GT(in, 0u);
   }
   EXPECT_FALSE(stream->stands_out({}));
   for (const Handle handle : ground.handles) {
-    if (stream->world().contains(handle)) continue;
-    EXPECT_EQ(stream->world().remove(std::span(&handle, 1)).code(), StatusCode::stale_handle);
+    if (world.contains(handle)) continue;
+    EXPECT_EQ(world.remove(std::span(&handle, 1)).code(), StatusCode::stale_handle);
     break;
   }
 }
 
 TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
   const Ground ground(5000);
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
-  World& world = stream->world();
   const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
                  there = looking_from({kSide, 0, kSide}, 3.9f);
   // Before its sector has come.
@@ -201,9 +205,9 @@ TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
 
 TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
   const Ground ground(2000);
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
-  World& world = stream->world();
   const CullView here = looking_from({0, 0, 0}, 0), there = looking_from({kSide, 0, kSide}, 0.7f);
   ASSERT_TRUE(stream->bring_in({&here, 1}));
   const auto occluder = world.add_occluder(test::kUnitBox);
@@ -219,7 +223,8 @@ TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
 
 TEST(WorldStream, RefusesWhatIsNoView) {
   const Ground ground(100);
-  auto stream = WorldStream::open(ground.bytes);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
   ASSERT_TRUE(stream);
   EXPECT_EQ(stream->update({}).error().code(), StatusCode::bad_argument);
   CullView view = looking_from({0, 0, 0}, 0);

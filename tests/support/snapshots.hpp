@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <tuple>
 #include <vector>
 
 #include <sightline/snapshot.hpp>
 
-#include "library/world/snapshot_format.hpp"
 #include "library/world/world_state.hpp"
 #include "support/cull.hpp"
+#include "support/forged_checksums.hpp"
 
 namespace sightline::test {
 
@@ -76,37 +75,6 @@ inline void expect_same_objects(const World& a, const World& b) {
     ASSERT_EQ(a.distances(handle), b.distances(handle));
     ASSERT_EQ(a.levels(handle), b.levels(handle));
   }
-}
-
-/// The tail of a snapshot, and where it stands.
-inline world::SnapshotTail tail_of(const FileBytes& bytes) {
-  world::SnapshotTail tail;
-  std::memcpy(&tail, bytes.data() + bytes.size() - sizeof tail, sizeof tail);
-  return tail;
-}
-
-/// Makes all checksums right, where the bytes are long enough to have any, as somebody would who wants to do
-/// harm.
-inline void forge_checksums(FileBytes& bytes) {
-  using namespace world;
-  if (bytes.size() < sizeof(SnapshotHead) + sizeof(SnapshotTail)) return;
-  const std::span<std::byte> all(bytes);
-  SnapshotTail tail = tail_of(bytes);
-  const std::size_t end = bytes.size() - sizeof tail;
-  if (tail.directory > end || tail.sectors > (end - tail.directory) / sizeof(SectorEntry)) return;
-  std::uint64_t at = sizeof(SnapshotHead);
-  for (std::size_t i = 0; i < tail.sectors; ++i) {
-    std::byte* const place = bytes.data() + tail.directory + i * sizeof(SectorEntry);
-    SectorEntry entry;
-    std::memcpy(&entry, place, sizeof entry);
-    if (at > tail.directory || entry.bytes > tail.directory - at) break;
-    entry.checksum = checksum(all.subspan(at, entry.bytes));
-    std::memcpy(place, &entry, sizeof entry);
-    at += entry.bytes;
-  }
-  const std::uint64_t covered = end + offsetof(SnapshotTail, checksum) - tail.directory;
-  tail.checksum = checksum(all.subspan(tail.directory, covered), checksum(all.first(sizeof(SnapshotHead))));
-  std::memcpy(bytes.data() + end, &tail, sizeof tail);
 }
 
 }  // namespace sightline::test
