@@ -69,7 +69,7 @@ cmake --preset asan >/dev/null
 cmake --build --preset asan --target tests_of_input fuzzers
 # Of these the ones that are large rather than tricky run there in --full, too: they take minutes, and smaller ones run
 # the same code.
-checked='^(geometry|frustum|rays|occlusion|world|c|pvs|scene|submission|partition|io|camera|methods)[.]'
+checked='^(geometry|frustum|rays|occlusion|world|snapshots|c|pvs|scene|submission|partition|io|camera|methods)[.]'
 large='AMillionObjects|Conformance.*(forest|irregular|regular)|FiveModels'
 ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
 
@@ -79,8 +79,9 @@ ctest --preset asan -j"$(nproc)" -L mutants-in-gate
 
 stage "threads"
 cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target world_tests occlusion_tests
+cmake --build --preset tsan --target world_tests snapshots_tests occlusion_tests
 build/tsan/tests/world_tests --gtest_brief=1
+build/tsan/tests/snapshots_tests --gtest_brief=1 --gtest_filter='WorldStream.*'
 build/tsan/tests/occlusion_tests --gtest_brief=1 --gtest_filter='OcclusionJobs.*'
 
 stage "fuzzers"

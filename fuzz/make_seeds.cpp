@@ -1,9 +1,11 @@
-// make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf, fuzz_image, fuzz_shaders and fuzz_pvs with
-// a few whole files each.
+// make_seeds FOLDER: writes FOLDER/fuzz_bsp, fuzz_pk3, fuzz_gltf, fuzz_image, fuzz_shaders, fuzz_pvs and
+// fuzz_snapshot with a few whole files each.
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
 
+#include <sightline/snapshot.hpp>
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
 #include "library/pvs/cell_coding.hpp"
@@ -43,12 +45,41 @@ void write_scenes_and_images(const std::filesystem::path& folder) {
   write(folder / "fuzz_gltf/sparse_strip.gltf", to_bytes(sparse));
 }
 
+// Two worlds: of a few boxes, and of columns and free ids in several sectors.
+void write_snapshots(const std::filesystem::path& folder) {
+  for (const int count : {3, 400}) {
+    std::vector<Box> boxes;
+    for (int i = 0; i < count; ++i) {
+      const auto x = static_cast<float>(i * 37 % 100 * 40), z = static_cast<float>(i * 11 % 50);
+      boxes.push_back({{x, 0, z}, {x + 1, 1, z + 1}});
+    }
+    World world;
+    std::vector<Handle> handles(boxes.size());
+    std::vector<std::uint32_t> numbers(boxes.size(), 3);
+    if (!world.insert(BoxView(boxes), handles)) throw Error("a box is refused");
+    if (count > 3 && (!world.set_layers(handles, numbers) || !world.set_values(handles, numbers) ||
+                      !world.set_distances(handles, std::vector<DistanceRange>(boxes.size())) ||
+                      !world.remove(std::span<const Handle>(handles).first(20))))
+      throw Error("a column is refused");
+    Blob file;
+    const SnapshotSink sink{[](void* user, std::span<const std::byte> bytes) {
+                              auto& to = *static_cast<Blob*>(user);
+                              to.insert(to.end(), bytes.begin(), bytes.end());
+                              return true;
+                            },
+                            &file};
+    if (!save(world, sink)) throw Error("a world is not saved");
+    write(folder / ("fuzz_snapshot/" + std::to_string(count)), file);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fputs("usage: fuzz_seeds FOLDER\n", stderr), 2;
   const std::filesystem::path folder = argv[1];
-  for (const char* target : {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_image", "fuzz_shaders", "fuzz_pvs"})
+  for (const char* target :
+       {"fuzz_bsp", "fuzz_pk3", "fuzz_gltf", "fuzz_image", "fuzz_shaders", "fuzz_pvs", "fuzz_snapshot"})
     std::filesystem::create_directories(folder / target);
 
   Level level = two_rooms();
@@ -58,6 +89,7 @@ int main(int argc, char** argv) try {
   write(folder / "fuzz_bsp/no_visibility.bsp", to_bsp(level));
 
   write_scenes_and_images(folder);
+  write_snapshots(folder);
 
   // Twelve cells of sixty objects, as fuzz_pvs reads them: the file, each layout, and lone sets.
   CellPvs cells;

@@ -62,6 +62,7 @@ OcclusionOptions occlusion_options(const std::string& coverage, std::uint32_t sc
 void add_views(pybind11::module_& m);
 void add_world(pybind11::module_& m);
 void add_world_occluders(pybind11::class_<Guarded<World>>& world);
+void add_snapshots(pybind11::module_& m, pybind11::class_<Guarded<World>>& world);
 void add_occlusion(pybind11::module_& m);
 void add_shadows(pybind11::module_& m);
 void add_instances(pybind11::module_& m);

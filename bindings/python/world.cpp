@@ -286,6 +286,7 @@ void add_world(py::module_& m) {
       .def("__len__", &size_of)
       .def_property_readonly("id_limit", &id_limit_of);
   add_world_occluders(world_class);
+  add_snapshots(m, world_class);
 
   py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
       .def(

@@ -35,6 +35,7 @@
 #include <sightline/c/pvs.h>
 #include <sightline/c/rays.h>
 #include <sightline/c/shadows.h>
+#include <sightline/c/snapshot.h>
 #include <sightline/c/status.h>
 #include <sightline/c/view.h>
 #include <sightline/c/world.h>

@@ -13,6 +13,7 @@
 #include <sightline/pvs.hpp>
 #include <sightline/rays.hpp>
 #include <sightline/shadows.hpp>
+#include <sightline/snapshot.hpp>
 #include <sightline/status.hpp>
 #include <sightline/types.hpp>
 #include <sightline/version.hpp>

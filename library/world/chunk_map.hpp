@@ -85,6 +85,8 @@ public:
 
     [[nodiscard]] std::uint32_t slot() const noexcept { return slot_and_history & 0xff; }
   };
+  /// The chunk of an object whose sector is not in memory.
+  static constexpr std::uint32_t kOut = kNone - 1;
   /// One a possible object id; maps that share no object may share the table.
   using Locations = geometry::LargeVector<Location>;
 
@@ -290,6 +292,8 @@ public:
   [[nodiscard]] Status check() const;
 
 private:
+  friend struct ChunkMapParts;  // the way of snapshots
+
   // What a small move reads comes first, in a line of memory.
   struct alignas(64) Chunk {
     Box bounds;  // what the group says, or will say once flush() has been called

@@ -17,11 +17,6 @@ namespace world {
 
 namespace {
 
-constexpr float kHalfSide = static_cast<float>(kSectorSide / 2);
-// One level would do for culling; with some, large objects stay out of the small ones' groups.
-constexpr ChunkMapOptions kSectorMap{
-    {{-kHalfSide, -kHalfSide, -kHalfSide}, {kHalfSide, kHalfSide, kHalfSide}}, 0};
-
 std::int64_t cell_of(double low, double high) {
   return static_cast<std::int64_t>(std::floor((0.5 * low + 0.5 * high) / kSectorSide + 0.5));
 }
@@ -48,6 +43,7 @@ std::uint32_t WorldState::sector_at(const SectorCell& cell) {
 }
 
 void WorldState::touch(std::uint32_t sector) {
+  sectors[sector].snapshot = ChunkMap::kNone;
   if (sectors[sector].touched) return;
   sectors[sector].touched = true;
   touched.push_back(sector);

@@ -31,6 +31,11 @@ void WorldState::begin_column(const ColumnTests& tests) {
   }
 }
 
+void WorldState::note_changed(const Strided<const Handle>& handles) noexcept {
+  for (std::size_t i = 0; i < handles.size(); ++i)
+    sectors[objects[handles[i].index].sector].snapshot = ChunkMap::kNone;
+}
+
 }  // namespace world
 
 namespace {
@@ -131,6 +136,7 @@ Status World::set_values(Strided<const Handle> handles, Strided<const std::uint3
   world::Columns& c = state_->columns;
   cover(c.values, c.has_values, state_->objects.size(), own_id);
   set_column(c.values, handles, values);
+  state_->note_changed(handles);
   return {};
 }
 

@@ -201,6 +201,7 @@ Status World::set_levels(Strided<const Handle> handles, Strided<const LevelTable
   if (levels->table_of.size() < state_->objects.size()) levels->table_of.resize(state_->objects.size());
   for (std::size_t i = 0; i < handles.size(); ++i)
     levels->table_of[handles[i].index] = static_cast<std::uint16_t>(tables[i]);
+  state_->note_changed(handles);
   return {};
 }
 

@@ -20,6 +20,12 @@ namespace sightline::world {
 /// decimal distances from there on, so that a world shifted by one keeps its bits.
 inline constexpr double kSectorSide = 3200;
 
+// One level would do for culling; with some, large objects stay out of the small ones' groups.
+inline constexpr auto kHalfSectorSide = static_cast<float>(kSectorSide / 2);
+inline constexpr ChunkMapOptions kSectorMap{{{-kHalfSectorSide, -kHalfSectorSide, -kHalfSectorSide},
+                                             {kHalfSectorSide, kHalfSectorSide, kHalfSectorSide}},
+                                            0};
+
 struct ColumnTests;
 
 struct SectorCell {
@@ -44,6 +50,8 @@ struct Sector {
   Box bounds;                     ///< the map's, kept here so that a cull need not fetch it from there
   bool touched = false;           ///< stands in WorldState::touched
   bool awake = false;             ///< stands in WorldState::awake
+  /// The sector of a snapshot that this one is, unchanged since it came from there; or kNone.
+  std::uint32_t snapshot = ChunkMap::kNone;
 };
 
 struct WorldState {
@@ -79,6 +87,8 @@ struct WorldState {
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose map changes.
   void touch(std::uint32_t sector);
+  /// To be called of objects of which something changed that no map knows.
+  void note_changed(const Strided<const Handle>& handles) noexcept;
   /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty;
   /// after insertions also puts chunks side by side.
   void tidy(bool after_insertions);

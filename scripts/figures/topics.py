@@ -37,6 +37,17 @@ def instances(quick):
     return compare_with(rows, {f"instances/{form}": f"plain/{form}" for form in ("quarters", "turned")})
 
 
+def snapshots(quick):
+    """The first view of ten million boxes out of a mapped file, and a flight over a hundred million within a budget; the
+    latter takes 11 GiB and some minutes, so not in a quick run."""
+    rows = google_benchmark("snapshots", 3 if quick else 9, 0.01, "first_view", counters=(
+        ("open_ms", "ms", 1), ("sectors", "sectors", 1), ("loaded", "objects", 1)))
+    return rows if quick else rows + google_benchmark("snapshots", 1, 0.01, "flight", counters=(
+        ("open_ms", "ms", 1), ("budget_MiB", "MiB", 1), ("most_MiB", "MiB", 1), ("grown_MiB", "MiB", 1),
+        ("frames", "frames", 1), ("complete", "frames", 1), ("missed", "objects", 1), ("checked", "frames", 1),
+        ("update_p99_ms", "ms", 1), ("update_worst_ms", "ms", 1)))
+
+
 def movers(quick):
     """What moves: a world's boxes, the chunks of the raster methods, a scene's objects under each method."""
     rows = google_benchmark("world", 3, 0.02, "^(build|move_|far_sectors/move)")
@@ -304,6 +315,6 @@ def web(quick):
     return rows
 
 
-TOPICS = {"world": world, "instances": instances, "movers": movers, "moving": moving, "frustum": frustum,
+TOPICS = {"world": world, "instances": instances, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
           "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}

@@ -45,6 +45,7 @@ int main(void) {
   test_columns();
   test_shadows();
   test_instances();
+  test_snapshots();
   test_automatic();
   test_occlusion();
   test_frustum();

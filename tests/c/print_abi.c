@@ -41,6 +41,9 @@ int main(void) {
   STRUCT(sightline_pvs_cells, visible_count);
   STRUCT(sightline_ray, max_distance);
   STRUCT(sightline_sphere_view, count);
+  STRUCT(sightline_stream_options, ahead);
+  STRUCT(sightline_stream_report, memory);
+  STRUCT(sightline_stream_sector, reserved);
   STRUCT(sightline_view, origin);
   VALUE(SIGHTLINE_OK);
   VALUE(SIGHTLINE_BAD_ARGUMENT);
@@ -79,6 +82,11 @@ int main(void) {
   VALUE(SIGHTLINE_NO_OBJECT);
   VALUE(SIGHTLINE_NO_CELL);
   VALUE(SIGHTLINE_ALL_LAYERS);
+  VALUE(SIGHTLINE_SECTOR_OUT);
+  VALUE(SIGHTLINE_SECTOR_COMING);
+  VALUE(SIGHTLINE_SECTOR_IN);
+  VALUE(SIGHTLINE_SECTOR_CHANGED);
+  VALUE(SIGHTLINE_SECTOR_DAMAGED);
   VALUE(SIGHTLINE_MAX_CASCADES);
   VALUE(SIGHTLINE_MAX_LEVELS);
   VALUE(SIGHTLINE_NO_LEVELS);

@@ -1,0 +1,238 @@
+// Sectors in and out of a world: within a budget, beside another thread, and with the handles that they had.
+#include <sightline/snapshot.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include "support/random_views.hpp"
+#include "support/snapshots.hpp"
+#include "support/solid_boxes.hpp"
+#include "support/world_twin.hpp"
+
+namespace sightline {
+namespace {
+
+using scene::Random;
+using test::FileBytes;
+
+constexpr float kSide = 16'000;
+
+// Boxes on a ground of 10 × 10 sectors, lain in bytes.
+struct Ground {
+  World world;
+  std::vector<Handle> handles;
+  FileBytes bytes;
+
+  explicit Ground(std::size_t count = 20'000) {
+    Random random(5);
+    std::vector<Box> boxes;
+    while (boxes.size() < count) {
+      const Vec3 at = random.inside({{-kSide, -20, -kSide}, {kSide, 20, kSide}});
+      boxes.push_back(test::box_at(at, {random.between(1, 30), random.between(1, 30), 5}));
+    }
+    handles.resize(count);
+    EXPECT_TRUE(world.insert(BoxView(boxes), handles));
+    bytes = test::saved(world);
+  }
+};
+
+CullView looking_from(const Vec3& eye, float heading, float far_plane = 4000) {
+  Camera camera{.eye = eye, .forward = {std::sin(heading), 0, std::cos(heading)}};
+  camera.near_plane = 0.1f, camera.far_plane = far_plane, camera.vertical_fov = 1;
+  return {.view = {*make_view(camera, 1280, 720), {}}};
+}
+
+// What all of the ground's boxes show, less those whose sectors are out, is what is seen.
+void expect_all_that_is_in(const Ground& ground, const World& world, const WorldStream& stream,
+                           const CullView& view) {
+  std::set<ObjectId> seen;
+  for (const auto& [id, mask, level] : test::seen(world, {&view, 1})) seen.insert(id);
+  for (const auto& [id, mask, level] : test::seen(ground.world, {&view, 1})) {
+    const Handle handle = ground.world.handle(id);
+    ASSERT_NE(world.contains(handle), stream.stands_out(handle)) << id;
+    ASSERT_EQ(seen.erase(id), world.contains(handle)) << id;
+  }
+  ASSERT_TRUE(seen.empty()) << "more is seen than there is";
+}
+
+std::size_t memory_of_all(const WorldStream& stream) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < stream.size(); ++i) sum += stream.sector(i).memory;
+  return sum;
+}
+
+TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
+  const Ground ground;
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(world.size(), 0u);
+  Random random(1);
+  for (int i = 0; i < 40; ++i) {
+    const CullView view =
+        looking_from(random.inside({{-kSide, 0, -kSide}, {kSide, 9, kSide}}), random.unit());
+    const auto report = stream->bring_in({&view, 1});
+    ASSERT_TRUE(report);
+    ASSERT_EQ(report->missing, 0u);
+    expect_all_that_is_in(ground, world, *stream, view);
+  }
+  const CullView view = looking_from({0, 0, 0}, 0);
+  for (StreamReport report; report.in < stream->size();) {
+    report = *stream->update({&view, 1}, {.ahead = 1e9});
+    while (stream->work()) {
+    }
+  }
+  test::expect_same_objects(ground.world, world);
+  const CullView wide = looking_from({0, 0, -kSide}, 0, 3 * kSide);
+  EXPECT_EQ(test::seen(ground.world, {&wide, 1}), test::seen(world, {&wide, 1}));
+  EXPECT_EQ(test::saved(world), ground.bytes);
+}
+
+TEST(WorldStream, StaysWithinItsBudgetBesideAThreadThatReads) {
+  const Ground ground;
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  std::atomic<bool> done{false};
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 2; ++i)
+    readers.emplace_back([&] {
+      while (!done.load())
+        if (!stream->work()) std::this_thread::yield();
+    });
+  const StreamOptions options{.budget = memory_of_all(*stream) / 3, .ahead = 1000};
+  std::size_t frames = 0, came = 0, complete = 0;
+  for (float along = -kSide; along < kSide && !testing::Test::HasFatalFailure(); along += 100, ++frames) {
+    const CullView view = looking_from({0.5f * along, 3, along}, 0.01f * along);
+    auto report = stream->update({&view, 1}, options);
+    // The readers are waited for now and then, so that all that is in view is there.
+    for (; report && report->coming > 0 && frames % 8 == 0; report = stream->update({&view, 1}, options))
+      std::this_thread::yield();
+    ASSERT_TRUE(report);
+    ASSERT_LE(report->memory, options.budget);
+    std::size_t in = 0;
+    for (std::size_t s = 0; s < stream->size(); ++s) {
+      const StreamSector sector = stream->sector(s);
+      if (sector.state == SectorState::in || sector.state == SectorState::coming) in += sector.memory;
+    }
+    ASSERT_EQ(in, report->memory);
+    came = std::max(came, report->in), complete += report->missing == 0;
+    if (frames % 8 == 0) ASSERT_EQ(report->missing, 0u);
+    expect_all_that_is_in(ground, world, *stream, view);
+  }
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_GT(came, 3u);
+  EXPECT_GE(complete, frames / 8);
+  test::expect_sound(world);
+}
+
+TEST(WorldStream, HandlesNameTheSameObjectsAgain) {
+  const Ground ground(5000);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
+                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  const StreamOptions options{.budget = memory_of_all(*stream) / 10};
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(stream->bring_in({i % 2 ? &here : &there, 1}, options));
+    std::size_t in = 0;
+    for (const Handle handle : ground.handles) {
+      ASSERT_NE(world.contains(handle), stream->stands_out(handle));
+      if (!world.contains(handle)) continue;
+      ++in;
+      ASSERT_EQ(world.box(handle), ground.world.box(handle));
+    }
+    EXPECT_EQ(in, world.size());
+    EXPECT_GT(in, 0u);
+  }
+  EXPECT_FALSE(stream->stands_out({}));
+  for (const Handle handle : ground.handles) {
+    if (world.contains(handle)) continue;
+    EXPECT_EQ(world.remove(std::span(&handle, 1)).code(), StatusCode::stale_handle);
+    break;
+  }
+}
+
+TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
+  const Ground ground(5000);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
+                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  // Before its sector has come.
+  const Box box = test::box_at({-kSide + 10, 0, -kSide + 20}, {1, 1, 1});
+  Handle added;
+  ASSERT_TRUE(world.insert(BoxView(std::span(&box, 1)), std::span(&added, 1)));
+  EXPECT_EQ(added.index, 5000u);
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  std::vector<Handle> in;
+  for (const Handle handle : ground.handles)
+    if (world.contains(handle)) in.push_back(handle);
+  ASSERT_EQ(world.size(), in.size() + 1);
+  test::expect_sound(world);
+  const auto count = [&](SectorState state) {
+    std::size_t sectors = 0;
+    for (std::size_t s = 0; s < stream->size(); ++s) sectors += stream->sector(s).state == state;
+    return sectors;
+  };
+  EXPECT_EQ(count(SectorState::changed), 1u);
+  // A value, which no map knows.
+  const std::uint32_t value = 77;
+  Handle valued = in.front();
+  for (const Handle handle : in)
+    if (world.box(handle).min.x > -kSide + 4000) valued = handle;
+  ASSERT_TRUE(world.set_values(std::span<const Handle>(&valued, 1), std::span(&value, 1)));
+  EXPECT_EQ(count(SectorState::changed), 2u);
+  // All others go.
+  ASSERT_TRUE(stream->bring_in({&there, 1}, {.budget = 1}));
+  EXPECT_EQ(count(SectorState::in), 0u);
+  EXPECT_EQ(count(SectorState::changed), 2u);
+  EXPECT_TRUE(world.contains(added));
+  EXPECT_EQ(world.value(valued), 77u);
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  for (const Handle handle : in) ASSERT_TRUE(world.contains(handle));
+  test::expect_sound(world);
+  std::set<ObjectId> once;
+  for (const auto& [id, mask, level] : test::seen(world, {&here, 1})) ASSERT_TRUE(once.insert(id).second);
+}
+
+TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
+  const Ground ground(2000);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  const CullView here = looking_from({0, 0, 0}, 0), there = looking_from({kSide, 0, kSide}, 0.7f);
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  const auto occluder = world.add_occluder(test::kUnitBox);
+  ASSERT_TRUE(occluder);
+  const Handle handle = world.handle(std::get<0>(test::seen(world, {&here, 1}).at(0)));
+  OccluderPlacement placement{*occluder};
+  ASSERT_TRUE(world.set_occluders(std::span(&handle, 1), std::span(&placement, 1)));
+  EXPECT_FALSE(world.remove_occluder(*occluder));
+  ASSERT_TRUE(stream->bring_in({&there, 1}, {.budget = 1}));
+  EXPECT_TRUE(stream->stands_out(handle));
+  EXPECT_TRUE(world.remove_occluder(*occluder));
+}
+
+TEST(WorldStream, RefusesWhatIsNoView) {
+  const Ground ground(100);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(stream->update({}).error().code(), StatusCode::bad_argument);
+  CullView view = looking_from({0, 0, 0}, 0);
+  EXPECT_EQ(stream->update({&view, 1}, {.ahead = -1}).error().code(), StatusCode::bad_argument);
+  view.view.view.world_to_eye.m[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(stream->update({&view, 1}).error().code(), StatusCode::bad_view);
+  EXPECT_EQ(stream->sector(10'000).objects, 0u);
+}
+
+}  // namespace
+}  // namespace sightline
