@@ -198,20 +198,12 @@ Status check_automatic(std::span<const CullView> views, const OcclusionOptions& 
 
 Status check_call(const World& world, std::span<const CullView> views, const CullOptions& options,
                   const CullOutput& output) noexcept {
-  if (views.empty() || views.size() > kMaxViews)
-    return {StatusCode::bad_argument, "cull: expected 1 to 8 views", views.size()};
-  if (options.jobs.threads < 1 || options.jobs.threads > kMaxJobs)
-    return {StatusCode::bad_argument, "cull: expected 1 to 64 jobs"};
-  if ((options.zones.begin == nullptr) != (options.zones.end == nullptr))
-    return {StatusCode::bad_argument, "cull: a zone's begin or end is null, expected both or none"};
+  if (const Status sound = check_views(views, options.jobs, options.zones); !sound) return sound;
   const std::size_t needed = cull_capacity(world, options);
   if (output.ids.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
   if (!output.masks.empty() && output.masks.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() masks, or none"};
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    if (const Status sound = check_view(views[v], v, views.size()); !sound) return sound;
-  }
   if (options.occlusion == Occlusion::none) return {};
   if (options.occlusion != Occlusion::automatic)
     return {StatusCode::bad_argument, "cull: the options' occlusion is neither none nor automatic"};
@@ -253,6 +245,31 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
 }
 
 }  // namespace
+
+Status check_views(std::span<const CullView> views, const JobSystem& jobs, const CullZones& zones) noexcept {
+  if (views.empty() || views.size() > kMaxViews)
+    return {StatusCode::bad_argument, "cull: expected 1 to 8 views", views.size()};
+  if (jobs.threads < 1 || jobs.threads > kMaxJobs)
+    return {StatusCode::bad_argument, "cull: expected 1 to 64 jobs"};
+  if ((zones.begin == nullptr) != (zones.end == nullptr))
+    return {StatusCode::bad_argument, "cull: a zone's begin or end is null, expected both or none"};
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (const Status sound = check_view(views[v], v, views.size()); !sound) return sound;
+  }
+  return {};
+}
+
+DifferentViews begin_cull(CullerState& state, const World& world, std::span<const CullView> views,
+                          CullResult& result) noexcept {
+  state.world = &WorldAccess::state(world);
+  auto& culled = state.world->culled;
+  if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
+  const DifferentViews different = different_views(views, state.world->columns);
+  result.nodes_visited = find_entries(state, views, different);
+  const ColumnTests* columns = column_tests(state, views, different);
+  state.input = {state.maps, state.views, different.count, different.bits, {}, columns};
+  return different;
+}
 
 Zone::Zone(const CullZones& zones, const char* name) noexcept : zones_(zones) {
   if (zones_.begin) zones_.begin(zones_.user, name);
@@ -312,14 +329,8 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
   world::CullerState& state = *state_;
   state.zones = options.zones;
   const world::Zone zone(state.zones, "sightline: cull");
-  state.world = &WorldAccess::state(world);
-  auto& culled = state.world->culled;
-  if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
-  const world::DifferentViews different = world::different_views(views, state.world->columns);
   CullResult result;
-  result.nodes_visited = world::find_entries(state, views, different);
-  const world::ColumnTests* columns = world::column_tests(state, views, different);
-  state.input = {state.maps, state.views, different.count, different.bits, {}, columns};
+  const world::DifferentViews different = world::begin_cull(state, world, views, result);
   world::Levels* const levels = output.levels.empty() ? nullptr : state.world->levels.get();
   if (levels) {
     if (const Status sound = levels->begin(state, views, different, options.levels, output); !sound)

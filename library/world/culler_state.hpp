@@ -49,6 +49,9 @@ struct DifferentViews {
   std::array<std::uint8_t, kMaxViews> bits{};   ///< of all that are the same
 };
 
+/// Whether each view is one that can be culled; of the jobs and zones, too.
+Status check_views(std::span<const CullView> views, const JobSystem& jobs, const CullZones& zones) noexcept;
+
 struct CullerState;
 
 /// A zone of the caller's profiler, if there is one.
@@ -98,6 +101,11 @@ struct CullerState {
   std::unique_ptr<Casting> casting;
   std::unique_ptr<LevelMemory> levels;
 };
+
+/// What any cull begins with: finds the groups that the views may see, and prepares the state's input. The
+/// result's nodes_visited says how many regions and groups it looked at.
+DifferentViews begin_cull(CullerState& state, const World& world, std::span<const CullView> views,
+                          CullResult& result) noexcept;
 
 /// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
