@@ -33,6 +33,7 @@
 #include <sightline/c/instances.h>
 #include <sightline/c/occlusion.h>
 #include <sightline/c/pvs.h>
+#include <sightline/c/ranges.h>
 #include <sightline/c/rays.h>
 #include <sightline/c/shadows.h>
 #include <sightline/c/status.h>

@@ -11,6 +11,7 @@
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/pvs.hpp>
+#include <sightline/ranges.hpp>
 #include <sightline/rays.hpp>
 #include <sightline/shadows.hpp>
 #include <sightline/status.hpp>

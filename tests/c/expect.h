@@ -43,6 +43,7 @@ void test_cull(void);
 void test_columns(void);
 void test_shadows(void);
 void test_instances(void);
+void test_ranges(void);
 void test_automatic(void);
 void test_occlusion(void);
 void test_frustum(void);

@@ -45,6 +45,7 @@ int main(void) {
   test_columns();
   test_shadows();
   test_instances();
+  test_ranges();
   test_automatic();
   test_occlusion();
   test_frustum();

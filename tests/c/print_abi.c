@@ -38,8 +38,13 @@ int main(void) {
   STRUCT(sightline_occluder_parts, box_count);
   STRUCT(sightline_occluder_placement, origin);
   STRUCT(sightline_placements, count);
+  STRUCT(sightline_order_report, count);
   STRUCT(sightline_pvs_cells, visible_count);
+  STRUCT(sightline_range_options, zones);
+  STRUCT(sightline_range_result, culled_occlusion);
   STRUCT(sightline_ray, max_distance);
+  STRUCT(sightline_slot_change, object);
+  STRUCT(sightline_slot_range, count);
   STRUCT(sightline_sphere_view, count);
   STRUCT(sightline_view, origin);
   VALUE(SIGHTLINE_OK);
@@ -77,6 +82,7 @@ int main(void) {
   VALUE(SIGHTLINE_INSIDE);
   VALUE(SIGHTLINE_NO_INDEX);
   VALUE(SIGHTLINE_NO_OBJECT);
+  VALUE(SIGHTLINE_NO_SLOT);
   VALUE(SIGHTLINE_NO_CELL);
   VALUE(SIGHTLINE_ALL_LAYERS);
   VALUE(SIGHTLINE_MAX_CASCADES);
