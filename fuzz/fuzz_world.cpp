@@ -387,7 +387,9 @@ private:
     instances_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get());
   }
 
-  void ranges() { ranges_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get()); }
+  void ranges() {
+    ranges_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get(), culler_.get());
+  }
 
   void cull() {
     std::vector<sightline_cull_view> views(in_.byte() % 10);

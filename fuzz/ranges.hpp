@@ -1,4 +1,4 @@
-// Random reports of an order, and culls into its ranges.
+// Random reports of an order, culls into its ranges, and looks into culls.
 #pragma once
 
 #include <span>
@@ -12,9 +12,12 @@ class RangesPlay {
 public:
   explicit RangesPlay(CallBytes& in) : in_(in) {}
 
-  void step(sightline_world* world, const sightline_view& view, const sightline_occlusion* occlusion) {
+  void step(sightline_world* world, const sightline_view& view, const sightline_occlusion* occlusion,
+            const sightline_culler* culler) {
     if (in_.byte() < 192) follow(world);
-    cull(world, view, occlusion);
+    const std::vector<sightline_cull_view> views = views_of(view, occlusion);
+    cull(world, views);
+    inspect(world, views, culler);
   }
 
 private:
@@ -39,7 +42,8 @@ private:
     require(live == sightline_world_size(world));
   }
 
-  void cull(const sightline_world* world, const sightline_view& view, const sightline_occlusion* occlusion) {
+  std::vector<sightline_cull_view> views_of(const sightline_view& view,
+                                            const sightline_occlusion* occlusion) {
     std::vector<sightline_cull_view> views(1 + in_.byte() % 3, sightline_cull_view_of(&view));
     for (sightline_cull_view& v : views) {
       if (in_.byte() & 1) v.layers = in_.byte();
@@ -47,6 +51,26 @@ private:
       if (in_.byte() < 64) v.occlusion = occlusion;
       if (in_.byte() < 64) v.distance_view = in_.byte() % 4u;
     }
+    return views;
+  }
+
+  void inspect(const sightline_world* world, const std::vector<sightline_cull_view>& views,
+               const sightline_culler* culler) {
+    sightline_inspection looked;
+    if (!done(sightline_inspect(inspector_.get(), world, views.data(), views.size(),
+                                in_.byte() & 1 ? culler : nullptr, &looked)))
+      return;
+    require(looked.view_count == views.size());
+    for (const sightline_view_stats& s : std::span(looked.views, looked.view_count)) {
+      require(s.objects ==
+              s.outside + s.by_layers + s.by_distances + s.by_casters + s.by_area + s.hidden + s.visible);
+      require(s.chunks ==
+              s.chunks_outside + s.chunks_dropped + s.chunks_hidden + s.chunks_whole + s.chunks_opened);
+      require(s.objects <= sightline_world_size(world));
+    }
+  }
+
+  void cull(const sightline_world* world, const std::vector<sightline_cull_view>& views) {
     sightline_range_options options = sightline_range_options_default();
     options.jobs = {run_here, nullptr, in_.byte() % 70u, 0};
     options.masks = in_.byte() & 1, options.whole_chunks = in_.byte() & 1;
@@ -73,6 +97,7 @@ private:
   CallBytes& in_;
   Owned<sightline_order, sightline_order_destroy> order_{sightline_order_create()};
   Owned<sightline_range_culler, sightline_range_culler_destroy> culler_{sightline_range_culler_create()};
+  Owned<sightline_inspector, sightline_inspector_destroy> inspector_{sightline_inspector_create()};
   std::vector<std::uint32_t> buffer_;
 };
 

@@ -26,8 +26,8 @@ inline constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
 /// A slot that has another object than it had.
 struct SlotChange {
-  std::uint32_t slot = kNoSlot;
-  ObjectId object = kNoObject;  ///< kNoObject: it is free now
+  std::uint32_t slot = kNoSlot;  ///< below slot_limit(), or it was before
+  ObjectId object = kNoObject;   ///< kNoObject: it is free now
   bool operator==(const SlotChange&) const = default;
 };
 
@@ -51,9 +51,9 @@ public:
   /// of a frame, boxes that moved included, and before culls. The first update, one of another world, and one
   /// after another order has followed this world, number all objects one after another without gaps, and
   /// report every slot that has an object, or had one. Errors: too_many beyond 2³² - 1 slots; the world must
-  /// then be given another order. Cost: grows with the chunks that changed, not with the world: some 100 ns
-  /// each. Threads: counts as changing the world. Allocates: where the order grows, or changes as never
-  /// before.
+  /// then be given another order. Cost: grows with the chunks that changed, not with the world: up to a
+  /// microsecond each. Threads: counts as changing the world. Allocates: where the order grows, or changes as
+  /// never before.
   Result<std::span<const SlotChange>> update(World& world);
   /// The same, but leaves no gaps: numbers all objects anew. Worth it where slot_limit() has grown far beyond
   /// the world's size. Errors, Cost: as of the first update. Allocates: another order's memory.
@@ -86,7 +86,7 @@ struct RangeOptions {
 
 /// Slots that follow one another, each with an object.
 struct SlotRange {
-  std::uint32_t first = 0;
+  std::uint32_t first = 0;  ///< slot
   std::uint32_t count = 0;  ///< at least 1
   bool operator==(const SlotRange&) const = default;
 };

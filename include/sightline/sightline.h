@@ -30,6 +30,7 @@
 #define SIGHTLINE_H
 
 #include <sightline/c/frustum.h>
+#include <sightline/c/inspect.h>
 #include <sightline/c/instances.h>
 #include <sightline/c/occlusion.h>
 #include <sightline/c/pvs.h>

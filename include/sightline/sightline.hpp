@@ -5,6 +5,7 @@
 #include <sightline/box_view.hpp>
 #include <sightline/boxes.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/inspect.hpp>
 #include <sightline/instances.hpp>
 #include <sightline/jobs.hpp>
 #include <sightline/occluder.hpp>

@@ -49,10 +49,8 @@ struct DifferentViews {
   std::array<std::uint8_t, kMaxViews> bits{};   ///< of all that are the same
 };
 
-/// Whether each view is one that can be culled; of the jobs and zones, too.
-Status check_views(std::span<const CullView> views, const JobSystem& jobs, const CullZones& zones) noexcept;
-
 struct CullerState;
+class OccluderPicks;
 
 /// A zone of the caller's profiler, if there is one.
 class Zone {
@@ -75,6 +73,8 @@ public:
   virtual ~Hiding() = default;
   virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
                     const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
+  /// What is kept for the view at this place.
+  [[nodiscard]] virtual const OccluderPicks& picks(std::size_t place) const noexcept = 0;
 };
 
 struct CullerState {
@@ -102,11 +102,6 @@ struct CullerState {
   std::unique_ptr<LevelMemory> levels;
 };
 
-/// What any cull begins with: finds the groups that the views may see, and prepares the state's input. The
-/// result's nodes_visited says how many regions and groups it looked at.
-DifferentViews begin_cull(CullerState& state, const World& world, std::span<const CullView> views,
-                          CullResult& result) noexcept;
-
 /// How many objects the caller draws of `count` in the output: once in each view, where masks tell.
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
 
@@ -114,3 +109,13 @@ std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
 void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result);
 
 }  // namespace sightline::world
+
+namespace sightline {
+
+struct Culler::State : world::CullerState {};
+
+struct CullerAccess {
+  static const world::CullerState& state(const Culler& culler) noexcept { return *culler.state_; }
+};
+
+}  // namespace sightline

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "library/world/begin_cull-inl.hpp"
 #include "library/world/culler_state.hpp"
 #include "library/world/object_order.hpp"
 #include "library/world/range_cull.hpp"

@@ -46,6 +46,7 @@ int main(void) {
   test_shadows();
   test_instances();
   test_ranges();
+  test_inspect();
   test_automatic();
   test_occlusion();
   test_frustum();

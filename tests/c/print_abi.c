@@ -21,12 +21,14 @@ int main(void) {
   STRUCT(sightline_cull_view, casters);
   STRUCT(sightline_cull_zones, user);
   STRUCT(sightline_depth_range, far_plane);
+  STRUCT(sightline_debug_box, objects);
   STRUCT(sightline_distance_range, max);
   STRUCT(sightline_distances, count);
   STRUCT(sightline_error, message);
   STRUCT(sightline_frustum, origin);
   STRUCT(sightline_handle, generation);
   STRUCT(sightline_handles, count);
+  STRUCT(sightline_inspection, box_count);
   STRUCT(sightline_instance_options, zones);
   STRUCT(sightline_instance_placement, origin);
   STRUCT(sightline_instance_range, count);
@@ -47,6 +49,7 @@ int main(void) {
   STRUCT(sightline_slot_range, count);
   STRUCT(sightline_sphere_view, count);
   STRUCT(sightline_view, origin);
+  STRUCT(sightline_view_stats, visible);
   VALUE(SIGHTLINE_OK);
   VALUE(SIGHTLINE_BAD_ARGUMENT);
   VALUE(SIGHTLINE_BAD_BOX);
@@ -83,6 +86,9 @@ int main(void) {
   VALUE(SIGHTLINE_NO_INDEX);
   VALUE(SIGHTLINE_NO_OBJECT);
   VALUE(SIGHTLINE_NO_SLOT);
+  VALUE(SIGHTLINE_DEBUG_SECTOR);
+  VALUE(SIGHTLINE_DEBUG_CHUNK);
+  VALUE(SIGHTLINE_DEBUG_OCCLUDER);
   VALUE(SIGHTLINE_NO_CELL);
   VALUE(SIGHTLINE_ALL_LAYERS);
   VALUE(SIGHTLINE_MAX_CASCADES);

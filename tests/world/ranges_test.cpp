@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "support/random_views.hpp"
-#include "support/refusal.hpp"
 #include "support/run_threads.hpp"
 #include "support/world_twin.hpp"
 
