@@ -50,8 +50,8 @@ public:
   /// object, each once, free ones among them. The report lies here until the next. Call it after all changes
   /// of a frame, boxes that moved included, and before culls. The first update, one of another world, and one
   /// after another order has followed this world, number all objects one after another without gaps, and
-  /// report every slot that has an object, or had one. Errors: too_many beyond 2³² - 1 slots; the world must
-  /// then be given another order. Cost: grows with the chunks that changed, not with the world: up to a
+  /// report every slot that has an object, or had one. Errors: too_many beyond 2³² - 1 slots; the next update
+  /// then begins anew. Cost: grows with the chunks that changed, not with the world: up to a
   /// microsecond each. Threads: counts as changing the world. Allocates: where the order grows, or changes as
   /// never before.
   Result<std::span<const SlotChange>> update(World& world);

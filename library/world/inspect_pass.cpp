@@ -14,12 +14,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::world::HWY_NAMESPACE {
 
-inline std::uint64_t bits_in(const ObjectBits& bits) {
-  return static_cast<std::uint64_t>(std::popcount(bits.words[0]) + std::popcount(bits.words[1]));
+inline std::uint64_t bits_in(std::uint64_t word) {
+  return static_cast<std::uint64_t>(std::popcount(word));
 }
 
-inline std::uint64_t bits_in(std::uint32_t word) {
-  return static_cast<std::uint64_t>(std::popcount(word));
+inline std::uint64_t bits_in(const ObjectBits& bits) {
+  return bits_in(bits.words[0]) + bits_in(bits.words[1]);
 }
 
 // One view and one group.
