@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "instances.hpp"
+#include "ranges.hpp"
 
 namespace {
 
@@ -123,7 +124,7 @@ public:
   explicit Play(CallBytes& in) : in_(in) {}
 
   void step() {
-    const std::uint8_t operation = in_.byte() % 17;
+    const std::uint8_t operation = in_.byte() % 18;
     count_ = in_.byte() % (kMost + 1);
     for (Thing& t : things_) {
       t.handle = {};
@@ -132,10 +133,10 @@ public:
     }
     if (operation < 7) fill(in_, things_, count_);
     constexpr void (Play::*operations[])() = {
-        &Play::insert,       &Play::insert,   &Play::move,          &Play::draw_boxes, &Play::ask,
-        &Play::rays,         &Play::columns,  &Play::remove,        &Play::begin,      &Play::draw_mesh,
-        &Play::draw_spheres, &Play::cull,     &Play::add_occluders, &Play::carry,      &Play::cull,
-        &Play::shadows,      &Play::instances};
+        &Play::insert,       &Play::insert,    &Play::move,          &Play::draw_boxes, &Play::ask,
+        &Play::rays,         &Play::columns,   &Play::remove,        &Play::begin,      &Play::draw_mesh,
+        &Play::draw_spheres, &Play::cull,      &Play::add_occluders, &Play::carry,      &Play::cull,
+        &Play::shadows,      &Play::instances, &Play::ranges};
     (this->*operations[operation])();
     require(sightline_world_size(world_.get()) == standing_);
   }
@@ -386,6 +387,10 @@ private:
     instances_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get());
   }
 
+  void ranges() {
+    ranges_.step(world_.get(), in_.byte() & 1 ? last_view_ : view_of(in_), occlusion_.get(), culler_.get());
+  }
+
   void cull() {
     std::vector<sightline_cull_view> views(in_.byte() % 10);
     const bool automatic = in_.byte() & 1;
@@ -447,6 +452,7 @@ private:
   Owned<sightline_shadow_casters, sightline_shadow_casters_destroy> casters_{
       sightline_shadow_casters_create()};
   sightline::fuzz::InstancesPlay instances_{in_};
+  sightline::fuzz::RangesPlay ranges_{in_};
   sightline_view last_view_{}, shadow_{};
   std::vector<sightline_handle> handles_;
   std::vector<std::uint32_t> names_;  // of occluders

@@ -19,7 +19,7 @@ says() {
 consume() {
   local root=$1 python=$2 example pc
   rm -rf "$scratch/build"
-  for example in frustum world my_structs lod instances snapshot shadows shadows_and_stereo own_jobs c c_occluder c_automatic method; do
+  for example in frustum world my_structs lod instances snapshot ranges shadows shadows_and_stereo own_jobs c c_occluder c_automatic method; do
     { cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_PREFIX_PATH="$root" && cmake --build "$scratch/build/$example"; } >"$scratch/log" 2>&1 ||
       { cat "$scratch/log"; echo "examples/$example does not build by find_package"; exit 1; }
@@ -30,6 +30,7 @@ consume() {
   says "hysteresis 0.1: .* changes" "$scratch/build/lod/lod"
   says "the city has 100000000 things" "$scratch/build/instances/instances"
   says "never more than [0-9]* of [0-9]* KiB" "$scratch/build/snapshot/snapshot"
+  says "frame 1: 100000 slots uploaded" "$scratch/build/ranges/ranges"
   says "throw a shadow there" "$scratch/build/shadows/shadows"
   says "for the eyes" "$scratch/build/shadows_and_stereo/shadows_and_stereo"
   says "3 jobs: draw [0-9]* of 100000 boxes" "$scratch/build/own_jobs/own_jobs"

@@ -45,10 +45,10 @@ owners="
 library/geometry: jobs.hpp version.hpp types.hpp status.hpp box_view.hpp boxes.hpp view.hpp frustum.hpp projection.hpp
 library/geometry: rays.hpp
 library/occlusion: occlusion.hpp occluder.hpp
-library/world: world.hpp shadows.hpp instances.hpp snapshot.hpp tbb.hpp
+library/world: world.hpp shadows.hpp instances.hpp snapshot.hpp ranges.hpp inspect.hpp tbb.hpp
 library/pvs: pvs.hpp
 face: sightline.hpp
-bindings/c: sightline.h c/status.h c/view.h c/world.h c/occlusion.h c/frustum.h c/rays.h c/shadows.h c/instances.h c/snapshot.h c/pvs.h
+bindings/c: sightline.h c/status.h c/view.h c/world.h c/occlusion.h c/frustum.h c/rays.h c/shadows.h c/instances.h c/snapshot.h c/ranges.h c/inspect.h c/pvs.h
 workbench/scene: workbench/error.hpp workbench/progress.hpp workbench/parameters.hpp workbench/level_pvs.hpp
 workbench/scene: workbench/scene.hpp workbench/worlds.hpp workbench/affine.hpp workbench/held_scene.hpp
 workbench/io: workbench/io.hpp

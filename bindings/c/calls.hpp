@@ -23,6 +23,9 @@
 struct sightline_world {
   sightline::World world;
 };
+struct sightline_culler {
+  sightline::Culler culler;
+};
 struct sightline_occluder {
   sightline::Occluder occluder;
 };

@@ -6,10 +6,6 @@
 
 #include "bindings/c/calls.hpp"
 
-struct sightline_culler {
-  sightline::Culler culler;
-};
-
 using namespace sightline;
 using namespace sightline::c_api;
 

@@ -13,6 +13,7 @@
 namespace sightline::python {
 
 using SharedWorld = Guarded<World>;
+using LockedCuller = Guarded<Culler>;
 using Reading = std::shared_lock<std::shared_mutex>;
 
 struct ViewOfWorld {

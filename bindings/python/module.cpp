@@ -69,6 +69,8 @@ PYBIND11_MODULE(sightline, m) {
   add_shadows(m);
   add_world(m);
   add_instances(m);
+  add_ranges(m);
+  add_inspect(m);
   add_frustum(m);
   add_rays(m);
   add_pvs(m);

@@ -66,6 +66,8 @@ void add_snapshots(pybind11::module_& m, pybind11::class_<Guarded<World>>& world
 void add_occlusion(pybind11::module_& m);
 void add_shadows(pybind11::module_& m);
 void add_instances(pybind11::module_& m);
+void add_ranges(pybind11::module_& m);
+void add_inspect(pybind11::module_& m);
 void add_frustum(pybind11::module_& m);
 void add_rays(pybind11::module_& m);
 void add_pvs(pybind11::module_& m);

@@ -15,8 +15,6 @@ namespace sightline::python {
 
 namespace {
 
-using LockedCuller = Guarded<Culler>;
-
 // Calls that check the caller's arrays and then rely on them keep the interpreter's lock.
 
 py::object insert(SharedWorld& world, const py::object& boxes, const py::object& handles,

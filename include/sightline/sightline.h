@@ -30,9 +30,11 @@
 #define SIGHTLINE_H
 
 #include <sightline/c/frustum.h>
+#include <sightline/c/inspect.h>
 #include <sightline/c/instances.h>
 #include <sightline/c/occlusion.h>
 #include <sightline/c/pvs.h>
+#include <sightline/c/ranges.h>
 #include <sightline/c/rays.h>
 #include <sightline/c/shadows.h>
 #include <sightline/c/snapshot.h>

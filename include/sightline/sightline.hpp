@@ -5,12 +5,14 @@
 #include <sightline/box_view.hpp>
 #include <sightline/boxes.hpp>
 #include <sightline/frustum.hpp>
+#include <sightline/inspect.hpp>
 #include <sightline/instances.hpp>
 #include <sightline/jobs.hpp>
 #include <sightline/occluder.hpp>
 #include <sightline/occlusion.hpp>
 #include <sightline/projection.hpp>
 #include <sightline/pvs.hpp>
+#include <sightline/ranges.hpp>
 #include <sightline/rays.hpp>
 #include <sightline/shadows.hpp>
 #include <sightline/snapshot.hpp>

@@ -333,6 +333,7 @@ public:
   Status report_frame_time(double nanoseconds) noexcept;
 
 private:
+  friend struct CullerAccess;
   struct State;
   State* state_;
 };

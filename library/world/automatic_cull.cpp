@@ -258,6 +258,9 @@ public:
             const CullOptions& options, const CullCosts& costs, CullResult& result) override {
     Try(state, memory_, views, different, options, costs, result).run();
   }
+  [[nodiscard]] const OccluderPicks& picks(std::size_t place) const noexcept override {
+    return memory_.picks[place];
+  }
 
 private:
   Memory memory_;

@@ -191,7 +191,10 @@ public:
     return mover_node_;
   }
   [[nodiscard]] bool is_mover(ObjectId object) const noexcept {
-    return chunks_[(*locations_)[object].chunk].pool == kMovers;
+    return holds_movers((*locations_)[object].chunk);
+  }
+  [[nodiscard]] bool holds_movers(std::uint32_t chunk) const noexcept {
+    return chunks_[chunk].pool == kMovers;
   }
 
   /// To be called when a column has come to be: chunks learn of it.

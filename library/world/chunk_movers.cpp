@@ -249,7 +249,7 @@ void ChunkMap::flush() {
     }
     set_bounds(chunk, c.bounds);
     extend_group(c.group, c.bounds);
-    note_shape(chunk);
+    note_change(chunk);
     if (c.counted == c.live) continue;
     add_objects(c.group, static_cast<std::int32_t>(c.live) - static_cast<std::int32_t>(c.counted));
     c.counted = c.live;

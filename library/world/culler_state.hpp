@@ -50,6 +50,7 @@ struct DifferentViews {
 };
 
 struct CullerState;
+class OccluderPicks;
 
 /// A zone of the caller's profiler, if there is one.
 class Zone {
@@ -72,6 +73,8 @@ public:
   virtual ~Hiding() = default;
   virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
                     const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
+  /// What is kept for the view at this place.
+  [[nodiscard]] virtual const OccluderPicks& picks(std::size_t place) const noexcept = 0;
 };
 
 struct CullerState {
@@ -106,3 +109,13 @@ std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept;
 void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result);
 
 }  // namespace sightline::world
+
+namespace sightline {
+
+struct Culler::State : world::CullerState {};
+
+struct CullerAccess {
+  static const world::CullerState& state(const Culler& culler) noexcept { return *culler.state_; }
+};
+
+}  // namespace sightline

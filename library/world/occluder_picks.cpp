@@ -171,8 +171,9 @@ bool OccluderPicks::draw(const WorldState& world, const CullView& view, const Wo
                          std::span<const ObjectId> in_view, const OcclusionOptions& options,
                          const CullCosts& costs, double most, Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
-  picks_.reserve(world.occluders->carriers.size()), seen_.reserve(world.occluders->carriers.size());
-  picks_.clear();
+  const std::size_t carriers = world.occluders->carriers.size();
+  picks_.reserve(carriers), seen_.reserve(carriers), drawn_.reserve(std::min(carriers, kMostPicks));
+  picks_.clear(), drawn_.clear();
   const double begin = begin_cost(view, options, costs), had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
   if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
@@ -251,6 +252,7 @@ double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spar
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
   const bool here = stands_in(carrier.bounds, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
   if (!here || !sight.large(box) || !sight.in_range(carrier.object, stored)) return spare;
+  drawn_.push_back(carrier.object);
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
   const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
   // What lies inside an object would still show a front to a pixel that looks from inside it.

@@ -26,6 +26,8 @@ public:
   static double begin_cost(const CullView& view, const OcclusionOptions& options,
                            const CullCosts& costs) noexcept;
   [[nodiscard]] const OcclusionBuffer& buffer() const noexcept { return buffer_; }
+  /// The objects whose occluders are drawn there.
+  [[nodiscard]] std::span<const ObjectId> drawn() const noexcept { return drawn_; }
 
   /// Told of what was seen in the end: begin, then each object that carries an occluder.
   void begin_seen() noexcept { seen_.clear(); }
@@ -54,6 +56,7 @@ private:
   OcclusionBuffer buffer_;
   std::vector<std::uint32_t> seen_;  // carriers that were seen the last time
   std::vector<Pick> picks_;
+  std::vector<ObjectId> drawn_;
   std::vector<WorldBox> boxes_;  // of the occluder at hand
   std::vector<Sphere> spheres_;
 };

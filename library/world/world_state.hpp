@@ -72,6 +72,7 @@ struct WorldState {
   std::unique_ptr<Levels> levels;             ///< of detail; null: never had a table
   std::vector<std::uint32_t> touched;         ///< sectors that changed since tidy(), each once
   std::uint64_t tidied = 0;                   ///< how many sectors tidy() has looked at, ever
+  std::uint64_t order_token = 0;              ///< of the ObjectOrder that followed last; 0: none did
   std::size_t size = 0;
 
   /// Whether anybody has culled since the last frame began: then the next change begins another.

@@ -48,6 +48,13 @@ def snapshots(quick):
         ("update_p99_ms", "ms", 1), ("update_worst_ms", "ms", 1)))
 
 
+def ranges(quick):
+    """What is seen of a million boxes as ranges of their order beside the same as ids."""
+    rows = google_benchmark("ranges", 3, 0.02 if quick else 0.2)
+    return compare_with(rows, lambda name: name.replace(name.split("/")[0], "ids")
+                        if name.startswith(("ranges/", "whole_chunks/")) else None)
+
+
 def movers(quick):
     """What moves: a world's boxes, the chunks of the raster methods, a scene's objects under each method."""
     rows = google_benchmark("world", 3, 0.02, "^(build|move_|far_sectors/move)")
@@ -315,6 +322,6 @@ def web(quick):
     return rows
 
 
-TOPICS = {"world": world, "instances": instances, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
+TOPICS = {"world": world, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
           "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}

@@ -44,6 +44,8 @@ void test_columns(void);
 void test_shadows(void);
 void test_instances(void);
 void test_snapshots(void);
+void test_ranges(void);
+void test_inspect(void);
 void test_automatic(void);
 void test_occlusion(void);
 void test_frustum(void);

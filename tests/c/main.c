@@ -46,6 +46,8 @@ int main(void) {
   test_shadows();
   test_instances();
   test_snapshots();
+  test_ranges();
+  test_inspect();
   test_automatic();
   test_occlusion();
   test_frustum();

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 
 #include <sightline/instances.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/ranges.hpp>
 #include <sightline/shadows.hpp>
 #include <sightline/world.hpp>
 
@@ -216,6 +218,40 @@ TEST(Allocation, OcclusionInOneCallAllocatesNothingOnceWarm) {
   }
   EXPECT_EQ(allocations - warm, 0u);
   EXPECT_GT(dropped, 1000u);
+}
+
+TEST(Allocation, RangesAndReportsAllocateNothingOnceWarm) {
+  scene::Random random(5);
+  World world;
+  std::vector<Box> boxes(20000);
+  for (Box& b : boxes) {
+    const Vec3 at = random.inside({{-500, 0, -500}, {500, 30, 500}});
+    b = {at, {at.x + 1, at.y + 1, at.z + 1}};
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  ObjectOrder order;
+  RangeCuller culler;
+  std::size_t warm = 0, seen = 0, reported = 0;
+  for (int frame = 0; frame < 500; ++frame) {
+    if (frame == 300) warm = allocations;
+    // To and fro, so that the same is seen and reported again and again.
+    const float by = frame % 2 == 0 ? 30.0f : -30.0f;
+    for (std::size_t i = 0; i < 200; ++i) boxes[i].min.x += by, boxes[i].max.x += by;
+    ASSERT_TRUE(world.move(std::span(handles).first(200), BoxView(std::span(boxes).first(200))));
+    const auto report = order.update(world);
+    ASSERT_TRUE(report);
+    reported += report->size();
+    const float turn = 0.1f * static_cast<float>(frame % 60);
+    const CullView view{.view = {test::looking({0, 10, 0}, {std::sin(turn), 0, std::cos(turn)}), {}}};
+    const auto result =
+        culler.cull(world, order, {&view, 1}, {.jobs = {run_here, nullptr, 4}, .masks = frame % 3 == 0});
+    ASSERT_TRUE(result);
+    seen += result->objects;
+  }
+  EXPECT_EQ(allocations - warm, 0u);
+  EXPECT_GT(seen, 100'000u);
+  EXPECT_GT(reported, boxes.size());
 }
 
 TEST(Allocation, MovingTheSameObjectsAllocatesNothingOnceWarm) {

@@ -1,0 +1,151 @@
+// The tests besides the frustum that passes over a world's groups have: contribution, columns and occlusion.
+// Included by files that foreach_target compiles again and again.
+#if defined(SIGHTLINE_CULLING_FILTERED_CULL_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIGHTLINE_CULLING_FILTERED_CULL_INL
+#undef SIGHTLINE_CULLING_FILTERED_CULL_INL
+#else
+#define SIGHTLINE_CULLING_FILTERED_CULL_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "library/geometry/mutant.h"
+#include "library/world/world_cull-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::world::HWY_NAMESPACE {
+
+// The objects of a chunk that a view sees, by frustum and contribution.
+HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
+                             ObjectBits& out) {
+  const F f;
+  const std::size_t lanes = hn::Lanes(f);
+  Corner corners[Frustum::sides];
+  const std::size_t count = corners_of(chunk, view, planes, corners);
+  out = test_objects(chunk, corners, count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    if (view.area_scale > 0) {
+      // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
+      const VF half = hn::Set(f, 0.5f);
+      const auto square = [&](const float* low, const float* high, float eye, VF& radius,
+                              VF& distance) HWY_ATTR {
+        const VF a = hn::Mul(half, hn::Load(f, low + i)), b = hn::Mul(half, hn::Load(f, high + i));
+        const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, eye));
+        radius = hn::Add(radius, hn::Mul(extent, extent));
+        distance = hn::Add(distance, hn::Mul(offset, offset));
+      };
+      VF radius = hn::Zero(f), distance = hn::Zero(f);
+      square(chunk.min_x, chunk.max_x, view.eye.x, radius, distance);
+      square(chunk.min_y, chunk.max_y, view.eye.y, radius, distance);
+      square(chunk.min_z, chunk.max_z, view.eye.z, radius, distance);
+      const VF limit = view.orthographic ? hn::Set(f, 1.0f) : distance;
+      const auto large = hn::Ge(hn::Mul(radius, hn::Set(f, view.area_scale)), limit);
+      mask = hn::And(mask, hn::Or(large, hn::Le(distance, radius)));
+    }
+    if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
+    if (chunk.loose) mask = hn::And(mask, hn::RebindMask(f, are_objects(hn::Load(U(), chunk.objects + i))));
+    return mask;
+  });
+}
+
+// Which of a group's chunks the occluders do not hide, a byte each.
+using ChunkAnswers = std::array<std::uint8_t, kGroup>;
+HWY_INLINE void ask_chunks(const ChunkMap::Group& group, const SectorView& view, ChunkAnswers& visible) {
+  const auto& b = group.bounds;
+  view.occluders->ask->boxes(
+      *view.occluders, view.projection,
+      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
+      visible.data());
+}
+
+inline std::uint64_t objects_of(const ChunkMap::ChunkView& chunk) {
+  return chunk.count -
+         static_cast<std::uint64_t>(std::count(chunk.objects, chunk.objects + chunk.count, kNoObject));
+}
+
+// Of a chunk that the columns part, those that they leave.
+inline std::uint64_t objects_left(const PassInput& input, const EntryGroup& at,
+                                  const ChunkMap::ChunkView& chunk, const SectorView& view) {
+  const ObjectBits seen = input.columns->objects(at.map, at.group, chunk, view);
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < chunk.count; ++i) count += seen.at(i) && chunk.objects[i] != kNoObject;
+  return count;
+}
+
+// Takes out the chunks whose bounds the occluders hide. Returns how many objects they hold that the columns
+// leave.
+inline std::uint64_t drop_hidden_chunks(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                        std::uint32_t parted, ChunkBits& bits) {
+  std::uint64_t dropped = 0;
+  ChunkAnswers visible;
+  ask_chunks(at.group, view, visible);
+  for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    if (visible[i]) continue;
+    bits.kept &= ~(1u << i);
+    const ChunkMap::ChunkView chunk = at.map.chunk(at.group, static_cast<std::uint32_t>(i));
+    dropped += parted >> i & 1 ? objects_left(input, at, chunk, view) : objects_of(chunk);
+  }
+  return dropped;
+}
+
+// Takes out the objects that the occluders hide, of those that the view sees otherwise. Returns how many.
+inline std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view,
+                                         ObjectBits& seen) {
+  std::uint64_t dropped = 0;
+  if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
+  std::array<std::uint8_t, ChunkMap::kCapacity> visible;
+  view.occluders->ask->boxes(
+      *view.occluders, view.projection,
+      {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
+      visible.data());
+  for (std::uint32_t i = 0; i < chunk.count; ++i) {
+    if (visible[i] || !seen.at(i)) continue;
+    seen.drop(i);
+    ++dropped;
+  }
+  return dropped;
+}
+
+// The chunks of a group that a view may see. Those that are known to be hidden are not asked for again.
+HWY_INLINE ChunkBits filter_chunks(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                   PlaneSet planes, const std::uint32_t* hidden, std::uint32_t& parted,
+                                   std::uint64_t& dropped) {
+  parted = 0;
+  if (planes == kOutside) return {};
+  ChunkBits bits = classify_chunks(at.group, view, planes);
+  if (input.columns) parted = ask_columns(input, at, view, bits);
+  if (hidden) {
+    bits.kept &= ~*hidden;
+  } else if (view.occluders && bits.kept != 0 && !SIGHTLINE_MUTANT(world_by_frustum)) {
+    dropped += drop_hidden_chunks(input, at, view, parted, bits);
+  }
+  return bits;
+}
+
+// Who sees a chunk, and how: bits of a mask where nothing is left to test, views where something is.
+struct ChunkViewers {
+  std::uint8_t whole = 0, part = 0;
+};
+
+HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
+                                   const std::array<ChunkBits, kMaxViews>& bits,
+                                   const std::array<std::uint32_t, kMaxViews>& parted, std::uint32_t i) {
+  ChunkViewers out;
+  for (std::size_t v = 0; v < input.view_count; ++v) {
+    if ((bits[v].kept >> i & 1) == 0) continue;
+    const SectorView& view = at.views[v];
+    const bool all =
+        ((bits[v].crossing | parted[v]) >> i & 1) == 0 && view.area_scale == 0 && !view.occluders;
+    if (all) out.whole |= input.bits[v];
+    if (!all) out.part |= static_cast<std::uint8_t>(1u << v);
+  }
+  return out;
+}
+
+}  // namespace sightline::world::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
