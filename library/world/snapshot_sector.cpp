@@ -57,7 +57,7 @@ public:
     if (map_->nodes_[0].bounds != entry_.bounds)
       return bad("snapshot: the boxes of a sector have other bounds than it says, of that at this byte");
     map_->size_ = entry_.objects, map_->misplaced_ = 0;
-    // All its chunks are listed as changed, for orders that follow the world.
+    // All its chunks stay listed as changed, for an order that follows the world.
     return {};
   }
 

@@ -1,4 +1,5 @@
 // Sectors in and out of a world: within a budget, beside another thread, and with the handles that they had.
+#include <sightline/ranges.hpp>
 #include <sightline/snapshot.hpp>
 
 #include <gtest/gtest.h>
@@ -63,6 +64,44 @@ std::size_t memory_of_all(const WorldStream& stream) {
   std::size_t sum = 0;
   for (std::size_t i = 0; i < stream.size(); ++i) sum += stream.sector(i).memory;
   return sum;
+}
+
+// An order learns of the chunks that come with a sector, also where one went and came again between two
+// updates.
+TEST(WorldStream, OrdersFollowWhatComesAndGoes) {
+  const Ground ground;
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  const StreamOptions options{.budget = memory_of_all(*stream) / 4};
+  ObjectOrder order;
+  RangeCuller culler;
+  std::vector<ObjectId> slots;
+  std::size_t drawn = 0, all = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    const CullView view = looking_from({-kSide + 800.0f * frame, 0, 0}, 0.05f * frame);
+    ASSERT_TRUE(stream->bring_in({&view, 1}, options));
+    const CullView behind = looking_from({kSide - 800.0f * frame, 0, 0}, 3);
+    if (frame % 3 == 0) {
+      ASSERT_TRUE(stream->bring_in({&behind, 1}, options));
+      ASSERT_TRUE(stream->bring_in({&view, 1}, options));
+    }
+    const auto changes = order.update(world);
+    ASSERT_TRUE(changes);
+    slots.resize(order.slot_limit(), kNoObject);
+    for (const auto& [slot, object] : *changes)
+      if (slot < slots.size()) slots[slot] = object;
+    const auto ranges = culler.cull(world, order, view);
+    ASSERT_TRUE(ranges) << ranges.error().message();
+    std::multiset<ObjectId> by_slots, by_ids;
+    for (const auto& [first, count] : ranges->ranges)
+      for (std::uint32_t i = 0; i < count; ++i) by_slots.insert(slots[first + i]);
+    for (const auto& [id, mask, level] : test::seen(world, {&view, 1})) by_ids.insert(id);
+    ASSERT_EQ(by_slots, by_ids) << frame;
+    drawn += by_ids.size(), all += world.size();
+  }
+  EXPECT_GT(drawn, 1000u);
+  EXPECT_LT(drawn, all / 2);
 }
 
 TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
