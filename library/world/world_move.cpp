@@ -81,7 +81,7 @@ private:
       ask_ahead(first_ + i);
       s_.objects[ids[i]].sector == sector_&& geometry::holds(kInSector, boxes[i])
           ? map_->move_loosely(ids[i], boxes[i], moving_)
-          : move_anywhere(ids[i], boxes_[first_ + i]);
+          : move_anywhere(ids[i], world_box(i));
     }
     return true;
   }
@@ -129,19 +129,22 @@ private:
     constexpr std::size_t kLanes = 8, kChunk = 16, kObject = 32;
     if (at + kObject >= handles_.size()) return;
     geometry::ask_ahead(&s_.objects[handles_[at + kObject].index]);
-    map_->prefetch_chunk(handles_[at + kChunk].index);
-    map_->prefetch_lanes(handles_[at + kLanes].index, moving_.many);
+    ask_for_chunk(handles_[at + kChunk].index);
+    ask_for_lanes(handles_[at + kLanes].index);
   }
   void ask_for_block(std::uint32_t count) const {
     const std::span<const ObjectId> ids(ids_.data(), count);
     for (const ObjectId id : ids) geometry::ask_ahead(&s_.objects[id]);
-    for (const ObjectId id : ids) map_->prefetch_chunk(id);
-    for (const ObjectId id : ids) map_->prefetch_lanes(id, moving_.many);
+    for (const ObjectId id : ids) ask_for_chunk(id);
+    for (const ObjectId id : ids) ask_for_lanes(id);
   }
+  void ask_for_chunk(ObjectId id) const { map_of(id).prefetch_chunk(id); }
+  void ask_for_lanes(ObjectId id) const { map_of(id).prefetch_lanes(id, moving_.many); }
+  [[nodiscard]] ChunkMap& map_of(ObjectId id) const { return *s_.sectors[s_.objects[id].sector].map; }
 
   void move_one(std::uint32_t i, bool inside) {
     const ObjectId id = ids_[i];
-    if (!inside || s_.objects[id].sector != sector_) return move_anywhere(id, boxes_[first_ + i]);
+    if (!inside || s_.objects[id].sector != sector_) return move_anywhere(id, world_box(i));
     map_->move_loosely(id, box_of_block(i), moving_);
     expect_next(id);
   }
@@ -152,17 +155,23 @@ private:
     run_slot_ = at.slot() + 1u;
   }
 
+  // The block's boxes as they were given, read when the first of them is asked for.
+  const WorldBox& world_box(std::uint32_t i) {
+    if (world_first_ != first_) {
+      const std::size_t count = std::min(kBlock, boxes_.size() - first_);
+      BoxReader::read(boxes_, first_, count, world_boxes_.data(), true);
+      world_first_ = first_;
+    }
+    return world_boxes_[i];
+  }
+
   void move_anywhere(ObjectId id, const WorldBox& box) {
-    const SectorCell cell = sector_cell(box);
     const std::uint32_t from = s_.objects[id].sector;
-    const WorldPoint& origin = s_.sectors[from].origin;
+    const Box here = geometry::relative_box(box, s_.sectors[from].origin);
     s_.touch(from);
     run_chunk_ = ChunkMap::kNone;
-    if (static_cast<double>(cell.x) * kSectorSide == origin.x &&
-        static_cast<double>(cell.y) * kSectorSide == origin.y &&
-        static_cast<double>(cell.z) * kSectorSide == origin.z)
-      return s_.sectors[from].map->move_loosely(id, geometry::relative_box(box, origin), moving_);
-    const std::uint32_t to = s_.sector_at(cell);
+    const std::uint32_t to = geometry::holds(kInSector, here) ? from : s_.sector_at(sector_cell(box));
+    if (to == from) return s_.sectors[from].map->move_loosely(id, here, moving_);
     s_.touch(to);
     s_.sectors[from].map->remove(id);
     s_.sectors[to].map->insert_moving(id, geometry::relative_box(box, s_.sectors[to].origin));
@@ -192,6 +201,8 @@ private:
   std::array<ObjectId, kBlock> ids_;
   geometry::BoxBlock block_;
   std::array<Box, kBlock> laid_out_;
+  std::array<WorldBox, kBlock> world_boxes_;
+  std::size_t world_first_ = static_cast<std::size_t>(-1);  // of which block
 };
 
 }  // namespace
