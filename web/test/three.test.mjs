@@ -89,3 +89,31 @@ test('instances of a batch are drawn in the order that three draws them in', asy
   culler.dispose();
   assert.deepEqual(Object.keys(batch).filter((name) => /^(set|add|delete|optimize)/.test(name)), []);
 });
+
+test('what was removed counts no longer, and a scene that is all in view is left to three until the camera turns', async () => {
+  await ready;
+  const scene = new THREE.Scene(), { all, side } = places(900), renderer = { isWebGLRenderer: true, sortObjects: true };
+  add(scene, 'meshes', all, new THREE.MeshBasicMaterial());
+  const [group] = scene.children, own = scene.children, camera = new THREE.PerspectiveCamera(60, 1.5, 0.1, 2000);
+  const culler = new SightlineCuller(scene, { occlusion: false });
+  await new Promise((loaded) => setTimeout(loaded, 10));
+  // Whether three walks the scene's own children.
+  const draw = () => {
+    camera.updateMatrixWorld(), scene.updateMatrixWorld();
+    scene.onBeforeRender(renderer, scene, camera, null);
+    const isOwn = scene.children === own;
+    return scene.onAfterRender(renderer, scene, camera, null), isOwn;
+  };
+  const above = () => (camera.position.set(side / 2, 2 * side, side / 2), camera.lookAt(side / 2, 0, side / 2 + 1));
+  for (const count of [900, 200]) {
+    above();
+    assert.equal(draw(), false);
+    assert.deepEqual([culler.stats.objects, culler.stats.drawn], [count, count]);
+    for (let frame = 0; frame < 8; ++frame) assert.equal(draw(), true);
+    camera.rotateY(1.5); // away
+    assert.equal(draw(), false);
+    assert.ok(culler.stats.drawn < count / 2, `${culler.stats.drawn} drawn`);
+    group.remove(...group.children.slice(0, 700));
+  }
+  culler.dispose();
+});

@@ -147,6 +147,7 @@ export class SightlineCuller {
     this.#frames.push(frame);
     // compileAsync() begins and never ends.
     if (!outer) queueMicrotask(() => this.#frames.includes(frame) && this.#end());
+    this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     try {
       this.#cull(renderer, camera, frame, outer !== undefined);
@@ -177,10 +178,12 @@ export class SightlineCuller {
     const { inventory } = this.#inside!;
     const cameras = (camera as ArrayCamera).isArrayCamera ? (camera as ArrayCamera).cameras : [camera];
     if (cameras.length === 0 || cameras.length > mostViews) return;
+    const isAlone = cameras.length === 1 && !shadowsOf(renderer);
+    if (isAlone && this.#whole.standsStill(cameras[0]!, this.occlusion)) return this.#count(inventory.size);
     const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
-    if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.slots);
+    if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.size);
     inventory.update();
-    if (inventory.slots === 0) return;
+    if (inventory.size === 0) return this.#count(0);
     const lights = this.#shadowViews(renderer);
     const seen = this.#seen(eyes, camera, !renderer.clippingPlanes?.length);
     const inLights = lights.map(({ view }) => this.#inView(view));
@@ -191,7 +194,7 @@ export class SightlineCuller {
     this.#swapForShadows(shadows, frame);
     for (const thing of new Set([main, ...shadows.map(({ pass }) => pass)].flatMap(({ ranges }) => [...ranges.keys()])))
       this.#narrow(thing, main, shadows, renderer, frame, nested);
-    Object.assign(this.stats, { objects: inventory.slots, drawn: seen.length });
+    Object.assign(this.stats, { objects: inventory.size, drawn: seen.length });
   }
   #count(drawn: number): void {
     this.#drawn = undefined;

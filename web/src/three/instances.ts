@@ -4,6 +4,7 @@ import { InstancedBufferAttribute, Matrix4, Sphere, Vector3 } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material } from 'three';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
+import { withhold } from './ranges.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
 import type { Thing } from './things.js';
@@ -42,7 +43,6 @@ function pick(from: Attribute, to: Attribute, list: Uint32Array): void {
   to.clearUpdateRanges();
   to.addUpdateRange(0, list.length * itemSize);
   to.needsUpdate = true;
-  from.clearUpdateRanges(); // what three does not send now it sends whole when it next does
 }
 
 const isSame = (a: Uint32Array, b: Uint32Array): boolean => a.length === b.length && a.every((x, i) => x === b[i]);
@@ -64,6 +64,8 @@ export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): ()
     mesh.onBeforeShadow = (...all) => ((mesh.count = list.length), onBeforeShadow.apply(mesh, all));
     mesh.onAfterShadow = (...all) => ((mesh.count = seen), onAfterShadow.apply(mesh, all));
   }
+  withhold(instanceMatrix);
+  if (instanceColor) withhold(instanceColor);
   mesh.instanceMatrix = copy.matrix;
   mesh.instanceColor = copy.color;
   mesh.count = seen;

@@ -2,7 +2,8 @@
 import type { InstancedMesh, Mesh, Object3D, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
-import { classify, disposeOf, isOther, makeThing, update, type Known, type Thing } from './things.js';
+import { Resting } from './resting.js';
+import { classify, disposeOf, isOther, isRestless, makeThing, takeNote, update, type Known, type Thing } from './things.js';
 
 interface Node { object: Object3D; parent: number; shown: boolean }
 /** Something that is left to three, with all below it. */
@@ -35,6 +36,8 @@ export class Inventory {
 
   readonly #scene: Scene;
   readonly #thingOfMesh = new Map<Object3D, Thing>();
+  readonly #instanced = new Set<Thing>();
+  readonly #resting = new Resting();
   readonly #free = new Map<number, number[]>();
   #handles = new Float64Array(0);
   #matrices = new Float64Array(0);
@@ -45,6 +48,16 @@ export class Inventory {
 
   constructor(scene: Scene) {
     this.#scene = scene;
+  }
+
+  /** Meshes and instances that can be culled. */
+  get size(): number {
+    return this.world.size;
+  }
+
+  /** To be called in every frame, before three draws, whether it is culled or not. */
+  takeNote(): void {
+    for (const thing of this.#instanced) takeNote(thing);
   }
 
   /** Takes over what has moved, come or gone since the last call. */
@@ -84,6 +97,11 @@ export class Inventory {
     }
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
+    for (const thing of this.#instanced) if (isRestless(thing)) this.#leave(thing);
+    for (const left of this.#resting.calm()) {
+      this.left.splice(this.left.indexOf(left), 1);
+      this.#add(left.object, this.nodes[left.parent]!.object);
+    }
   }
   #known(): Known {
     return { boxes: this.boxes.array, matrices: this.#matrices, moved: this.#moved };
@@ -106,7 +124,7 @@ export class Inventory {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
-    this.things.clear(), this.#thingOfMesh.clear(), this.#free.clear();
+    for (const all of [this.things, this.#instanced, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = 0;
     this.world.dispose(), (this.world = new World());
     this.nodes.push({ object: this.#scene, parent: -1, shown: true });
@@ -131,6 +149,7 @@ export class Inventory {
     if (first === this.slots) this.slots += count;
     const thing = makeThing(mesh, kind, first, count, parent);
     this.things.add(thing);
+    if (kind === 'instanced') this.#instanced.add(thing), takeNote(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
     return thing;
@@ -182,9 +201,18 @@ export class Inventory {
   #remove(child: Object3D): void {
     const thing = this.#thingOfMesh.get(child);
     if (this.#changed || !thing) return void (this.#changed = true);
+    this.#forget(thing);
+  }
+  // Three draws it by itself as long as it is restless.
+  #leave(thing: Thing): void {
+    this.#forget(thing);
+    const left = { object: thing.mesh, parent: thing.parent };
+    this.left.push(left), this.#resting.add(left);
+  }
+  #forget(thing: Thing): void {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
     disposeOf(thing);
-    this.things.delete(thing), this.#thingOfMesh.delete(child);
+    this.things.delete(thing), this.#instanced.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
     const free = this.#free.get(thing.count);
     if (free) free.push(thing.first);

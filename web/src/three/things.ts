@@ -5,6 +5,7 @@ import { isKnownInside, listen, unlisten, type Batch, type Told } from './batche
 import { boxOf, pointsOf, type Points } from './bounds.js';
 import { writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
+import { letGo, Ranges, remind } from './ranges.js';
 import { Sending } from './sending.js';
 
 export interface Thing {
@@ -19,12 +20,15 @@ export interface Thing {
   geometry: BufferGeometry;
   points: Points;
   pointsVersion: number;
-  /** Of its instances: their matrices, where those come from, in which version, and what a batch was told since. */
+  /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
   source: unknown;
   version: number;
   readonly told: Told | undefined;
   readonly sending: Sending | undefined;
+  /** Of an InstancedMesh: what was set of its matrices, and in how many frames on end much of it moved. */
+  readonly ranges: Ranges;
+  restless: number;
 }
 
 /** What is known by slot, of instanced ones their mesh's matrix by the first; and the slots whose boxes have changed. */
@@ -64,12 +68,19 @@ export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count:
   return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
-    sending: kind === 'batched' ? new Sending(count) : undefined };
+    sending: kind === 'batched' ? new Sending(count) : undefined, ranges: new Ranges(), restless: 0 };
 }
 
-export function disposeOf({ mesh, matrices, told }: Thing): void {
+/** To be called of each InstancedMesh in every frame, before three draws. */
+export function takeNote({ mesh, ranges }: Thing): void {
+  const { instanceMatrix, instanceColor } = mesh as InstancedMesh;
+  ranges.note(instanceMatrix), remind(instanceColor);
+}
+
+export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
   matrices?.dispose();
   if (told) unlisten(mesh as Batch, told);
+  if (kind === 'instanced') letGo((mesh as InstancedMesh).instanceMatrix), letGo((mesh as InstancedMesh).instanceColor);
 }
 
 /** Whether a thing is no longer what it was taken for. */
@@ -110,25 +121,29 @@ function moves(known: Float64Array, at: number, m: readonly number[]): boolean {
   return true;
 }
 
+// An InstancedMesh much of which moves in so many frames on end costs more to know than to draw.
+const mostRestless = 4;
+const isMuch = (moved: number, count: number): boolean => moved > 1000 && 4 * moved > count;
+export const isRestless = ({ restless }: Thing): boolean => restless >= mostRestless;
+
 function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxes, moved }: Known): void {
-  const { instanceMatrix } = mesh, { version, array, updateRanges } = instanceMatrix, now = array as Float32Array;
-  const isOther = instanceMatrix !== thing.source;
-  if (!all && !isOther && version === thing.version) return;
-  const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements;
+  const { ranges, matrices, first, count } = thing, now = mesh.instanceMatrix.array as Float32Array;
+  if (!all && ranges.isEmpty) return;
+  const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements, before = moved.length;
   const write = (i: number) => {
-    if (writeBox(boxes, thing.first + i, box, now, 16 * i, world)) moved.push(thing.first + i);
+    if (writeBox(boxes, first + i, box, now, 16 * i, world)) moved.push(first + i);
   };
-  if (all || isOther) {
-    thing.matrices!.takeAll(now);
-    for (let i = 0; i < thing.count; ++i) write(i);
-  } else if (version === thing.version + 1 && updateRanges.length > 0) {
-    // three itself draws nothing else anew.
-    for (const { start, count } of updateRanges)
-      thing.matrices!.compare(now, start >> 4, Math.min((start + count + 15) >> 4, thing.count), write);
+  if (all || ranges.isOther) {
+    matrices!.takeAll(now);
+    for (let i = 0; i < count; ++i) write(i);
+  } else if (ranges.isWhole) {
+    matrices!.compare(now, 0, count, write);
   } else {
-    thing.matrices!.compare(now, 0, thing.count, write);
+    for (let k = 0; k < ranges.list.length; k += 2) // three itself draws nothing else anew
+      matrices!.compare(now, ranges.list[k]! >> 4, Math.min((ranges.list[k + 1]! + 15) >> 4, count), write);
   }
-  thing.source = instanceMatrix, (thing.version = version);
+  thing.restless = isMuch(moved.length - before, count) ? thing.restless + 1 : 0;
+  ranges.forget();
 }
 
 function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved }: Known): void {

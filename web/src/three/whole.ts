@@ -1,5 +1,6 @@
 // When a scene is left to three as it is: everything in it was in view and nothing hidden, and all views still hold the
 // box of all that. That costs a frame next to nothing, and is always sound: three draws what it would without a culler.
+import type { Camera } from 'three';
 import type { Inventory } from './inventory.js';
 import type { Eye } from './occluders.js';
 
@@ -11,9 +12,24 @@ export class Whole {
   #box: Float64Array | undefined;
   #eye: ArrayLike<number> = [];
   #occlusion = false;
+  // The camera that it stood for last.
+  readonly #camera = new Float64Array(32);
   // Until somebody looks again, and how many the last time.
   #frames = 0;
   #last = 0;
+
+  /** Whether it is, as the last frame was, for a camera that has not moved since; where no light throws shadows. */
+  standsStill(camera: Camera, occlusion: boolean): boolean {
+    if (!this.#box || this.#frames === 0 || occlusion !== this.#occlusion) return false;
+    const view = camera.matrixWorldInverse.elements, projection = camera.projectionMatrix.elements, known = this.#camera;
+    let same = true;
+    for (let k = 0; k < 16; ++k) {
+      if (known[k] === view[k] && known[16 + k] === projection[k]) continue;
+      same = false, (known[k] = view[k]!), (known[16 + k] = projection[k]!);
+    }
+    if (same) --this.#frames;
+    return same;
+  }
 
   /** Whether the scene is left as it is in this frame. */
   stands(viewsOf: () => readonly Eye[], occlusion: boolean): boolean {
@@ -23,14 +39,14 @@ export class Whole {
     const stays = occlusion === this.#occlusion && isNear(views[0]!.origin, this.#eye, box) &&
       views.every((view) => holds(view, box));
     if (stays) return --this.#frames, true;
-    this.#box = undefined, (this.#last = 0);
+    this.#box = undefined, (this.#last = 0), this.#camera.fill(NaN);
     return false;
   }
 
-  /** Takes over what a frame's views have left of all slots, the eye's first. */
-  look({ slots, boxes }: Inventory, eye: Eye, occlusion: boolean, seen: readonly Uint32Array[]): void {
-    this.#box = undefined;
-    if (seen.some(({ length }) => worth * (slots - length) > slots)) return void (this.#last = 0);
+  /** Takes over what a frame's views have left of all things, the eye's first. */
+  look({ size, boxes }: Inventory, eye: Eye, occlusion: boolean, seen: readonly Uint32Array[]): void {
+    this.#box = undefined, this.#camera.fill(NaN);
+    if (seen.some(({ length }) => worth * (size - length) > size)) return void (this.#last = 0);
     this.#box = boundsOf(boxes.array, seen[0]!);
     this.#eye = Array.from(eye.origin), (this.#occlusion = occlusion);
     this.#frames = this.#last = Math.min(Math.max(2 * this.#last, fewestFrames), mostFrames);

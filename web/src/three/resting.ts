@@ -1,0 +1,31 @@
+// InstancedMeshes that are left to three because much of them moved in every frame, until they are set no more.
+import type { InstancedBufferAttribute, InstancedMesh, Object3D } from 'three';
+
+interface Left { object: Object3D; parent: number }
+interface Seen { matrix: InstancedBufferAttribute; version: number; frames: number }
+
+/** Frames in which nothing was set. */
+const calmFrames = 16;
+
+export class Resting {
+  readonly #seen = new Map<Left, Seen>();
+
+  add(left: Left): void {
+    const { instanceMatrix: matrix } = left.object as InstancedMesh;
+    this.#seen.set(left, { matrix, version: matrix.version, frames: 0 });
+  }
+  clear(): void {
+    this.#seen.clear();
+  }
+  /** Those that have come to rest, which are forgotten; to be called once a frame. */
+  calm(): Left[] {
+    const calm: Left[] = [];
+    for (const [left, seen] of this.#seen) {
+      const { instanceMatrix } = left.object as InstancedMesh, { version } = instanceMatrix;
+      const stays = instanceMatrix === seen.matrix && version === seen.version;
+      Object.assign(seen, { matrix: instanceMatrix, version, frames: stays ? seen.frames + 1 : 0 });
+      if (seen.frames >= calmFrames) calm.push(left), this.#seen.delete(left);
+    }
+    return calm;
+  }
+}
