@@ -5,6 +5,9 @@ import { buffer, wasm } from './runtime.js';
 export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
 type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
 
+// 0 where there is no room; the module itself would take the size modulo 2^32.
+const allocate = (size: number): number => (size < 2 ** 32 - 64 ? wasm().allocate!(Math.max(size, 64)) >>> 0 : 0);
+
 /** A typed array in the module's memory: the library reads and writes it where it is. */
 export class Block<T extends Numbers> {
   readonly length: number;
@@ -18,7 +21,7 @@ export class Block<T extends Numbers> {
       refuse(`Block: a length of ${length}, expected an integer from 0 to 2^31`);
     this.kind = kind;
     this.length = length;
-    this.#pointer = wasm().allocate!(Math.max(length * kind.BYTES_PER_ELEMENT, 64)) >>> 0;
+    this.#pointer = allocate(length * kind.BYTES_PER_ELEMENT);
     if (this.#pointer === 0) refuse(`Block: no memory for ${length} numbers`, 'too_many');
   }
   /** @internal */
@@ -72,7 +75,7 @@ export class Call {
   }
   /** Room of its own. */
   room(byteLength: number): number {
-    const pointer = wasm().allocate!(Math.max(byteLength, 64)) >>> 0;
+    const pointer = allocate(byteLength);
     if (pointer === 0) refuse(`sightline: no memory for ${byteLength} bytes`, 'too_many');
     this.#borrowed.push(pointer);
     return pointer;

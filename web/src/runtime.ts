@@ -123,16 +123,17 @@ export function check(code: number): void {
 export abstract class Owned {
   #pointer: number;
   readonly #destroy: string;
-  readonly #what: string;
+  /** @internal */
+  readonly what: string;
   /** `what` names it in refusals: a class's own name is another in a bundle that was minified. */
   constructor(what: string, create: string, destroy: string, pointer = need(create)()) {
-    this.#what = what;
+    this.what = what;
     this.#pointer = pointer;
     this.#destroy = destroy;
   }
   /** @internal */
   get pointer(): number {
-    if (this.#pointer === 0) refuse(`${this.#what}: used after dispose()`, 'disposed');
+    if (this.#pointer === 0) refuse(`${this.what}: used after dispose()`, 'disposed');
     return this.#pointer;
   }
   /** Whether dispose() was called. */

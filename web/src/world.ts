@@ -256,8 +256,12 @@ export class Culler extends Owned {
   #write(view: CullView, at: number): void {
     writeView('cull', view, at);
     const data = new DataView(buffer(), at, cullViewBytes);
-    data.setUint32(160, view.occlusion?.pointer ?? 0, true);
-    data.setUint32(164, view.layers ?? allLayers, true);
+    const { occlusion, layers = allLayers } = view;
+    if (occlusion && !(occlusion instanceof Owned && occlusion.what === 'OcclusionBuffer'))
+      refuse('cull: expected an OcclusionBuffer as a view\'s occlusion');
+    if (!Number.isInteger(layers)) refuse(`cull: layers of ${layers}, expected an integer of 32 bits`);
+    data.setUint32(160, occlusion?.pointer ?? 0, true);
+    data.setUint32(164, layers, true);
     data.setFloat32(168, view.minArea ?? 0, true);
     data.setFloat32(172, 1, true), data.setUint32(176, 0xffffffff, true);  // distances, which objects have none of here
     data.setUint32(180, 0, true);  // casters: none

@@ -96,6 +96,13 @@ test('bad input is refused with one sentence and changes nothing', async () => {
   assert.throws(() => culler.cull(world, { ...view, width: 1.5 }), refusal('bad_view', /1 to 16384/));
   assert.throws(() => culler.cull(world, []), refusal('bad_argument', /1 to 8/));
   assert.throws(() => culler.cull(world, { ...view, occlusion: new OcclusionBuffer() }), refusal('stale_buffer', /./));
+  for (const occlusion of [true, {}, { pointer: 64 }, world])
+    assert.throws(() => culler.cull(world, { ...view, occlusion }), refusal('bad_argument', /expected an OcclusionBuffer/));
+  for (const layers of ['all', NaN, 0.5])
+    assert.throws(() => culler.cull(world, { ...view, layers }), refusal('bad_argument', /expected an integer of 32 bits/));
+  // More bytes than a module can address.
+  for (const make of [() => floats(2 ** 30), () => doubles(2 ** 29 + 8), () => floats(2 ** 31)])
+    assert.throws(make, refusal('too_many', /no memory for/));
   assert.equal(culler.cull(world, view).ids.length, 1);
   assert.throws(() => new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 3)), refusal('bad_mesh', /index 2/));
 });
