@@ -1,10 +1,10 @@
-// InstancedMeshes that are left to three because much of them moved in every frame, until they are set no more.
+// InstancedMeshes that are left to three because much of them moved in every frame, until little of them is set.
 import type { InstancedBufferAttribute, InstancedMesh, Object3D } from 'three';
 
 interface Left { object: Object3D; parent: number }
 interface Seen { matrix: InstancedBufferAttribute; version: number; frames: number }
 
-/** Frames in which nothing was set. */
+/** Frames in which nothing was set, or only ranges of less than a quarter. */
 const calmFrames = 16;
 
 export class Resting {
@@ -21,8 +21,9 @@ export class Resting {
   calm(): Left[] {
     const calm: Left[] = [];
     for (const [left, seen] of this.#seen) {
-      const { instanceMatrix } = left.object as InstancedMesh, { version } = instanceMatrix;
-      const stays = instanceMatrix === seen.matrix && version === seen.version;
+      const { instanceMatrix } = left.object as InstancedMesh, { version, updateRanges, array } = instanceMatrix;
+      const told = updateRanges.reduce((sum, { count }) => sum + count, 0), isLittle = told > 0 && 4 * told < array.length;
+      const stays = instanceMatrix === seen.matrix && (version === seen.version || isLittle);
       Object.assign(seen, { matrix: instanceMatrix, version, frames: stays ? seen.frames + 1 : 0 });
       if (seen.frames >= calmFrames) calm.push(left), this.#seen.delete(left);
     }
