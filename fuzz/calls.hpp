@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "bytes.hpp"
 
@@ -35,6 +36,19 @@ struct CallBytes : Bytes {
   float single(double scale) { return static_cast<float>(number(scale)); }
   bool rarely() { return byte() == 0; }
 };
+
+/// One to three alike, each with something of its own.
+inline std::vector<sightline_cull_view> views_of(CallBytes& in, const sightline_view& view,
+                                                 const sightline_occlusion* occlusion) {
+  std::vector<sightline_cull_view> views(1 + in.byte() % 3, sightline_cull_view_of(&view));
+  for (sightline_cull_view& v : views) {
+    if (in.byte() & 1) v.layers = in.byte();
+    if (in.byte() & 1) v.min_area = in.single(1);
+    if (in.byte() < 64) v.occlusion = occlusion;
+    if (in.byte() < 64) v.distance_view = in.byte() % 4u;
+  }
+  return views;
+}
 
 inline void run_here(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
   for (std::uint32_t i = count; i-- > 0;) job(data, i);

@@ -70,13 +70,7 @@ private:
   }
 
   void cull(const sightline_world* world, const sightline_view& view, const sightline_occlusion* occlusion) {
-    std::vector<sightline_cull_view> views(1 + in_.byte() % 3, sightline_cull_view_of(&view));
-    for (sightline_cull_view& v : views) {
-      if (in_.byte() & 1) v.layers = in_.byte();
-      if (in_.byte() & 1) v.min_area = in_.single(1);
-      if (in_.byte() < 64) v.occlusion = occlusion;
-      if (in_.byte() < 64) v.distance_view = in_.byte() % 4u;
-    }
+    const std::vector<sightline_cull_view> views = views_of(in_, view, occlusion);
     sightline_instance_options options = sightline_instance_options_default();
     options.jobs = {run_here, nullptr, in_.byte() % 70u, 0};
     options.masks = in_.byte() & 1, options.levels = in_.byte() & 1, options.values_for_ids = in_.rarely();

@@ -15,7 +15,7 @@ public:
   void step(sightline_world* world, const sightline_view& view, const sightline_occlusion* occlusion,
             const sightline_culler* culler) {
     if (in_.byte() < 192) follow(world);
-    const std::vector<sightline_cull_view> views = views_of(view, occlusion);
+    const std::vector<sightline_cull_view> views = views_of(in_, view, occlusion);
     cull(world, views);
     inspect(world, views, culler);
   }
@@ -40,18 +40,6 @@ private:
       ++live;
     }
     require(live == sightline_world_size(world));
-  }
-
-  std::vector<sightline_cull_view> views_of(const sightline_view& view,
-                                            const sightline_occlusion* occlusion) {
-    std::vector<sightline_cull_view> views(1 + in_.byte() % 3, sightline_cull_view_of(&view));
-    for (sightline_cull_view& v : views) {
-      if (in_.byte() & 1) v.layers = in_.byte();
-      if (in_.byte() & 1) v.min_area = in_.single(1);
-      if (in_.byte() < 64) v.occlusion = occlusion;
-      if (in_.byte() < 64) v.distance_view = in_.byte() % 4u;
-    }
-    return views;
   }
 
   void inspect(const sightline_world* world, const std::vector<sightline_cull_view>& views,

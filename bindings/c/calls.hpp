@@ -91,6 +91,13 @@ inline Strided<const std::uint32_t> read(const sightline_column& column) noexcep
 inline Strided<const DistanceRange> read(const sightline_distances& distances) noexcept {
   return {distances.first, distances.count, distances.stride};
 }
+inline CullZones zones_of(const sightline_cull_zones& zones) noexcept {
+  return {zones.begin, zones.end, zones.user};
+}
+/// NULL where there are none.
+inline const std::uint8_t* first_of(std::span<const std::uint8_t> bytes) noexcept {
+  return bytes.empty() ? nullptr : bytes.data();
+}
 inline Handle handle_of(sightline_handle handle) noexcept {
   return {handle.index, handle.generation};
 }

@@ -39,12 +39,8 @@ Status take(const sightline_instance_options* given, InstanceCullOptions& option
   const sightline_level_options& l = o.level_options;
   options.level_options = {l.view, l.key, l.hysteresis, l.fade, l.scale, l.cut != 0};
   options.most_objects = o.most_objects;
-  options.zones = {o.zones.begin, o.zones.end, o.zones.user};
+  options.zones = zones_of(o.zones);
   return c_api::take(o.jobs, options.jobs);
-}
-
-const std::uint8_t* first_of(std::span<const std::uint8_t> bytes) {
-  return bytes.empty() ? nullptr : bytes.data();
 }
 
 // Calls write(instances, handle) where both are there and the handle's instance stands.

@@ -37,7 +37,7 @@ Status take(const sightline_range_options* given, RangeOptions& options) {
             "sightline_range_options_default"};
   }
   options.masks = o.masks == 1, options.whole_chunks = o.whole_chunks == 1;
-  options.zones = {o.zones.begin, o.zones.end, o.zones.user};
+  options.zones = zones_of(o.zones);
   return c_api::take(o.jobs, options.jobs);
 }
 
@@ -95,7 +95,7 @@ sightline_status sightline_cull_ranges(sightline_range_culler* culler, const sig
       culler->culler.cull(world->world, order->order, {given.data(), view_count}, how);
   if (!done) return keep(done.error());
   *result = {reinterpret_cast<const sightline_slot_range*>(done->ranges.data()),
-             done->masks.empty() ? nullptr : done->masks.data(),
+             first_of(done->masks),
              done->ranges.size(),
              done->objects,
              done->tested,

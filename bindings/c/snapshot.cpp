@@ -40,16 +40,17 @@ Status take_options(const sightline_stream_options* given, StreamOptions& option
   return {};
 }
 
-template <class Call>
-sightline_status with_views(sightline_world_stream* stream, const sightline_cull_view* views,
-                            std::size_t count, const sightline_stream_options* options,
-                            sightline_stream_report* report, const Call& call) {
+// update() or bring_in().
+using StreamCall = Result<StreamReport> (WorldStream::*)(std::span<const CullView>, const StreamOptions&);
+sightline_status call_with(StreamCall call, sightline_world_stream* stream, const sightline_cull_view* views,
+                           std::size_t count, const sightline_stream_options* options,
+                           sightline_stream_report* report) {
   if (!stream || !views) return refuse("stream: the stream or the views are NULL");
   Views seen;
   StreamOptions given;
   if (const Status ok = take(views, count, seen); !ok) return keep(ok);
   if (const Status ok = take_options(options, given); !ok) return keep(ok);
-  const Result<StreamReport> found = call(std::span<const CullView>(seen).first(count), given);
+  const Result<StreamReport> found = (stream->stream.*call)({seen.data(), count}, given);
   if (!found) return keep(found.error());
   if (report) *report = {found->in, found->coming, found->missing, found->damaged, found->memory};
   return SIGHTLINE_OK;
@@ -123,10 +124,7 @@ sightline_status sightline_world_stream_update(sightline_world_stream* stream,
                                                const sightline_cull_view* views, size_t view_count,
                                                const sightline_stream_options* options,
                                                sightline_stream_report* report) {
-  return with_views(stream, views, view_count, options, report,
-                    [&](std::span<const CullView> seen, const StreamOptions& given) {
-                      return stream->stream.update(seen, given);
-                    });
+  return call_with(&WorldStream::update, stream, views, view_count, options, report);
 }
 
 int sightline_world_stream_work(sightline_world_stream* stream) {
@@ -137,10 +135,7 @@ sightline_status sightline_world_stream_bring_in(sightline_world_stream* stream,
                                                  const sightline_cull_view* views, size_t view_count,
                                                  const sightline_stream_options* options,
                                                  sightline_stream_report* report) {
-  return with_views(stream, views, view_count, options, report,
-                    [&](std::span<const CullView> seen, const StreamOptions& given) {
-                      return stream->stream.bring_in(seen, given);
-                    });
+  return call_with(&WorldStream::bring_in, stream, views, view_count, options, report);
 }
 
 }  // extern "C"

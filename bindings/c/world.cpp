@@ -45,7 +45,7 @@ Status take(const sightline_cull_options* given, CullOptions& options) {
   options.buffer = {static_cast<Coverage>(o.coverage), o.scale};
   const sightline_cull_costs& c = o.costs;
   options.costs = {c.object, c.node, c.test, c.candidate, c.tile, c.shape, c.triangle, c.query, c.occludee};
-  options.zones = {o.zones.begin, o.zones.end, o.zones.user};
+  options.zones = zones_of(o.zones);
   const sightline_level_options& l = o.levels;
   options.levels = {l.view, l.key, l.hysteresis, l.fade, l.scale, l.cut != 0};
   return c_api::take(o.jobs, options.jobs);

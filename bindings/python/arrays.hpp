@@ -70,6 +70,14 @@ Mat4 matrix_of(const py::object& given, const char* name);
 std::vector<Mat4> matrices_of(const py::object& given, const char* name);
 /// "both", "front", or a truth a triangle: whether only its front occludes.
 std::vector<Sides> sides_of(const py::object& given);
+template <class T>
+py::array_t<T> array_of(std::span<const T> from) {
+  return py::array_t<T>(static_cast<py::ssize_t>(from.size()), from.data());
+}
+template <class T>
+py::array_t<T> array_of(const std::vector<T>& from) {
+  return array_of(std::span<const T>(from));
+}
 py::array_t<float> array_of(const Mat4& matrix);
 py::array_t<float> array_of(const Box& box);
 

@@ -118,11 +118,6 @@ struct SeenInstances {
   std::vector<std::uint8_t> masks, levels, fades;
 };
 
-template <class T>
-py::array_t<T> array_of(const std::vector<T>& from) {
-  return py::array_t<T>(static_cast<py::ssize_t>(from.size()), from.data());
-}
-
 py::tuple cull_instances(LockedInstanceCuller& culler, const PlacedWorlds& placed, const py::object& views,
                          bool masks, bool values, const std::optional<LevelOptions>& levels,
                          std::size_t most_objects) {

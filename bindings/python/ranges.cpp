@@ -56,10 +56,7 @@ py::object slots_of(const Order& order, const SharedWorld& world, const py::obje
 }
 
 py::object objects_of(const Order& order) {
-  return looking(order, [](const ObjectOrder& o) {
-    const std::span<const ObjectId> objects = o.objects();
-    return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(objects.size()), objects.data());
-  });
+  return looking(order, [](const ObjectOrder& o) { return array_of(o.objects()); });
 }
 
 py::object cull_ranges(LockedRangeCuller& culler, const SharedWorld& world, const Order& order,
@@ -79,8 +76,7 @@ py::object cull_ranges(LockedRangeCuller& culler, const SharedWorld& world, cons
     });
   }));
   if (!masks) return rows_of(ranges);
-  return py::make_tuple(
-      rows_of(ranges), py::array_t<std::uint8_t>(static_cast<py::ssize_t>(of_views.size()), of_views.data()));
+  return py::make_tuple(rows_of(ranges), array_of(of_views));
 }
 
 }  // namespace

@@ -58,7 +58,12 @@ inline bool is_valid(const WorldBox& b) noexcept {
 
 /// The box about an origin, rounded outwards.
 Box relative_box(const WorldBox& box, const WorldPoint& origin) noexcept;
-/// The same, rounded inwards.
+/// The other way: where a box about an origin stands, to the nearest.
+inline WorldBox world_box(const Box& b, const WorldPoint& o) noexcept {
+  return {{o.x + double{b.min.x}, o.y + double{b.min.y}, o.z + double{b.min.z}},
+          {o.x + double{b.max.x}, o.y + double{b.max.y}, o.z + double{b.max.z}}};
+}
+/// As relative_box(), rounded inwards.
 Box inner_box(const WorldBox& box, const WorldPoint& origin) noexcept;
 
 }  // namespace geometry

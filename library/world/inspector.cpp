@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "library/geometry/box_reader.hpp"
 #include "library/geometry/linear.hpp"
 #include "library/world/begin_cull-inl.hpp"
 #include "library/world/culler_state.hpp"
@@ -26,10 +27,6 @@ struct InspectorState {
   std::vector<DebugBox> boxes;
 };
 
-WorldBox moved_by(const Box& b, const WorldPoint& o) {
-  return {{o.x + b.min.x, o.y + b.min.y, o.z + b.min.z}, {o.x + b.max.x, o.y + b.max.y, o.z + b.max.z}};
-}
-
 // What automatic occlusion drew for the view at this place, if it has drawn any.
 const OccluderPicks* picks_of(const Culler& culler, std::size_t place) {
   const Hiding* hiding = CullerAccess::state(culler).hiding.get();
@@ -45,7 +42,7 @@ void look_at_sectors(InspectorState& state, std::span<const CullView> views) {
   for (std::size_t v = 0; v < views.size(); ++v) tests[v] = SectorTest(views[v].view);
   for (const Sector& sector : state.inner.world->sectors) {
     if (!sector.map) continue;
-    DebugBox box{moved_by(sector.bounds, sector.origin), DebugBoxKind::sector, 0, 0,
+    DebugBox box{geometry::world_box(sector.bounds, sector.origin), DebugBoxKind::sector, 0, 0,
                  static_cast<std::uint32_t>(sector.map->size())};
     for (std::size_t v = 0; v < views.size(); ++v) {
       const bool seen = !tests[v].misses(sector.origin, sector.bounds);
@@ -68,7 +65,7 @@ void look_at_chunks(InspectorState& state, const GroupEntry& entry, const Differ
   for (std::uint32_t i = 0; i < group.count; ++i) {
     const ChunkMap::ChunkView chunk = map.chunk(group, i);
     const auto holes = std::count(chunk.objects, chunk.objects + chunk.count, kNoObject);
-    DebugBox box{moved_by(map.chunk_bounds(group.chunks[i]), inner.origins[entry.sector]),
+    DebugBox box{geometry::world_box(map.chunk_bounds(group.chunks[i]), inner.origins[entry.sector]),
                  DebugBoxKind::chunk, 0, 0, chunk.count - static_cast<std::uint32_t>(holes)};
     for (std::size_t d = 0; d < different.count; ++d) {
       if (sights[d].seen >> i & 1) box.seen |= different.bits[d];

@@ -85,7 +85,8 @@ constexpr std::uint64_t sector_bytes(const SectorEntry& e, const SnapshotRows& r
 }
 
 /// Differs where one word of two equally long texts does; of other texts surely enough. `seed` is that of
-/// what came before.
+/// what came before. Eight words at a time; FNV-1a, which files of baked visibility have, waits for a
+/// multiplication at each byte, and sectors are checked while somebody flies towards them.
 std::uint64_t checksum(Bytes bytes, std::uint64_t seed = 0) noexcept;
 
 /// Reads words one after another, of bytes that the caller knows to be long enough.

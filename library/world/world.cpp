@@ -101,12 +101,7 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
 
 WorldBox stored_box(const WorldState& state, ObjectId id) noexcept {
   const Sector& sector = state.sectors[state.objects[id].sector];
-  const Box b = sector.map->box(id);
-  const WorldPoint& o = sector.origin;
-  return {{o.x + static_cast<double>(b.min.x), o.y + static_cast<double>(b.min.y),
-           o.z + static_cast<double>(b.min.z)},
-          {o.x + static_cast<double>(b.max.x), o.y + static_cast<double>(b.max.y),
-           o.z + static_cast<double>(b.max.z)}};
+  return geometry::world_box(sector.map->box(id), sector.origin);
 }
 
 }  // namespace world

@@ -6,6 +6,7 @@
 
 #include <sightline/snapshot.hpp>
 
+#include "library/geometry/box_reader.hpp"
 #include "library/geometry/linear.hpp"
 #include "library/world/sector_test.hpp"
 #include "library/world/snapshot_world.hpp"
@@ -15,11 +16,6 @@ namespace sightline {
 namespace world {
 
 namespace {
-
-WorldBox placed_box(const Box& b, const WorldPoint& o) noexcept {
-  return {{o.x + double{b.min.x}, o.y + double{b.min.y}, o.z + double{b.min.z}},
-          {o.x + double{b.max.x}, o.y + double{b.max.y}, o.z + double{b.max.z}}};
-}
 
 double distance_to(const WorldPoint& p, const WorldBox& b) noexcept {
   const auto beyond = [](double at, double low, double high) { return std::max({low - at, at - high, 0.0}); };
@@ -80,7 +76,7 @@ void StreamState::rank(std::span<const CullView> views) {
   for (std::uint32_t i = 0; i < sectors.size(); ++i) {
     const WorldPoint& origin = sectors[i].origin;
     const Box& bounds = snapshot.directory().sectors[i].bounds;
-    const WorldBox box = placed_box(bounds, origin);
+    const WorldBox box = geometry::world_box(bounds, origin);
     SectorRank rank{false, std::numeric_limits<double>::infinity(), i};
     for (std::size_t v = 0; v < views.size(); ++v) {
       rank.touched = rank.touched || !tests[v].misses(origin, bounds);
@@ -216,7 +212,7 @@ StreamSector WorldStream::sector(std::size_t index) const noexcept {
   const world::SnapshotDirectory& directory = state_->snapshot.directory();
   const world::SectorEntry& entry = directory.sectors[index];
   const bool changed = sector.state == SectorState::in && !state_->snapshot.unchanged(index);
-  return {world::placed_box(entry.bounds, sector.origin),
+  return {geometry::world_box(entry.bounds, sector.origin),
           entry.objects,
           sector.memory,
           directory.first_bytes[index],

@@ -70,6 +70,15 @@ void run_here(void*, std::uint32_t count, void (*job)(void*, std::uint32_t), voi
   for (std::uint32_t i = 0; i < count; ++i) job(data, i);
 }
 
+std::vector<Box> metre_boxes(scene::Random& random) {
+  std::vector<Box> boxes(20000);
+  for (Box& b : boxes) {
+    const Vec3 at = random.inside({{-500, 0, -500}, {500, 30, 500}});
+    b = {at, {at.x + 1, at.y + 1, at.z + 1}};
+  }
+  return boxes;
+}
+
 TEST(Allocation, CullAllocatesNothingOnceWarm) {
   scene::Random random(1);
   World world;
@@ -223,11 +232,7 @@ TEST(Allocation, OcclusionInOneCallAllocatesNothingOnceWarm) {
 TEST(Allocation, RangesAndReportsAllocateNothingOnceWarm) {
   scene::Random random(5);
   World world;
-  std::vector<Box> boxes(20000);
-  for (Box& b : boxes) {
-    const Vec3 at = random.inside({{-500, 0, -500}, {500, 30, 500}});
-    b = {at, {at.x + 1, at.y + 1, at.z + 1}};
-  }
+  std::vector<Box> boxes = metre_boxes(random);
   std::vector<Handle> handles(boxes.size());
   ASSERT_TRUE(world.insert(BoxView(boxes), handles));
   ObjectOrder order;
@@ -257,11 +262,7 @@ TEST(Allocation, RangesAndReportsAllocateNothingOnceWarm) {
 TEST(Allocation, MovingTheSameObjectsAllocatesNothingOnceWarm) {
   scene::Random random(2);
   World world;
-  std::vector<Box> boxes(20000);
-  for (Box& b : boxes) {
-    const Vec3 at = random.inside({{-500, 0, -500}, {500, 30, 500}});
-    b = {at, {at.x + 1, at.y + 1, at.z + 1}};
-  }
+  std::vector<Box> boxes = metre_boxes(random);
   std::vector<Handle> handles(boxes.size());
   ASSERT_TRUE(world.insert(BoxView(boxes), handles));
   const CullView view{.view = {*make_view({}, 64, 64), {}}};

@@ -27,7 +27,7 @@ export interface Thing {
   readonly told: Told | undefined;
   readonly sending: Sending | undefined;
   /** Of an InstancedMesh: what was set of its matrices, and in how many frames on end much of it moved. */
-  readonly ranges: Ranges;
+  readonly ranges: Ranges | undefined;
   restless: number;
 }
 
@@ -68,13 +68,14 @@ export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count:
   return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
-    sending: kind === 'batched' ? new Sending(count) : undefined, ranges: new Ranges(), restless: 0 };
+    sending: kind === 'batched' ? new Sending(count) : undefined,
+    ranges: kind === 'instanced' ? new Ranges() : undefined, restless: 0 };
 }
 
 /** To be called of each InstancedMesh in every frame, before three draws. */
 export function takeNote({ mesh, ranges }: Thing): void {
   const { instanceMatrix, instanceColor } = mesh as InstancedMesh;
-  ranges.note(instanceMatrix), remind(instanceColor);
+  ranges!.note(instanceMatrix), remind(instanceColor);
 }
 
 export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
@@ -127,7 +128,7 @@ const isMuch = (moved: number, count: number): boolean => moved > 1000 && 4 * mo
 export const isRestless = ({ restless }: Thing): boolean => restless >= mostRestless;
 
 function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxes, moved }: Known): void {
-  const { ranges, matrices, first, count } = thing, now = mesh.instanceMatrix.array as Float32Array;
+  const { matrices, first, count } = thing, ranges = thing.ranges!, now = mesh.instanceMatrix.array as Float32Array;
   if (!all && ranges.isEmpty) return;
   const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements, before = moved.length;
   const write = (i: number) => {

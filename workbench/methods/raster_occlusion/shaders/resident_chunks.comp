@@ -16,10 +16,7 @@ void main() {
   const ChunkIn chunk = chunks_in.at[invocation()];
   const vec3 centre = chunk.bounds.centre_radius.xyz;
   const vec3 half_extent = widened(centre, chunk.bounds.half_extent.xyz);
-  if (!reaches_near_plane(centre, half_extent)) {
-    const Footprint print = footprint(centre, half_extent);
-    if (!tiles_leave_open(print) || !pixels_leave_open(print)) return;
-  }
+  if (!reaches_near_plane(centre, half_extent) && !leaves_open(footprint(centre, half_extent))) return;
   const uint first = atomicAdd(test.parts, chunk.parts), end = first + chunk.parts;
   for (uint part = 0; part < chunk.parts; ++part) {
     parts.at[first + part] = (chunk.chunk & kWhollyIn) | (kParts * (chunk.chunk & ~kWhollyIn) + part);

@@ -76,7 +76,7 @@ void main() {
   bool seen = SIGHTLINE_MUTANT(resident_chunk_by_frustum) ? true : rests || reaches_near_plane(centre, half_extent);
   if (!seen) {
     const Footprint print = footprint(centre, half_extent);
-    if (tiles_leave_open(print) && pixels_leave_open(print)) {
+    if (leaves_open(print)) {
       const bool large = !print.whole && all(greaterThan(print.high - print.low, vec2(kLarge)));
       const bool inside = !print.whole && all(greaterThan(print.low, vec2(0))) && all(lessThan(print.high, vec2(image_size())));
       seen = large && shows_somewhere(centre, half_extent);

@@ -22,11 +22,8 @@ PixelRange pixels_of(Footprint print) {
 // Of a box that touches more, looking costs more than what it spares.
 const uint kMostTiles = 1024, kMostPixels = 256;
 
-// Whether some tile of the footprint leaves it open, or nobody knows, as where tiles are not made.
-bool tiles_leave_open(Footprint print) {
-  if (print.whole) return true;
-  const PixelRange pixels = pixels_of(print);
-  if (is_empty(pixels)) return false;
+// Whether some tile leaves a box open that is so near, or nobody knows, as where tiles are not made.
+bool tiles_leave_open(PixelRange pixels, float nearest) {
   const uvec2 first = uvec2(pixels.first) / kDepthTile, last = uvec2(pixels.last) / kDepthTile;
   const uvec2 span = last - first + 1;
   const uint columns = tiles_in_image().x;
@@ -34,21 +31,19 @@ bool tiles_leave_open(Footprint print) {
                     all(lessThan(last, kBlock * (blocks.xy + blocks.zw)));
   bool open = span.x * span.y > kMostTiles || !made;
   for (uvec2 tile = first; tile.y <= last.y && !open;) {
-    open = !hides(tiles.at[tile.y * columns + tile.x], print.nearest);
+    open = !hides(tiles.at[tile.y * columns + tile.x], nearest);
     const bool ends = tile.x == last.x;
     tile = uvec2(ends ? first.x : tile.x + 1, ends ? tile.y + 1 : tile.y);
   }
   return open;
 }
 
-// Whether some pixel of a small footprint leaves the box open: far away a tile, too, holds many objects and
-// the gaps between them.
-bool pixels_leave_open(Footprint print) {
-  const PixelRange pixels = pixels_of(print);
-  if (!print.whole && is_empty(pixels)) return false;
+// Whether some of a few pixels leaves it open: far away a tile, too, holds many objects and the gaps between
+// them.
+bool pixels_leave_open(PixelRange pixels, float nearest) {
   const ivec2 span = pixels.last - pixels.first + 1;
   const vec2 scale = 1 / vec2(image_size());
-  bool open = print.whole || span.x * span.y > kMostPixels;
+  bool open = span.x * span.y > kMostPixels;
   // Two rows and columns at a time, of an odd number the last ones once more.
   const ivec2 end = max(pixels.last - 1, pixels.first);
   ivec2 at = pixels.first;
@@ -56,10 +51,18 @@ bool pixels_leave_open(Footprint print) {
     vec4 depths = textureGather(frame_depth, vec2(at + 1) * scale);
     if (span.x == 1) depths.yz = depths.xw;
     if (span.y == 1) depths.xy = depths.wz;
-    open = !hides(farthest(depths), print.nearest);
+    open = !hides(farthest(depths), nearest);
     more = !open && at != end;
     const bool ends = at.x == end.x;
     at = ivec2(ends ? pixels.first.x : min(at.x + 2, end.x), ends ? min(at.y + 2, end.y) : at.y);
   }
   return open;
+}
+
+// Whether the depth so far leaves the box open.
+bool leaves_open(Footprint print) {
+  if (print.whole) return true;
+  const PixelRange pixels = pixels_of(print);
+  return !is_empty(pixels) && tiles_leave_open(pixels, print.nearest) &&
+         pixels_leave_open(pixels, print.nearest);
 }
