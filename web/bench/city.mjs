@@ -14,7 +14,7 @@ await withPage(new URL('city.page.mjs', import.meta.url).pathname, async (tab) =
   await tab.waitForFunction(() => window.time);
   for (const aerial of [false, true]) {
     for (const kind of kinds) {
-      const isShort = aerial || kind === 'restless'; // three's frames take seconds there
+      const isShort = kind === 'restless'; // three's frames take seconds there
       if (aerial && all.indexOf(kind) > 2) continue;
       const result = await tab.evaluate((given) => window.time(...given), [kind, count, aerial,
         isShort ? Math.min(frames, 9) : frames, ...(aerial ? [4, 40] : [isShort ? 8 : 30, 0])]);

@@ -3,11 +3,13 @@ import type { InstancedMesh, Mesh, Object3D, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
 import { Resting } from './resting.js';
-import { classify, disposeOf, isOther, isRestless, makeThing, takeNote, update, type Known, type Thing } from './things.js';
+import { classify, disposeOf, isOther, isRestless, makeThing, sumOf, takeNote, update, type Known, type Thing } from './things.js';
 
 interface Node { object: Object3D; parent: number; shown: boolean }
 /** Something that is left to three, with all below it. */
 export interface Left { object: Object3D; parent: number }
+
+const atOnce = 32; // things that are looked at together
 
 /** Nodes that only hold others. */
 const isThrough = (object: Object3D): boolean =>
@@ -33,6 +35,8 @@ export class Inventory {
   readonly things = new Set<Thing>();
   readonly left: Left[] = [];
   readonly nodes: Node[] = [];
+  /** Nobody's; kept so that compilers do not leave out what it sums. */
+  sum = 0;
 
   readonly #scene: Scene;
   readonly #thingOfMesh = new Map<Object3D, Thing>();
@@ -90,11 +94,9 @@ export class Inventory {
   }
 
   #scan(): void {
-    const known = this.#known();
-    for (const thing of this.things) {
-      if (isOther(thing)) this.#changed = true;
-      else update(thing, known);
-    }
+    const some: Thing[] = [];
+    for (const thing of this.things) if (some.push(thing) === atOnce) this.#look(some);
+    this.#look(some);
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
     for (const thing of this.#instanced) if (isRestless(thing)) this.#leave(thing);
@@ -102,6 +104,15 @@ export class Inventory {
       this.left.splice(this.left.indexOf(left), 1);
       this.#add(left.object, this.nodes[left.parent]!.object);
     }
+  }
+  #look(some: Thing[]): void {
+    const known = this.#known();
+    this.sum = sumOf(some);
+    for (const thing of some) {
+      if (isOther(thing)) this.#changed = true;
+      else update(thing, known);
+    }
+    some.length = 0;
   }
   #known(): Known {
     return { boxes: this.boxes.array, matrices: this.#matrices, moved: this.#moved };
