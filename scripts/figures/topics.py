@@ -315,7 +315,7 @@ def web(quick):
     """The npm package in Node and in a browser, beside three.js, its libraries, and the same calls natively; browsers hold their
     rows together by themselves."""
     rows = []
-    for program, *arguments in (("bench.mjs",), ("city.mjs", "100000", "5" if quick else "21")):
+    for program, *arguments in (("bench.mjs",), ("city.mjs", "100000", "5" if quick else "41")):
         with tempfile.NamedTemporaryFile(suffix=".csv") as file:
             run("node", ROOT / "web" / "bench" / program, *arguments, "--csv", file.name)
             rows += read_topic(file.name)

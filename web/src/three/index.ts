@@ -141,13 +141,14 @@ export class SightlineCuller {
   }
 
   #begin(renderer: Renderer, camera: Camera): void {
+    this.#inside?.inventory.takeNote();
+    if (this.#frames.length === 0 && this.#standsStill(renderer, camera)) return;
     const outer = this.#frames.at(-1);
     if (outer) this.#scene.children = outer.children; // of a render within a render
     const frame: Frame = { children: this.#scene.children, restore: [], list: this.#scene.children, count: 0 };
     this.#frames.push(frame);
     // compileAsync() begins and never ends.
     if (!outer) queueMicrotask(() => this.#frames.includes(frame) && this.#end());
-    this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     try {
       this.#cull(renderer, camera, frame, outer !== undefined);
@@ -156,6 +157,14 @@ export class SightlineCuller {
     }
     this.#scene.children = frame.list;
     frame.count = frame.list.length;
+  }
+
+  // Whether all of the scene is drawn as in the frame before, and nothing is to be put back after it.
+  #standsStill(renderer: Renderer, camera: Camera): boolean {
+    if (!this.enabled || !this.#inside || (camera as ArrayCamera).isArrayCamera || shadowsOf(renderer)) return false;
+    if (!renderer.sortObjects || !this.#whole.standsStill(camera, this.occlusion)) return false;
+    this.#count(this.#inside.inventory.size);
+    return true;
   }
 
   #end(): void {
@@ -178,8 +187,6 @@ export class SightlineCuller {
     const { inventory } = this.#inside!;
     const cameras = (camera as ArrayCamera).isArrayCamera ? (camera as ArrayCamera).cameras : [camera];
     if (cameras.length === 0 || cameras.length > mostViews) return;
-    const isAlone = cameras.length === 1 && !shadowsOf(renderer);
-    if (isAlone && this.#whole.standsStill(cameras[0]!, this.occlusion)) return this.#count(inventory.size);
     const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
     if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.size);
     inventory.update();
@@ -198,7 +205,8 @@ export class SightlineCuller {
   }
   #count(drawn: number): void {
     this.#drawn = undefined;
-    Object.assign(this.stats, { objects: drawn, drawn, hidden: 0, occluders: 0 });
+    const { stats } = this;
+    stats.objects = stats.drawn = drawn, (stats.hidden = stats.occluders = 0);
   }
 
   // Slots that some of the eyes may see, ascending.

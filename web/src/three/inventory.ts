@@ -30,6 +30,8 @@ export class Inventory {
   /** Minimum and maximum, by slot. */
   boxes: Block<Float64Array> = doubles(6);
   slots = 0;
+  /** Meshes and instances that can be culled: those in the world. */
+  size = 0;
   /** Whose slot it is. */
   readonly thingOf: (Thing | undefined)[] = [];
   readonly things = new Set<Thing>();
@@ -52,11 +54,6 @@ export class Inventory {
 
   constructor(scene: Scene) {
     this.#scene = scene;
-  }
-
-  /** Meshes and instances that can be culled. */
-  get size(): number {
-    return this.world.size;
   }
 
   /** To be called in every frame, before three draws, whether it is culled or not. */
@@ -136,7 +133,7 @@ export class Inventory {
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
     for (const all of [this.things, this.#instanced, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
-    this.slots = 0;
+    this.slots = this.size = 0;
     this.world.dispose(), (this.world = new World());
     this.nodes.push({ object: this.#scene, parent: -1, shown: true });
     this.#listen(this.#scene, true);
@@ -181,6 +178,7 @@ export class Inventory {
     if (slots.length === 0) return;
     const entered = new Float64Array(6 * slots.length), values = Uint32Array.from(slots);
     slots.forEach((slot, i) => entered.set(boxes.subarray(6 * slot, 6 * slot + 6), 6 * i));
+    this.size += slots.length;
     this.world.insert(entered, { values }).forEach((handle, i) => (this.#handles[slots[i]!] = handle));
   }
 
@@ -222,6 +220,7 @@ export class Inventory {
   }
   #forget(thing: Thing): void {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
+    this.size -= thing.count;
     disposeOf(thing);
     this.things.delete(thing), this.#instanced.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;

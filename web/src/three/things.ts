@@ -120,8 +120,8 @@ function reshapes(thing: Thing, geometry: BufferGeometry): boolean {
   return true;
 }
 
-// Whether an affine matrix is another than the twelve numbers that are known of it; takes them over.
-function moves(known: Float64Array, at: number, m: readonly number[]): boolean {
+/** Whether an affine matrix is another than the twelve numbers that are known of it; takes them over. */
+export function moves(known: Float64Array, at: number, m: readonly number[]): boolean {
   if (known[at] === m[0] && known[at + 1] === m[1] && known[at + 2] === m[2] && known[at + 3] === m[4] &&
     known[at + 4] === m[5] && known[at + 5] === m[6] && known[at + 6] === m[8] && known[at + 7] === m[9] &&
     known[at + 8] === m[10] && known[at + 9] === m[12] && known[at + 10] === m[13] && known[at + 11] === m[14]) return false;

@@ -3,6 +3,7 @@
 import type { Camera } from 'three';
 import type { Inventory } from './inventory.js';
 import type { Eye } from './occluders.js';
+import { moves } from './things.js';
 
 const fewestFrames = 16, mostFrames = 256;
 /** What culling must drop to be worth a frame's work: a thirty-second. */
@@ -12,8 +13,8 @@ export class Whole {
   #box: Float64Array | undefined;
   #eye: ArrayLike<number> = [];
   #occlusion = false;
-  // The camera that it stood for last.
-  readonly #camera = new Float64Array(32);
+  // The camera that it stood for last: what moves() compares of its view and of its projection, and the latter's last row.
+  readonly #camera = new Float64Array(28);
   // Until somebody looks again, and how many the last time.
   #frames = 0;
   #last = 0;
@@ -21,12 +22,10 @@ export class Whole {
   /** Whether it is, as the last frame was, for a camera that has not moved since; where no light throws shadows. */
   standsStill(camera: Camera, occlusion: boolean): boolean {
     if (!this.#box || this.#frames === 0 || occlusion !== this.#occlusion) return false;
-    const view = camera.matrixWorldInverse.elements, projection = camera.projectionMatrix.elements, known = this.#camera;
-    let same = true;
-    for (let k = 0; k < 16; ++k) {
-      if (known[k] === view[k] && known[16 + k] === projection[k]) continue;
-      same = false, (known[k] = view[k]!), (known[16 + k] = projection[k]!);
-    }
+    const { elements: p } = camera.projectionMatrix, known = this.#camera;
+    const isMoved = moves(known, 0, camera.matrixWorldInverse.elements), isOther = moves(known, 12, p);
+    const same = !isMoved && !isOther && known[24] === p[3] && known[25] === p[7] && known[26] === p[11] && known[27] === p[15];
+    known[24] = p[3], (known[25] = p[7]), (known[26] = p[11]), (known[27] = p[15]);
     if (same) --this.#frames;
     return same;
   }
