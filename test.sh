@@ -54,6 +54,9 @@ scripts/check-surfaces.sh build/release
 stage "occlusion among 120,000 objects"
 scripts/check-occlusion.sh build/release
 
+stage "shadow casters"
+scripts/check-casters.sh build/release
+
 stage "occlusion in one call"
 scripts/check-automatic.sh build/release
 

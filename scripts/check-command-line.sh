@@ -47,7 +47,7 @@ world=world:forest?trees=300\&size=100
 expect 0 "reproduce" "$sightline" --help
 expect 0 "object-frustum" "$sightline" methods --json methods.json
 expect 0 "--path" "$sightline" compare --help
-for command in methods verify reproduce generate info occluders; do expect 0 "Usage" "$sightline" $command --help; done
+for command in methods verify reproduce generate info occluders casters; do expect 0 "Usage" "$sightline" $command --help; done
 expect 0 "0." "$sightline" --version
 expect 0 " cut out" "$sightline" info world:foliage
 expect 0 "3 alpha images; 0 objects without one" "$sightline" info world:foliage
@@ -78,6 +78,10 @@ refused "moon" "$sightline" info world:moon
 refused "'trees'" "$sightline" info world:forest?trees=-1
 refused "no such method" "$sightline" compare "$world" --methods nonesuch
 refused "lacks a level's PVS" "$sightline" verify "$world" --methods level-pvs
+refused "expected numbers of metres" "$sightline" casters "$world" --distance nan
+refused "--light" "$sightline" casters "$world" --light moon
+refused "cpu" "$sightline" casters "$world" --device cpu
+refused "nowhere" "$sightline" casters "$world" --picture nowhere/x.png
 refused "--triangles" "$sightline" occluders "$world" --triangles 5000
 refused "nowhere" "$sightline" occluders "$world" -o nowhere/x.glb
 refused "nothing occludes" "$sightline" occluders 'world:forest?trees=3' --triangles 0 --boxes 0 -o nothing.glb

@@ -29,6 +29,7 @@ line sanitizers sanitizers
 line surfaces scripts/check-surfaces.sh build/release --full
 line occluders scripts/check-occluders.sh build/release
 line occlusion scripts/check-occlusion.sh build/release --full
+line casters scripts/check-casters.sh build/release --full
 line automatic scripts/check-automatic.sh build/release --full
 line coverage scripts/check-coverage.sh build/release --full
 line answers scripts/check-answers.sh build/asan

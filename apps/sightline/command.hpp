@@ -26,6 +26,7 @@ void add_reproduce(CLI::App& app, int& exit);
 void add_bake(CLI::App& app, int& exit);
 void add_query(CLI::App& app, int& exit);
 void add_occluders(CLI::App& app, int& exit);
+void add_casters(CLI::App& app, int& exit);
 
 inline constexpr const char* kSceneHelp =
     "a file (.glb, .gltf, .bsp, archive.pk3:maps/name.bsp) or a generated world "

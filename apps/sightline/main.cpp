@@ -139,6 +139,7 @@ int run(int argc, char** argv) {
   add_bake(app, exit);
   add_query(app, exit);
   add_occluders(app, exit);
+  add_casters(app, exit);
   add_generate(app, exit);
   add_info(app, exit);
   try {

@@ -207,6 +207,26 @@ def surfaces(quick):
     return rows
 
 
+def shadows(quick):
+    """Shadow casters that are drawn, beside all in the lights' frustums, and the pixels of lit pictures that change for it."""
+    views = 60 if quick else 300
+    rows = []
+    for key, scene in (("city", "world:city"), ("foliage", "world:foliage"), ("oasago2", LEVEL.format("oasago2")),
+                       ("ctf_inyard", LEVEL.format("ctf_inyard"))):
+        for light in ("directional", "spot"):
+            said = sightline("casters", scene, "--light", light, f"--views={views}", "--seed=7")
+            count = {words: number(found) for words, found in re.findall(r"^(\S.*?)  +(\d+)", said, re.MULTILINE)}
+            looked = int(re.search(r": (\d+) random views", said)[1])
+            all_casters = count["casters in the lights' frustums"] / looked
+            rows.append(Row(key, f"{light}/views", "views", looked))
+            rows.append(Row(key, f"{light}/in-light", "objects", all_casters, repetitions=looked))
+            for case, words in (("towards", "towards what the cameras see"), ("kept", "with a shadow on what is visible")):
+                rows.append(Row(key, f"{light}/{case}", "objects", count[words] / looked, repetitions=looked,
+                                beside=f"{key}/{light}/in-light", ratio=count[words] / looked / all_casters,
+                                lost_pixels=count["pixels that dropped casters change"] if case == "kept" else None))
+    return rows
+
+
 def draw_calls(quick):
     """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, calls of both at every
     height by ours and by the paper's rules, and what adaptive's frames cost beside the quickest method's. Many minutes
@@ -323,5 +343,5 @@ def web(quick):
 
 
 TOPICS = {"world": world, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
-          "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "automatic": automatic,
+          "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "shadows": shadows, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}
