@@ -40,10 +40,13 @@ test('of a batch that is culled what is drawn and has changed is sent alone', as
   });
 });
 
-test('a mirror shows all of a batch that it would show without the culler', async () => {
+test('a mirror shows all that it would show without the culler', async () => {
   await withPage(page, async (tab) => {
     await tab.waitForFunction(() => window.mirror);
-    assert.deepEqual(await tab.evaluate(() => window.mirror(24)), { differs: [], own: false });
+    for (const kind of ['batched', 'instanced', 'meshes']) {
+      for (const still of [false, true])
+        assert.deepEqual(await tab.evaluate((given) => window.mirror(...given), [8, kind, still]), { differs: [], own: false }, `${kind} ${still}`);
+    }
   });
 });
 

@@ -1,6 +1,6 @@
 // Occluders out of meshes: closed convex ones, which can be drawn a pixel smaller than they are, so that what they hide is
 // hidden at every sample of a pixel and at any resolution.
-import type { BufferGeometry } from 'three';
+import type { BufferAttribute, BufferGeometry } from 'three';
 import type { Batch } from './batches.js';
 import { pointsOf, type Points } from './bounds.js';
 import { OccluderMesh } from '../occlusion.js';
@@ -13,16 +13,16 @@ export interface Convex {
 }
 
 const mostTriangles = 200;
-interface Parts { points: Points; versions: number; made: Map<number, Convex | null> }
+interface Parts { points: Points; index: BufferAttribute | null; versions: number; made: Map<number, Convex | null> }
 const known = new WeakMap<BufferGeometry, Parts>();
 
 // Of a geometry's vertices or indices from `start` on, made once for as long as they stay.
 function part(geometry: BufferGeometry, start: number, corners: number): Convex | null {
-  const points = pointsOf(geometry), versions = points.version + (geometry.index?.version ?? 0);
+  const points = pointsOf(geometry), { index } = geometry, versions = points.version + (index?.version ?? 0);
   let parts = known.get(geometry);
-  if (!parts || parts.points !== points || parts.versions !== versions) {
+  if (!parts || parts.points !== points || parts.index !== index || parts.versions !== versions) {
     forgetConvex(geometry);
-    known.set(geometry, (parts = { points, versions, made: new Map() }));
+    known.set(geometry, (parts = { points, index, versions, made: new Map() }));
   }
   let made = parts.made.get(start);
   if (made === undefined) parts.made.set(start, (made = make(geometry, start, corners)));

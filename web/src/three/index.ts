@@ -14,7 +14,7 @@ import { buffer as memory, ready, supported } from '../runtime.js';
 import { Culler, type CullView } from '../world.js';
 import { eyeOf, isRigid } from './eye.js';
 import { Inventory } from './inventory.js';
-import { fill, narrow, type Range } from './instances.js';
+import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
@@ -52,7 +52,7 @@ type AfterRender = (renderer: Renderer, scene: Scene, camera: Camera, target?: u
 /** What three walks, and which of instances it draws. */
 interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
 interface Shadow { light: Light & { shadow: LightShadow }; viewport: number; pass: Pass }
-interface Frame { children: Object3D[]; restore: (() => void)[]; list: Object3D[]; count: number }
+interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[]; count: number }
 
 const mostViews = 8;
 const restFrames = 16;
@@ -141,14 +141,13 @@ export class SightlineCuller {
   }
 
   #begin(renderer: Renderer, camera: Camera): void {
-    this.#inside?.inventory.takeNote();
-    if (this.#frames.length === 0 && this.#standsStill(renderer, camera)) return;
     const outer = this.#frames.at(-1);
-    if (outer) this.#scene.children = outer.children; // of a render within a render
-    const frame: Frame = { children: this.#scene.children, restore: [], list: this.#scene.children, count: 0 };
+    if (outer) this.#leave(outer); // of a render within a render
+    const { children } = this.#scene, frame: Frame = { children, restore: [], narrowed: [], list: children, count: 0 };
     this.#frames.push(frame);
     // compileAsync() begins and never ends.
     if (!outer) queueMicrotask(() => this.#frames.includes(frame) && this.#end());
+    this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     try {
       this.#cull(renderer, camera, frame, outer !== undefined);
@@ -159,18 +158,11 @@ export class SightlineCuller {
     frame.count = frame.list.length;
   }
 
-  // Whether all of the scene is drawn as in the frame before, and nothing is to be put back after it.
-  #standsStill(renderer: Renderer, camera: Camera): boolean {
-    if (!this.enabled || !this.#inside || (camera as ArrayCamera).isArrayCamera || shadowsOf(renderer)) return false;
-    if (!renderer.sortObjects || !this.#whole.standsStill(camera, this.occlusion)) return false;
-    this.#count(this.#inside.inventory.size);
-    return true;
-  }
-
   #end(): void {
     const frame = this.#frames.pop();
     if (!frame) return;
     for (const undo of frame.restore) undo();
+    for (const each of frame.narrowed) each.undo();
     const { children } = this.#scene;
     this.#scene.children = frame.children;
     // What was added or removed while drawing went to the list that stood in.
@@ -179,12 +171,21 @@ export class SightlineCuller {
     frame.children.splice(0, Infinity, ...frame.children.filter(({ parent }) => parent === this.#scene));
     this.#outer();
   }
+  // What the render around one takes away of its own, and has back after it.
+  #leave(outer: Frame): void {
+    this.#scene.children = outer.children;
+    for (const each of outer.narrowed) each.undo();
+  }
   #outer(): void {
     const outer = this.#frames.at(-1);
-    if (outer) this.#scene.children = outer.list;
+    if (!outer) return;
+    this.#scene.children = outer.list;
+    for (const each of outer.narrowed) each.apply();
   }
   #cull(renderer: Renderer, camera: Camera, frame: Frame, nested: boolean): void {
     const { inventory } = this.#inside!;
+    const isAlone = !(camera as ArrayCamera).isArrayCamera && !shadowsOf(renderer);
+    if (isAlone && this.#whole.standsStill(camera, this.occlusion)) return this.#count(inventory.size);
     const cameras = (camera as ArrayCamera).isArrayCamera ? (camera as ArrayCamera).cameras : [camera];
     if (cameras.length === 0 || cameras.length > mostViews) return;
     const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
@@ -310,8 +311,8 @@ export class SightlineCuller {
     const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn
     const list = instancesOf(thing, main, shadows, most);
     if (list.length === 0 || list.length > most) return;
-    const range = main.ranges.get(thing);
-    frame.restore.push(narrow(instanced, list, range ? range.to - range.from : 0));
+    const range = main.ranges.get(thing), narrowing = narrow(instanced, list, range ? range.to - range.from : 0);
+    frame.narrowed.push(narrowing), narrowing.apply();
   }
 
   // What somebody else has put there stays, and the batch is drawn whole.

@@ -47,8 +47,11 @@ function pick(from: Attribute, to: Attribute, list: Uint32Array): void {
 
 const isSame = (a: Uint32Array, b: Uint32Array): boolean => a.length === b.length && a.every((x, i) => x === b[i]);
 
-/** Draws only the listed instances, of which the camera sees the first `seen`, until what it returns is called. */
-export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): () => void {
+/** What a mesh draws while a culled scene is drawn: fewer instances, or, for a render within that one, all of them again. */
+export interface Narrowing { apply(): void; undo(): void }
+
+/** Draws only the listed instances, of which the camera sees the first `seen`, once it is applied. */
+export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): Narrowing {
   const { instanceMatrix, instanceColor, count } = mesh;
   const copy = copyOf(mesh, list.length);
   const from = [instanceMatrix, instanceMatrix.version, instanceColor, instanceColor?.version];
@@ -60,19 +63,22 @@ export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): ()
   const own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeShadow');
   const ownAfter = Object.getOwnPropertyDescriptor(mesh, 'onAfterShadow');
   const { onBeforeShadow, onAfterShadow } = mesh;
-  if (list.length > seen) {
-    mesh.onBeforeShadow = (...all) => ((mesh.count = list.length), onBeforeShadow.apply(mesh, all));
-    mesh.onAfterShadow = (...all) => ((mesh.count = seen), onAfterShadow.apply(mesh, all));
-  }
-  withhold(instanceMatrix);
-  if (instanceColor) withhold(instanceColor);
-  mesh.instanceMatrix = copy.matrix;
-  mesh.instanceColor = copy.color;
-  mesh.count = seen;
-  return () => {
+  const apply = () => {
+    if (list.length > seen) {
+      mesh.onBeforeShadow = (...all) => ((mesh.count = list.length), onBeforeShadow.apply(mesh, all));
+      mesh.onAfterShadow = (...all) => ((mesh.count = seen), onAfterShadow.apply(mesh, all));
+    }
+    withhold(instanceMatrix);
+    if (instanceColor) withhold(instanceColor);
+    mesh.instanceMatrix = copy.matrix;
+    mesh.instanceColor = copy.color;
+    mesh.count = seen;
+  };
+  const undo = () => {
     mesh.instanceMatrix = instanceMatrix, (mesh.instanceColor = instanceColor), (mesh.count = count);
     restore(mesh, 'onBeforeShadow', own), restore(mesh, 'onAfterShadow', ownAfter);
   };
+  return { apply, undo };
 }
 
 const matrix = new Matrix4(), eye = new Vector3(), forward = new Vector3();

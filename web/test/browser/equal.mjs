@@ -242,14 +242,15 @@ window.batch = async (views) => {
   return result;
 };
 
-/** What a mirror shows of a batch, which draws the scene from elsewhere while it is drawn: views that differ. */
-window.mirror = async (views) => {
+/** What a mirror shows, which draws the scene from elsewhere while it is drawn: views that differ. `still`: the scene itself is
+ * looked at from above all of it, and left to three. */
+window.mirror = async (views, kind, still) => {
   await ready;
   const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
   renderer.setSize(width, height);
   const scene = new THREE.Scene(), { all, side } = places(900), next = random(4), differs = [];
-  add(scene, 'batched', all, new THREE.MeshBasicMaterial());
+  add(scene, kind, all, new THREE.MeshBasicMaterial());
   const camera = new THREE.PerspectiveCamera(70, width / height, 0.1, 500), other = camera.clone();
   const mirror = new THREE.Mesh(new THREE.PlaneGeometry(0.1, 0.1), new THREE.MeshBasicMaterial());
   const target = new THREE.WebGLRenderTarget(width, height), seen = new Uint8Array(4 * width * height);
@@ -264,6 +265,7 @@ window.mirror = async (views) => {
   await new Promise((loaded) => setTimeout(loaded, 50));
   for (let v = 0; v < views; ++v) {
     look(camera, next, side), look(other, next, side), other.updateMatrixWorld();
+    if (still) camera.position.set(side / 2, 400, side / 2), camera.lookAt(side / 2, 0, side / 2 + 1);
     if (v % 4 === 3) other.position.set(side / 2, 400, side / 2), other.lookAt(side / 2, 0, side / 2 + 1); // all is in view
     const pictures = [false, true].map((on) => ((culler.enabled = on), [pixels(renderer, scene, camera), seen.slice()]));
     if ([0, 1].some((k) => differing(pictures[0][k], pictures[1][k]) > 0)) differs.push(v);
@@ -301,6 +303,10 @@ window.changes = async () => {
     'a deleted instance'() { batch.deleteInstance(5); },
     'another geometry'() { batch.setGeometryIdAt(7, 1); },
     'a deformed geometry'() { stretch(group.children[0].geometry, 5); },
+    'another index, without the faces before and behind'() {
+      const { geometry } = group.children[0];
+      geometry.setIndex([...geometry.index.array.slice(0, 24)]);
+    },
     'a replaced geometry of the batch'() { batch.setGeometryAt(0, new THREE.BoxGeometry(1.1, 5, 1.1)); },
     'a batch whose matrices somebody writes by themselves'() {
       raise(batch._matricesTexture.image.data, 16, 30), (batch._matricesTexture.needsUpdate = true);
