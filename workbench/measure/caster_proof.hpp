@@ -34,8 +34,8 @@ struct CasterEvidence {
 };
 
 /// Culls each camera by frustum and occluders, then its light's casters by what is left. A sun stands
-/// anywhere over the ground, a spot somewhere before the camera. Cameras that see no solid thing and such as
-/// are beyond what shadow views take are not counted. Throws Error for a light that is a point.
+/// anywhere over the ground, a spot near the eye and shines at something before it. Cameras beyond what
+/// shadow views take are not counted. Throws Error for a light that is a point.
 CasterEvidence prove_casters(device::Renderer& renderer, std::span<const Camera> cameras,
                              const CasterOptions& options, const Progress& progress = {});
 
