@@ -2,6 +2,9 @@
 // common, and where each object has its own; beside a world that has no columns.
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <cmath>
+#include <cstdlib>
 #include <functional>
 
 #include "world_case.hpp"
@@ -93,38 +96,86 @@ void random_columns(benchmark::State& state) {
   cull(state, world, 7);
 }
 
-// Each object with one of four tables, levels held and faded.
-void levels(benchmark::State& state) {
-  static Filtered world([](const Vec3&, Columns&) {});
-  static const bool given = [] {
+// Each object with a table of its own choice among so many, and, where asked, layers of its own, too.
+struct Levelled : Filtered {
+  Levelled(std::uint32_t tables, bool layered)
+      : Filtered([random = scene::Random(2), layered](const Vec3&, Columns& c) mutable {
+          if (layered) c.layers.push_back(1u << random.below(4));
+        }) {
     scene::Random random(4);
-    std::vector<LevelTableId> tables, of_object;
-    for (const float largest : {200.0f, 100.0f, 50.0f, 25.0f}) {
-      const std::array sizes{largest, largest / 3, largest / 9, largest / 27};
-      tables.push_back(*world.world.add_levels(sizes));
-    }
+    std::vector<LevelTableId> of_object;
     std::vector<Handle> handles;
-    for (std::uint32_t id = 0; id < world.world.id_limit(); ++id) {
-      handles.push_back(world.world.handle(id));
-      of_object.push_back(tables[random.below(4)]);
+    for (std::uint32_t t = 0; t < tables; ++t) {
+      const float largest = 200.0f * std::pow(0.5f, static_cast<float>(t % 4)) * random.between(0.9f, 1.1f);
+      const std::array sizes{largest, largest / 3, largest / 9, largest / 27};
+      if (!world.add_levels(sizes)) throw Error("a table of levels was refused");
     }
-    or_throw(world.world.set_levels(handles, std::span<const LevelTableId>(of_object)));
-    return true;
-  }();
-  benchmark::DoNotOptimize(given);
-  const CullView view{.view = {looking(0.3f, tenth_of_view()), {}}};
-  const CullOptions options{.levels = {.hysteresis = 0.1f, .fade = 0.2f}};
+    for (std::uint32_t id = 0; id < world.id_limit(); ++id) {
+      handles.push_back(world.handle(id));
+      of_object.push_back(1 + random.below(tables));
+    }
+    or_throw(world.set_levels(handles, std::span<const LevelTableId>(of_object)));
+  }
+};
+
+constexpr double kWalked = 1.5, kFlown = 30;  // metres a second
+
+// By a camera that goes on and back at 60 frames a second, so that levels change.
+void levels(benchmark::State& state, Levelled& world, const LevelOptions& chosen, std::uint32_t layers,
+            double speed = kWalked) {
   std::vector<ObjectId> visible(cull_capacity(world.world));
-  std::vector<std::uint8_t> levels(visible.size()), fades(visible.size());
+  std::vector<std::uint8_t> levels(visible.size()), fades(chosen.fade > 0 ? visible.size() : 0);
   Culler culler;
   CullResult result;
+  const CullOptions options{.levels = chosen};
+  std::vector<CullView> views;
+  for (int i = 0; i < 64; ++i) {
+    CullView view{.view = {looking(0.3f, tenth_of_view()), {}}, .layers = layers};
+    view.view.origin.x = std::abs(i - 32) * speed / 60;
+    views.push_back(view);
+  }
+  std::size_t frame = 0;
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        result = *culler.cull(world.world, {&view, 1}, options, {visible, {}, levels, fades}));
+    benchmark::DoNotOptimize(result = *culler.cull(world.world, {&views[frame++ % views.size()], 1}, options,
+                                                   {visible, {}, levels, fades}));
   state.counters["visible"] = static_cast<double>(result.count);
   // Judged by the passes without levels.
   std::vector<ObjectId> plain(visible.size());
-  if (culler.cull(world.world, view, plain)->count != result.count) state.SkipWithError("a wrong answer");
+  if (culler.cull(world.world, views[(frame - 1) % views.size()], plain)->count != result.count)
+    state.SkipWithError("a wrong answer");
+}
+
+constexpr LevelOptions kHeld{.hysteresis = 0.1f}, kFaded{.hysteresis = 0.1f, .fade = 0.2f};
+
+Levelled& shared_tables() {
+  static Levelled world(4, false);
+  return world;
+}
+void shared_levels(benchmark::State& state) {
+  levels(state, shared_tables(), {}, kAllLayers);
+}
+void held_levels(benchmark::State& state) {
+  levels(state, shared_tables(), kHeld, kAllLayers);
+}
+void faded_levels(benchmark::State& state) {
+  levels(state, shared_tables(), kFaded, kAllLayers);
+}
+void own_levels(benchmark::State& state) {
+  static Levelled world(65535, false);
+  levels(state, world, kHeld, kAllLayers);
+}
+void flown_levels(benchmark::State& state) {
+  levels(state, shared_tables(), kHeld, kAllLayers, kFlown);
+}
+Levelled& layered() {
+  static Levelled world(65535, true);
+  return world;
+}
+void layers_and_levels(benchmark::State& state) {
+  levels(state, layered(), kHeld, 7);
+}
+void layers_and_levels_flown(benchmark::State& state) {
+  levels(state, layered(), kHeld, 7, kFlown);
 }
 
 BENCHMARK(plain)->Name("columns/none")->Unit(benchmark::kMicrosecond);
@@ -132,7 +183,15 @@ BENCHMARK(all_layers)->Name("columns/whole_layers")->Unit(benchmark::kMicrosecon
 BENCHMARK(all_columns)->Name("columns/whole")->Unit(benchmark::kMicrosecond);
 BENCHMARK(districts)->Name("columns/districts")->Unit(benchmark::kMicrosecond);
 BENCHMARK(random_layers)->Name("columns/random_layers")->Unit(benchmark::kMicrosecond);
-BENCHMARK(levels)->Name("columns/levels")->Unit(benchmark::kMicrosecond);
+BENCHMARK(shared_levels)->Name("columns/levels")->Unit(benchmark::kMicrosecond);
+BENCHMARK(held_levels)->Name("columns/levels_held")->Unit(benchmark::kMicrosecond);
+BENCHMARK(faded_levels)->Name("columns/levels_faded")->Unit(benchmark::kMicrosecond);
+BENCHMARK(own_levels)->Name("columns/own_levels_held")->Unit(benchmark::kMicrosecond);
+BENCHMARK(flown_levels)->Name("columns/levels_held_flown")->Unit(benchmark::kMicrosecond);
+BENCHMARK(layers_and_levels)->Name("columns/random_layers_and_levels")->Unit(benchmark::kMicrosecond);
+BENCHMARK(layers_and_levels_flown)
+    ->Name("columns/random_layers_and_levels_flown")
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(random_columns)->Name("columns/random")->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -73,7 +73,8 @@ library/rays/ray_hits.hpp: workbench/methods/ray_pvs/ workbench/partition/triang
 library/rays/wide_rays.hpp: workbench/methods/ray_pvs/
 library/rays/wide_bvh.hpp: workbench/partition/triangle_rays
 library/rays/wide_walk-inl.hpp: workbench/partition/triangle_rays
-library/world/chunk_map.hpp: workbench/methods/raster_occlusion/ground_chunks workbench/reproduce/vertex_chunk
+library/world/chunk_map.hpp: workbench/reproduce/vertex_chunk
+library/world/chunk_walk.hpp: workbench/methods/raster_occlusion/ground_chunks
 "
 
 # What the library may include beside itself and the standard library: no GPU, no window, no format of a file's.

@@ -237,7 +237,11 @@ struct CullZones {
 };
 
 /// How levels of detail are chosen: once a call, for all its views. Read where levels are asked for and the
-/// world has tables.
+/// world has tables. For each key a culler keeps 16 bytes a place in the chunks of the sectors that it has
+/// had in view, some 24 an object, and 4 an id once objects that were in view stand in other chunks; and 2 an
+/// object for all keys. A visible object costs least while the camera is the same but for where it stands,
+/// and the objects around it stand; some 20 ns where it is new in view or more than one in 32 of all tables
+/// have changed.
 struct LevelOptions {
   /// The place in `views` of the one by whose image objects have their sizes, so that shadow cascades draw
   /// what their camera draws.

@@ -3,6 +3,7 @@
 #include "library/world/chunk_map.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "library/geometry/box_math.hpp"
@@ -13,6 +14,11 @@ namespace sightline::world {
 using namespace geometry;
 
 namespace {
+
+std::uint64_t next_number() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
 
 constexpr Box kEverywhere{kEmptyBox.max, kEmptyBox.min};
 
@@ -31,6 +37,7 @@ std::uint32_t packed(RegionSet r) {
 
 ChunkMap::ChunkMap(const ChunkMapOptions& options, Locations* shared_locations, const Columns* columns)
     : options_(options),
+      number_(next_number()),
       locations_(shared_locations ? shared_locations : &own_locations_),
       columns_(columns) {
   options_.depth = std::min(options_.depth, kMaxDepth);
@@ -142,6 +149,7 @@ void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, c
 }
 
 void ChunkMap::write_box(const Chunk& c, std::uint32_t slot, const Box& box) noexcept {
+  ++changes_[c.pool];
   float* at = lanes(c, 0) + slot;
   const std::size_t step = c.capacity;
   at[0] = box.min.x, at[step] = box.min.y, at[2 * step] = box.min.z;
@@ -254,7 +262,7 @@ void ChunkMap::erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept {
   Chunk& c = chunks_[chunk];
   ObjectId* const all = ids(c);
   all[slot] = kNoObject;
-  --c.live;
+  --c.live, ++changes_[c.pool];
   note_stale(chunk);
   const auto trim = [&] {
     while (c.count > 0 && all[c.count - 1] == kNoObject) --c.count;

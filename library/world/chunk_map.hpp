@@ -224,6 +224,20 @@ public:
     return pool.distances.data() + 2 * (chunk.objects - pool.ids.data());
   }
 
+  /// Where chunks' objects lie, a lane each: in one of two pools, of which a chunk's `objects` are a part.
+  static constexpr std::size_t kPools = 2;
+  [[nodiscard]] std::span<const ObjectId> pool_ids(std::size_t pool) const noexcept {
+    return pools_[pool].ids;
+  }
+  /// The same only where no object has come to a pool, gone, moved or been put elsewhere since.
+  struct LaneVersion {
+    std::uint64_t map = 0, change = 0;  ///< maps' numbers begin at 1
+    bool operator==(const LaneVersion&) const = default;
+  };
+  [[nodiscard]] LaneVersion lane_version(std::size_t pool) const noexcept {
+    return {number_, changes_[pool]};
+  }
+
   [[nodiscard]] bool contains(ObjectId object) const noexcept;
   [[nodiscard]] Box box(ObjectId object) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept {
@@ -440,7 +454,9 @@ private:
   float columns_per_metre_ = 0, rows_per_metre_ = 0;
   std::uint32_t last_region_ = 0;  // of a row or column
 
-  std::array<Pool, 2> pools_;  // kStill, kMovers
+  std::array<Pool, kPools> pools_;  // kStill, kMovers
+  const std::uint64_t number_;      // unlike any other map's
+  std::array<std::uint64_t, kPools> changes_{};
   geometry::LargeVector<Chunk> chunks_;
   std::vector<Split> splits_;
   std::vector<Key> keys_;
@@ -471,22 +487,5 @@ private:
   const Columns* columns_;
   std::size_t size_ = 0;
 };
-
-/// What a walk of the regions leaves, reused frame after frame.
-struct ChunkWalk {
-  std::vector<std::uint32_t> inside;    ///< chunks wholly in the frustum
-  std::vector<std::uint32_t> crossing;  ///< chunks whose bounds cross it
-  std::uint64_t nodes_visited = 0;      ///< regions, groups and chunks looked at
-
-  void clear() noexcept {
-    inside.clear();
-    crossing.clear();
-    nodes_visited = 0;
-  }
-};
-
-/// Walks the regions from the whole ground down and drops what the frustum misses; the same chunks in the
-/// same order for the same history of the map. Fills `out` anew.
-void walk(const ChunkMap& map, const Frustum& frustum, ChunkWalk& out);
 
 }  // namespace sightline::world

@@ -116,7 +116,7 @@ void ChunkMap::note_grown(std::uint32_t chunk) {
 void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   Chunk& c = chunks_[chunk];
   ids(c)[slot] = kNoObject;
-  --c.live;
+  --c.live, ++changes_[c.pool];
   make_dirty(chunk), note_stale(chunk);
   if (c.pool == kMovers) {
     c.moved[slot / 64] &= ~(std::uint64_t{1} << slot % 64);
@@ -177,6 +177,7 @@ void ChunkMap::expect_moves(bool many) noexcept {
 
 std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
                                       const Box& within) noexcept {
+  ++changes_[kMovers];
   std::uint32_t at = kNone;
   Chunk* c = nullptr;
   const ObjectId* stand = nullptr;

@@ -7,6 +7,7 @@ void ChunkMap::arrange() {
   constexpr std::size_t kFewestWorthIt = 64;  // chunks: fewer lie in a few pages anyway
   if (misplaced_ < kFewestWorthIt || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
   misplaced_ = 0;
+  ++changes_[kStill];
   Pool& pool = pools_[kStill];
   geometry::LargeVector<float> lanes;
   geometry::LargeVector<ObjectId> ids;

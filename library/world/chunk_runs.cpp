@@ -186,7 +186,7 @@ std::uint32_t ChunkMap::move_run(std::uint32_t& chunk, std::uint32_t& slot, cons
   for (std::size_t side = 0; side < 6; ++side) from[side] = boxes.values[side].data() + first;
   const MoverRun run{c.bounds, ids(c), lanes(c, 0), c.count, c.moved.data(), past_cache};
   const std::uint32_t moved = HWY_DYNAMIC_DISPATCH(write_run)(run, slot, objects, from, count);
-  in_runs_ += moved;
+  in_runs_ += moved, ++changes_[kMovers];
   if (slot == kCapacity && c.next != kNone) chunk = c.next, slot = 0;
   return moved;
 }

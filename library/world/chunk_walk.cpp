@@ -1,4 +1,4 @@
-#include "library/world/chunk_map.hpp"
+#include "library/world/chunk_walk.hpp"
 
 namespace sightline::world {
 

@@ -145,6 +145,77 @@ HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
   return out;
 }
 
+// Whom nobody tells anything.
+struct NoNotes {
+  static void begin(const GroupEntry& /*entry*/, const EntryGroup& /*at*/, std::uint32_t /*chunks*/) {}
+  static void expect(const EntryGroup& /*at*/, std::uint32_t /*i*/, const ChunkMap::ChunkView& /*chunk*/) {}
+  static void note(const EntryGroup& /*at*/, std::uint32_t /*i*/, const ChunkMap::ChunkView& /*chunk*/,
+                   const ChunkViews* /*parts*/, const ObjectId* /*place*/) {}
+};
+
+// Any views, any tests. Tells `notes` of each group's chunks that are left; then of each of them, once ahead
+// and once it is written: who sees a part of it, or null where somebody sees all of it, and where its ids
+// stand.
+template <class Notes>
+HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const GroupEntry> entries,
+                                    ObjectId* HWY_RESTRICT ids, std::uint8_t* HWY_RESTRICT masks,
+                                    Notes notes) {
+  PassCounts counts;
+  std::array<ChunkBits, kMaxViews> bits;
+  std::array<std::uint32_t, kMaxViews> parted;
+  ChunkViews parts;
+  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  // What occlusion drops counts once for each of the caller's views that are the same.
+  const auto count_occluded = [&](std::size_t v, std::uint64_t objects) {
+    counts.occluded += static_cast<std::uint64_t>(std::popcount(input.bits[v])) * objects;
+  };
+  const std::uint32_t* hidden = input.hidden.empty() ? nullptr : input.hidden.data();
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const GroupEntry& entry = entries[e];
+    prefetch_group(input, entries, e);
+    if (input.columns) prefetch_columns(input, entries, e);
+    const EntryGroup at = group_of(input, entry);
+    std::uint32_t any = 0;
+    for (std::size_t v = 0; v < input.view_count; ++v) {
+      std::uint64_t dropped = 0;
+      bits[v] = filter_chunks(input, at, at.views[v], entry.planes[v], hidden ? hidden++ : nullptr, parted[v],
+                              dropped);
+      count_occluded(v, dropped);
+      any |= bits[v].kept;
+    }
+    counts.chunks += at.group.count;
+    find_chunks(at, any, chunks);
+    notes.begin(entry, at, any);
+    for (; any != 0; any &= any - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
+      const ChunkMap::ChunkView& chunk = chunks[i];
+      if (const std::uint32_t later = any & (any - 1); later != 0) {
+        const auto next = static_cast<std::uint32_t>(std::countr_zero(later));
+        notes.expect(at, next, chunks[next]);
+      }
+      const ChunkViewers viewers = viewers_of(input, at, bits, parted, i);
+      const std::size_t before = counts.written;
+      if (viewers.part == 0 || (viewers.whole != 0 && masks == nullptr)) {
+        counts.written += write_whole(chunk, viewers.whole, counts.written, ids, masks);
+      } else {
+        parts.count = 0;
+        for (std::uint32_t rest = viewers.part; rest != 0; rest &= rest - 1) {
+          const auto v = static_cast<std::size_t>(std::countr_zero(rest));
+          ObjectBits& seen = parts.seen[parts.count];
+          parts.bits[parts.count++] = input.bits[v];
+          counts.tested += chunk.count;
+          view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
+          if (parted[v] >> i & 1) seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
+          if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
+        }
+        counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
+      }
+      notes.note(at, i, chunk, viewers.whole == 0 ? &parts : nullptr, ids + before);
+    }
+  }
+  return counts;
+}
+
 }  // namespace sightline::world::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

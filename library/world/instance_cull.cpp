@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "library/geometry/mutant.h"
+#include "library/world/lane_levels.hpp"
 
 namespace sightline {
 
@@ -23,15 +24,23 @@ public:
     if (scale.orthographic) scale_.squared *= placed * placed;
   }
 
-  void note(const ChunkMap::ChunkView& chunk, const SectorView* views, const ObjectId* ids,
-            std::size_t count) noexcept override {
+  PassCounts cull(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* ids,
+                  std::uint8_t* masks) noexcept override {
+    return cull_noted(*this, input, entries, ids, masks);
+  }
+
+  LaneBlocks blocks_of(std::uint32_t /*sector*/, std::uint32_t /*pool*/) noexcept override { return {}; }
+
+  void expect(const ChunkMap::ChunkView& chunk, const LaneBlocks& /*blocks*/) noexcept override {
+    for (std::size_t i = 0; i < chunk.count; i += kLaneBlock) expect_sizes(chunk, i);
+  }
+
+  void note(const NotedChunk& noted) noexcept override {
+    const ChunkMap::ChunkView& chunk = noted.chunk;
     alignas(64) std::array<float, ChunkMap::kCapacity> sizes;
-    find_sizes(chunk, views[view_].eye, scale_.orthographic, scale_.squared, sizes.data());
-    std::size_t slot = 0;
-    for (const ObjectId id : std::span(ids, count)) {
-      while (chunk.objects[slot] != id) ++slot;
-      write(levels_.table(id), sizes[slot]);
-    }
+    find_sizes(chunk, noted.views[view_].eye, scale_, sizes.data());
+    for (std::uint32_t slot = 0; slot < chunk.count; ++slot)
+      if (noted.seen.at(slot)) write(levels_.table(chunk.objects[slot]), sizes[slot]);
   }
 
 private:

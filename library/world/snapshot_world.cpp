@@ -98,8 +98,7 @@ void SnapshotWorld::read_columns(const SectorPiece& piece) {
       if (rows.values != SnapshotRows::kNone) s.columns.values[id] = row(rows.values)[i];
       if (rows.distances != SnapshotRows::kNone)
         s.columns.distances[id] = {real(rows.distances, i), real(rows.distances + 1, i)};
-      if (rows.levels != SnapshotRows::kNone)
-        levels->table_of[id] = static_cast<std::uint16_t>(row(rows.levels)[i]);
+      if (rows.levels != SnapshotRows::kNone) levels->set(id, row(rows.levels)[i]);
     }
     at += std::size_t{rows.count} * c.count;
   });

@@ -185,6 +185,7 @@ Status World::insert(const BoxView& boxes, Strided<Handle> handles) {
       s.touch(sector);
     }
     s.columns.forget(id);
+    if (s.levels) s.levels->forget(id);
     s.sectors[sector].map->insert(id, geometry::relative_box(box, s.sectors[sector].origin));
     s.objects[id].sector = sector;
     s.note_generation(id);
@@ -223,7 +224,6 @@ Status World::remove(Strided<const Handle> handles) {
     object.sector = ChunkMap::kNone;
     s.note_generation(id);
     if (s.occluders) s.occluders->forget(id);
-    if (s.levels) s.levels->forget(id);
     s.free_ids.push_back(id);
   }
   s.size -= handles.size();

@@ -318,6 +318,23 @@ HWY_INLINE EntryGroup group_of(const PassInput& input, const GroupEntry& entry) 
   return {map, map.groups()[entry.group], &input.views[entry.sector * input.view_count], entry.group};
 }
 
+// Of the group that comes after the next, for by then it will have arrived.
+HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntry> entries, std::size_t e) {
+  if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
+}
+
+// The same of what the group knows of columns. By itself, as most worlds have none.
+HWY_NOINLINE inline void prefetch_columns(const PassInput& input, std::span<const GroupEntry> entries,
+                                          std::size_t e) {
+  if (e + 2 >= entries.size()) return;
+  const EntryGroup next = group_of(input, entries[e + 2]);
+  constexpr std::size_t kLine = 16;
+  if (const std::uint32_t* rows = next.map.layer_rows(next.number))
+    for (std::size_t i = 0; i < LayerRows::kSize; i += kLine) hwy::Prefetch(rows + i);
+  if (const float* rows = next.map.distance_rows(next.number))
+    for (std::size_t i = 0; i < DistanceRows::kSize; i += kLine) hwy::Prefetch(rows + i);
+}
+
 // Takes out the chunks of which the columns leave nothing; returns those of which they leave a part.
 HWY_INLINE std::uint32_t ask_columns(const PassInput& input, const EntryGroup& at, const SectorView& view,
                                      ChunkBits& bits) {

@@ -43,23 +43,6 @@ void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> vi
   }
 }
 
-// Of the group that comes after the next, for by then it will have arrived.
-HWY_INLINE void prefetch_group(const PassInput& input, std::span<const GroupEntry> entries, std::size_t e) {
-  if (e + 2 < entries.size()) prefetch_lines(group_of(input, entries[e + 2]).group);
-}
-
-// The same of what the group knows of columns. By itself, as most worlds have none.
-HWY_NOINLINE void prefetch_columns(const PassInput& input, std::span<const GroupEntry> entries,
-                                   std::size_t e) {
-  if (e + 2 >= entries.size()) return;
-  const EntryGroup next = group_of(input, entries[e + 2]);
-  constexpr std::size_t kLine = 16;
-  if (const std::uint32_t* rows = next.map.layer_rows(next.number))
-    for (std::size_t i = 0; i < LayerRows::kSize; i += kLine) hwy::Prefetch(rows + i);
-  if (const float* rows = next.map.distance_rows(next.number))
-    for (std::size_t i = 0; i < DistanceRows::kSize; i += kLine) hwy::Prefetch(rows + i);
-}
-
 // All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
 HWY_INLINE void prefetch_boxes(const ChunkMap::ChunkView& chunk) {
   for (std::size_t i = 0; i < 6 * ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.min_x + i);
@@ -289,7 +272,8 @@ void find_groups(const ChunkMap::Node& node, std::span<const SectorView> views,
 
 PassCounts cull_groups(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* out,
                        std::uint8_t* masks) noexcept {
-  bool plain = input.hidden.empty() && !input.levels;
+  if (input.levels) return input.levels->cull(input, entries, out, masks);
+  bool plain = input.hidden.empty();
   for (const SectorView& view : input.views) plain = plain && view.area_scale == 0 && !view.occluders;
   const bool alone = input.view_count == 1 && !masks;
   if (!plain || (input.columns && !alone)) return cull_filtered_groups(input, entries, out, masks);

@@ -46,6 +46,7 @@ struct alignas(16) ObjectBits {
   [[nodiscard]] bool at(std::size_t i) const { return words[i / 64] >> (i % 64) & 1; }
   void drop(std::size_t i) { words[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
   void keep(const ObjectBits& others) { words[0] &= others.words[0], words[1] &= others.words[1]; }
+  void add(const ObjectBits& others) { words[0] |= others.words[0], words[1] |= others.words[1]; }
 };
 static_assert(ChunkMap::kCapacity <= 128);
 

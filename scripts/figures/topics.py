@@ -18,10 +18,22 @@ def repeats(quick):
 
 def world(quick):
     """One world and its peers on the same million boxes; views at once; sectors far apart."""
-    only = "-^(build|move_|far_sectors/move" + ("|openscenegraph/d|.*/10000000)" if quick else ")")
+    only = "-^(build|move_|columns/|far_sectors/move" + ("|openscenegraph/d|.*/10000000)" if quick else ")")
     rows = google_benchmark("world", 3, 0.02 if quick else 0.1, only)
     return compare_with(rows, lambda name: None if name in ("far_sectors/cull", "one_view") else
                         "one_view" if name.startswith("four_views") else "world/1000000")
+
+
+def columns(quick):
+    """Layers, distances and levels of a million boxes beside a world that has none: where a chunk's objects have the same,
+    and where each has its own; there also what each visible object costs more, in turns with the plain cull."""
+    rows = google_benchmark("world", 3 if quick else 9, 0.02 if quick else 0.1, "^columns/")
+    plain = next(row for row in rows if row.id == "columns/none")
+    whole = ("columns/whole_layers", "columns/whole")
+    compare_with(rows, lambda name: plain.id if name in whole else None)
+    each = [Row("more", row.case, "ns", 1000 * (row.median - plain.median) / row.kept, repetitions=row.repetitions,
+                beside=plain.id) for row in rows if "random" in row.case or "levels" in row.case]
+    return rows + each
 
 
 def moving(quick):
@@ -342,6 +354,6 @@ def web(quick):
     return rows
 
 
-TOPICS = {"world": world, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
+TOPICS = {"world": world, "columns": columns, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
           "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "shadows": shadows, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}

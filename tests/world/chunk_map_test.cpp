@@ -1,4 +1,5 @@
 #include "library/world/chunk_map.hpp"
+#include "library/world/chunk_walk.hpp"
 
 #include <gtest/gtest.h>
 

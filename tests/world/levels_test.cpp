@@ -83,6 +83,46 @@ public:
     for (std::size_t i = 0; i < some; ++i) ASSERT_EQ(world_.levels(handles_[i]), kNoLevels);
   }
 
+  // A camera that walks and looks about, by the same options in all frames.
+  void walk(int frame) {
+    if (frame == 0) {
+      camera_ = test::random_camera(random_, kPlace);
+      walked_.levels = {.hysteresis = random_.between(0, 0.3f), .fade = random_.below(2) * 0.3f};
+    }
+    const float step = random_.between(0, 3);
+    camera_.eye.x += step, camera_.forward.y += random_.between(-0.05f, 0.05f);
+    const Result<View> made = make_view(camera_, 1280, 720);
+    const CullView view{.view = {made ? *made : *make_view({}, 1280, 720), {}}};
+    std::vector<ObjectId> ids(cull_capacity(world_));
+    std::vector<std::uint8_t> levels(ids.size()), fades(ids.size());
+    const auto result = culler_.cull(world_, {&view, 1}, walked_, {ids, {}, levels, fades});
+    ASSERT_TRUE(result);
+    judge_all(std::span(ids).first(result->count), view.view, walked_.levels, levels, fades);
+  }
+
+  // Small steps, by which objects stay where they are filed.
+  void nudge() {
+    std::vector<Box> boxes;
+    std::vector<Handle> some;
+    for (const Handle handle : handles_) {
+      if (random_.below(4) > 0) continue;
+      const WorldBox b = world_.box(handle);
+      const float by = random_.between(-3, 3);
+      const auto at = [&](double x) { return static_cast<float>(x) + by; };
+      boxes.push_back({{at(b.min.x), at(b.min.y), at(b.min.z)}, {at(b.max.x), at(b.max.y), at(b.max.z)}});
+      some.push_back(handle);
+    }
+    ASSERT_TRUE(world_.move(some, BoxView(boxes)));
+  }
+
+  void change_tables() {
+    std::vector<LevelTableId> tables;
+    const std::size_t some = handles_.size() / 5;
+    for (std::size_t i = 0; i < some; ++i)
+      tables.push_back(random_.below(static_cast<std::uint32_t>(limits_.size())));
+    ASSERT_TRUE(world_.set_levels(std::span(handles_).first(some), std::span<const LevelTableId>(tables)));
+  }
+
   // A camera that goes on from frame to frame, and others.
   void cull(int frame) {
     if (frame == 0) camera_ = test::random_camera(random_, kPlace);
@@ -106,20 +146,24 @@ public:
     ASSERT_EQ(test::cull(other, world_, views, plain, {}, options).count, result->count);
     ASSERT_TRUE(
         std::equal(plain.begin(), plain.begin() + static_cast<std::ptrdiff_t>(result->count), ids.begin()));
-    auto& known = known_[options.levels.key];
-    const int now = ++culls_[options.levels.key];
-    for (std::size_t i = 0; i < result->count; ++i) {
-      Known& k = known[ids[i]];
-      const bool kept = k.cull == now - 1 && !options.levels.cut;
-      judge(ids[i], camera, options.levels, kept ? &k : nullptr, levels[i],
-            fades.empty() ? nullptr : &fades[i]);
-      k = {levels[i], now};
-    }
+    judge_all(std::span(ids).first(result->count), camera, options.levels, levels, fades);
   }
 
   std::size_t judged = 0, unknown = 0, held = 0;
 
 private:
+  void judge_all(std::span<const ObjectId> ids, const WorldView& view, const LevelOptions& options,
+                 std::span<const std::uint8_t> levels, std::span<const std::uint8_t> fades) {
+    auto& known = known_[options.key];
+    const int now = ++culls_[options.key];
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      Known& k = known[ids[i]];
+      const bool kept = k.cull == now - 1 && !options.cut;
+      judge(ids[i], view, options, kept ? &k : nullptr, levels[i], fades.empty() ? nullptr : &fades[i]);
+      k = {levels[i], now};
+    }
+  }
+
   void judge(ObjectId id, const WorldView& view, const LevelOptions& o, const Known* before,
              std::uint8_t level, const std::uint8_t* fade) {
     const Handle handle = world_.handle(id);
@@ -158,6 +202,7 @@ private:
   std::vector<Handle> handles_;
   std::vector<std::vector<float>> limits_;
   Camera camera_;
+  CullOptions walked_;
   std::array<std::map<ObjectId, Known>, 2> known_;
   std::array<int, 2> culls_{};
 };
@@ -177,6 +222,25 @@ TEST(Levels, AreThoseOfBruteForce) {
   EXPECT_GT(judged, 100000u);
   EXPECT_GT(held, judged / 200);
   EXPECT_LT(unknown, judged / 200);
+}
+
+// What is known to hold until the eye has gone some way must hold, and no longer where objects move.
+TEST(Levels, OfAWalkAreThoseOfBruteForce) {
+  std::size_t judged = 0, unknown = 0;
+  for (std::uint32_t seed = 1000; seed < 1100; ++seed) {
+    Played played(seed);
+    for (int frame = 0; frame < 30; ++frame) {
+      if (frame % 8 == 5) played.nudge();
+      if (frame % 9 == 3) played.change_tables();
+      if (frame == 20) played.move();
+      if (frame == 23) played.replace();
+      played.walk(frame);
+    }
+    ASSERT_FALSE(testing::Test::HasFatalFailure()) << "seed " << seed;
+    judged += played.judged, unknown += played.unknown;
+  }
+  EXPECT_GT(judged, 50000u);
+  EXPECT_LT(unknown, judged / 100);
 }
 
 // A camera that trembles at a limit.

@@ -6,7 +6,7 @@
 
 #include <sightline/view.hpp>
 
-#include "library/world/chunk_map.hpp"
+#include "library/world/chunk_walk.hpp"
 #include "workbench/submission/contribution.hpp"
 
 namespace sightline::methods {
