@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "library/geometry/box_math.hpp"
 #include "library/geometry/mutant.h"
@@ -95,8 +96,8 @@ void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
   if (c.group == kNone) return;
   Group& b = groups_[c.group];
   b.first_lane[c.index_in_group] = c.first_lane;
-  b.count_and_size[c.index_in_group] = c.count | (c.capacity == kSmallCapacity ? Group::kSmall : 0) |
-                                       (c.live < c.count || c.pool == kMovers ? Group::kLoose : 0);
+  b.count_and_size[c.index_in_group] =
+      c.count | c.capacity << Group::kSize | (c.live < c.count || c.pool == kMovers ? Group::kLoose : 0);
 }
 
 void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {
@@ -149,7 +150,7 @@ void ChunkMap::loosen(std::uint32_t node, const Box& gone) noexcept {
 }
 
 void ChunkMap::tighten() {
-  arrange();
+  arrange(8 * std::exchange(inserted_, 0) >= size_);
   tighten_nodes();
 }
 

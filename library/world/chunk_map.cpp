@@ -116,21 +116,30 @@ std::uint32_t ChunkMap::find_chunk(const Key& key, const Vec3& centre) const noe
 // --- memory ---
 
 std::uint32_t ChunkMap::take_lanes(Pool& pool, std::uint32_t capacity) {
-  std::vector<std::uint32_t>& free = capacity == kCapacity ? pool.free_large : pool.free_small;
+  std::vector<std::uint32_t>& free = pool.free[capacity / kLanes - 1];
   if (!free.empty()) {
     const std::uint32_t first = free.back();
     free.pop_back();
     return first;
   }
-  const auto first = static_cast<std::uint32_t>(pool.ids.size());
-  pool.ids.resize(pool.ids.size() + capacity);
-  pool.lanes.resize(pool.lanes.size() + 6 * std::size_t{capacity});
+  const std::uint32_t first = pool.used;
+  pool.used += capacity;
+  // Who copies a chunk's ids may read as many as fit in any.
+  pool.ids.resize(std::size_t{pool.used} + kCapacity);
+  pool.lanes.resize(6 * std::size_t{pool.used});
   if (has_columns()) resize_columns(pool);
   return first;
 }
 
+// That of the least block that is free and holds so many objects; else the greatest.
+std::uint32_t ChunkMap::free_capacity(const Pool& pool, std::uint32_t objects) noexcept {
+  std::uint32_t capacity = std::max(2 * kSmallCapacity, (objects + kLanes - 1) / kLanes * kLanes);
+  while (capacity < kCapacity && pool.free[capacity / kLanes - 1].empty()) capacity += kLanes;
+  return capacity;
+}
+
 void ChunkMap::give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacity) {
-  (capacity == kCapacity ? pool.free_large : pool.free_small).push_back(first);
+  pool.free[capacity / kLanes - 1].push_back(first);
 }
 
 Box ChunkMap::box_at(const Chunk& c, std::uint32_t slot) const noexcept {
@@ -191,10 +200,9 @@ void ChunkMap::free_chunk(std::uint32_t chunk) {
 void ChunkMap::grow(std::uint32_t chunk) {
   Chunk& c = chunks_[chunk];
   Pool& pool = pools_[c.pool];
-  const std::uint32_t first = take_lanes(pool, kCapacity);
-  misplaced_ += c.pool == kStill;
   const Chunk old = c;
-  c.first_lane = first, c.capacity = kCapacity;
+  c.capacity = free_capacity(pool, old.capacity + 1), c.first_lane = take_lanes(pool, c.capacity);
+  misplaced_ += c.pool == kStill;
   for (std::uint32_t side = 0; side < 6; ++side) std::copy_n(lanes(old, side), old.count, lanes(c, side));
   std::copy_n(ids(old), old.count, ids(c));
   if (has_columns()) load_columns(c);
@@ -233,7 +241,7 @@ void ChunkMap::insert(ObjectId object, const Box& box) {
   if (locations_ == &own_locations_ && object >= own_locations_.size())
     own_locations_.resize(object + std::size_t{1});
   file(object, box);
-  ++size_;
+  ++size_, ++inserted_;
 }
 
 // Puts an object that is already counted where it belongs.

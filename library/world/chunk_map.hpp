@@ -65,6 +65,7 @@ public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kCapacity = 96;       ///< objects a chunk; a multiple of every SIMD width
   static constexpr std::uint32_t kSmallCapacity = 16;  ///< of a chunk that has never held more
+  static constexpr std::uint32_t kLanes = 16;          ///< capacities are multiples of it
   static constexpr std::uint32_t kGroupCapacity = 32;  ///< chunks a group
   static constexpr std::uint32_t kMaxDepth = 6;
   /// Whether movers may stand in pages; not where each byte of code is loaded by whoever opens a web page.
@@ -91,7 +92,8 @@ public:
   using Locations = geometry::LargeVector<Location>;
 
   /// The objects of a chunk: arrays of `count` values, aligned to 64 bytes and readable up to the next
-  /// multiple of 16. Where it is loose, some objects may be kNoObject, and their boxes mean nothing.
+  /// multiple of 16, ids up to kCapacity. Where it is loose, some objects may be kNoObject, and their boxes
+  /// mean nothing.
   struct ChunkView {
     const float *min_x, *min_y, *min_z, *max_x, *max_y, *max_z;
     const ObjectId* objects;
@@ -104,9 +106,9 @@ public:
     std::array<std::array<float, kGroupCapacity>, 6> bounds{};
     std::array<std::uint32_t, kGroupCapacity> chunks{};
     /// Of each chunk, what ChunkMap::chunk() would look up elsewhere: where its lanes begin, and how many
-    /// objects it holds, with kSmall set where it has kSmallCapacity and kLoose where it is loose.
+    /// objects it holds, with its capacity in the bits from kSize on and kLoose set where it is loose.
     std::array<std::uint32_t, kGroupCapacity> first_lane{}, count_and_size{};
-    static constexpr std::uint32_t kSmall = 0x80000000u, kLoose = 0x40000000u;
+    static constexpr std::uint32_t kCount = 0xff, kSize = 8, kLoose = 0x40000000u;
     Box box;                  ///< of all of them
     std::uint32_t count = 0;  ///< 0: the group is free
     std::uint32_t node = 0, index_in_node = 0;
@@ -263,7 +265,7 @@ public:
   /// The chunk at place i of a group.
   [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
     const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
-    const std::size_t step = size & Group::kSmall ? kSmallCapacity : kCapacity;
+    const std::size_t step = size >> Group::kSize & Group::kCount;
     const Pool& pool = pools_[group.pool];
     const float* at = pool.lanes.data() + 6 * std::size_t{first};
     return {at,
@@ -273,7 +275,7 @@ public:
             at + 4 * step,
             at + 5 * step,
             pool.ids.data() + first,
-            size & ~(Group::kSmall | Group::kLoose),
+            size & Group::kCount,
             (size & Group::kLoose) != 0};
   }
   /// Tight union of the chunk's boxes; after move_loosely() it may be wider.
@@ -299,8 +301,9 @@ public:
 
   /// Shrinks the bounds of quadtree nodes that moves and removals left too large; and once most chunks stand
   /// where there happened to be room, puts neighbours' lanes side by side: who reads a group then reads few
-  /// pages of memory, and looking a page up costs more than reading a line of it. Spread over the insertions
-  /// between, that copies each object less than thrice. ChunkViews are void afterwards.
+  /// pages of memory, and looking a page up costs more than reading a line of it. Where an eighth of all
+  /// objects came since the last call, chunks also get no more room than they need. Spread over the
+  /// insertions between, both copy each object a few times. ChunkViews are void afterwards.
   void tighten();
   /// Only the former.
   void tighten_nodes() noexcept;
@@ -336,11 +339,12 @@ private:
   // Movers have lanes of their own, so that those who come all at once make nobody copy the others'.
   struct Pool {
     geometry::LargeVector<float> lanes;
-    geometry::LargeVector<ObjectId> ids;
+    geometry::LargeVector<ObjectId> ids;  // and kCapacity more
+    std::uint32_t used = 0;               // lanes
     // Where there are such columns: one a lane, and two, a chunk's least before its greatest.
     geometry::LargeVector<std::uint32_t> layers;
     geometry::LargeVector<float> distances;
-    std::vector<std::uint32_t> free_small, free_large;
+    std::array<std::vector<std::uint32_t>, kCapacity / kLanes> free;  // by capacity
   };
   struct Key {
     RegionSet regions;
@@ -389,13 +393,15 @@ private:
   void replace_reference(std::uint32_t key, std::uint32_t parent, std::uint32_t from,
                          std::uint32_t to) noexcept;
   std::uint32_t take_lanes(Pool& pool, std::uint32_t capacity);
+  static std::uint32_t free_capacity(const Pool& pool, std::uint32_t objects) noexcept;
   static void give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacity);
   void file(ObjectId object, const Box& box);
   void append(std::uint32_t chunk, ObjectId object, const Box& box);
   void erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept;
   void note_change(std::uint32_t chunk);
   void note_shape(std::uint32_t chunk) noexcept;
-  void arrange();
+  void arrange(bool tightly);
+  static std::uint32_t tight_capacity(const Chunk& chunk) noexcept;
   [[nodiscard]] bool has_columns() const noexcept {
     return columns_ && columns_->any();
   }
@@ -469,6 +475,7 @@ private:
   bool any_loose_ = false;
   bool loosely_ = false;  // move_loosely() was called: bounds may be wide, splits may not lead to an object
   std::size_t misplaced_ = 0;  // how many chunks were given lanes anywhere since arrange()
+  std::size_t inserted_ = 0;   // objects since tighten()
 
   std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_;
   std::vector<std::uint32_t> changed_;

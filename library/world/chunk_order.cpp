@@ -1,34 +1,46 @@
 // Where chunks stand in memory: those that are read together, side by side.
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include "library/world/chunk_map.hpp"
 
 namespace sightline::world {
 
-void ChunkMap::arrange() {
+// What was small may not grow by joining others; so what was not does not become small.
+std::uint32_t ChunkMap::tight_capacity(const Chunk& c) noexcept {
+  if (c.capacity == kSmallCapacity) return kSmallCapacity;
+  return std::max(2 * kSmallCapacity, (c.count + kLanes - 1) / kLanes * kLanes);
+}
+
+void ChunkMap::arrange(bool tightly) {
   constexpr std::size_t kFewestWorthIt = 64;  // chunks: fewer lie in a few pages anyway
-  if (misplaced_ < kFewestWorthIt || 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
+  if (misplaced_ < kFewestWorthIt) return;
+  if (!tightly && 2 * misplaced_ < chunks_.size() - free_chunks_.size()) return;
   misplaced_ = 0;
   ++changes_[kStill];
+  Pool old = std::exchange(pools_[kStill], {});
   Pool& pool = pools_[kStill];
-  geometry::LargeVector<float> lanes;
-  geometry::LargeVector<ObjectId> ids;
-  lanes.reserve(pool.lanes.size()), ids.reserve(pool.ids.size());
+  const auto room_of = [&](const Chunk& c) { return tightly ? tight_capacity(c) : c.capacity; };
+  std::size_t room = kCapacity;
+  for (const Chunk& c : chunks_) room += c.pool == kStill && c.key != kNone ? room_of(c) : 0;
+  pool.lanes.reserve(6 * room), pool.ids.reserve(room);
   for (const Node& node : nodes_) {
     for (const std::uint32_t group : node.groups) {
-      Group& b = groups_[group];
-      if (b.pool != kStill) continue;
-      for (std::uint32_t i = 0; i < b.count; ++i) {
-        Chunk& c = chunks_[b.chunks[i]];
-        const std::ptrdiff_t from = c.first_lane, to = from + static_cast<std::ptrdiff_t>(c.capacity);
-        c.first_lane = b.first_lane[i] = static_cast<std::uint32_t>(ids.size());
-        lanes.insert(lanes.end(), pool.lanes.begin() + 6 * from, pool.lanes.begin() + 6 * to);
-        ids.insert(ids.end(), pool.ids.begin() + from, pool.ids.begin() + to);
+      if (groups_[group].pool != kStill) continue;
+      for (const std::uint32_t chunk : std::span(groups_[group].chunks).first(groups_[group].count)) {
+        Chunk& c = chunks_[chunk];
+        const Chunk from = c;
+        c.capacity = room_of(c), c.first_lane = take_lanes(pool, c.capacity);
+        for (std::uint32_t side = 0; side < 6; ++side)
+          std::copy_n(&old.lanes[6 * std::size_t{from.first_lane} + side * from.capacity], c.count,
+                      lanes(c, side));
+        std::copy_n(&old.ids[from.first_lane], c.count, ids(c));
+        note_shape(chunk);
       }
     }
   }
-  pool.lanes = std::move(lanes), pool.ids = std::move(ids);
-  pool.free_small.clear(), pool.free_large.clear();
   if (!has_columns()) return;
-  resize_columns(pool);
   for (const Chunk& c : chunks_)
     if (c.pool == kStill) load_columns(c);
 }

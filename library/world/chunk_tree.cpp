@@ -65,7 +65,12 @@ bool ChunkMap::split(std::uint32_t chunk) {
   const std::optional<Cut> cut = median_cut(std::span(centres).first(count));
   if (!cut) return false;
 
-  const std::uint32_t added = add_chunk(chunks_[chunk].key, kCapacity, chunks_[chunk].cell);
+  const auto above =
+      static_cast<std::uint32_t>(std::count_if(centres.begin(), centres.begin() + count, [&](const Vec3& p) {
+        return coordinate(p, cut->axis) >= cut->at;
+      }));
+  const std::uint32_t added =
+      add_chunk(chunks_[chunk].key, free_capacity(pools_[kStill], above + 1), chunks_[chunk].cell);
   Chunk &low = chunks_[chunk], &high = chunks_[added];
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -155,7 +160,10 @@ void ChunkMap::try_merge(std::uint32_t chunk) {
   if (!is_chunk(split.child[side])) return;
   const std::uint32_t sibling = split.child[side] & ~kChunkBit;
   Chunk& s = chunks_[sibling];
-  if (s.next != kNone || s.live + c.live > kCapacity / 2 || s.live + c.live > s.capacity) return;
+  const std::uint32_t joined = s.live + c.live;
+  if (s.next != kNone || joined > kCapacity / 2) return;
+  if (joined > s.capacity && s.capacity == kSmallCapacity) return;
+  if (joined > s.capacity) grow(sibling);
   const Box moved = c.bounds;
   for (std::uint32_t i = 0; i < c.count; ++i) {
     if (ids(c)[i] != kNoObject) write(sibling, take_slot(s), ids(c)[i], box_at(c, i));

@@ -50,7 +50,6 @@ public:
   // The chunks whose bits are set, all objects of each.
   HWY_INLINE void add_chunks(const EntryGroup& at, const std::uint32_t* slots, std::uint32_t bits,
                              std::uint8_t mask) {
-    constexpr std::uint32_t kFlags = ChunkMap::Group::kSmall | ChunkMap::Group::kLoose;
     SlotRange run;  // in registers, while one chunk follows the other
     for (; bits != 0; bits &= bits - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
@@ -59,10 +58,10 @@ public:
         add_run(run, mask), run = {};
         add_loose(at.map.chunk(at.group, i), first, mask);
       } else if (first == run.first + run.count) {
-        run.count += size & ~kFlags;
+        run.count += size & ChunkMap::Group::kCount;
       } else {
         add_run(run, mask);
-        run = {first, size & ~kFlags};
+        run = {first, size & ChunkMap::Group::kCount};
       }
     }
     add_run(run, mask);

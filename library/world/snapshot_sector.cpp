@@ -13,8 +13,9 @@ using namespace geometry;
 
 namespace {
 
+// No more room than they need.
 std::uint32_t capacity_of(std::uint32_t objects) {
-  return objects <= ChunkMap::kSmallCapacity ? ChunkMap::kSmallCapacity : ChunkMap::kCapacity;
+  return (objects + ChunkMap::kLanes - 1) / ChunkMap::kLanes * ChunkMap::kLanes;
 }
 
 bool are_ordered(const float* low, const float* high, std::uint32_t count) {
@@ -84,8 +85,8 @@ private:
   }
 
   void reserve() {
-    const std::size_t lanes = std::size_t{ChunkMap::kCapacity} * (entry_.chunks - entry_.small_chunks) +
-                              std::size_t{ChunkMap::kSmallCapacity} * entry_.small_chunks;
+    std::size_t lanes = ChunkMap::kCapacity;
+    for (const std::uint32_t count : counts_) lanes += capacity_of(count);
     ChunkMap::Pool& pool = map_->pools_[ChunkMap::kStill];
     pool.lanes.reserve(6 * lanes), pool.ids.reserve(lanes);
     map_->chunks_.reserve(entry_.chunks), map_->groups_.reserve(entry_.groups);
@@ -195,8 +196,7 @@ std::size_t ChunkMapParts::memory(const SectorEntry& e, std::uint32_t columns) n
   using Has = SnapshotColumns;
   const bool layers = columns & Has::kLayers, distances = columns & Has::kDistances;
   const std::size_t lane = 28 + (layers ? 4 : 0) + (distances ? 8 : 0);
-  const std::size_t lanes = std::size_t{ChunkMap::kCapacity} * (e.chunks - e.small_chunks) +
-                            std::size_t{ChunkMap::kSmallCapacity} * e.small_chunks;
+  const std::size_t lanes = e.objects + std::size_t{ChunkMap::kLanes} * e.chunks + ChunkMap::kCapacity;
   constexpr std::size_t kInNode = 28, kListed = 8;
   const std::size_t group = sizeof(ChunkMap::Group) + kInNode + (layers ? 4 * LayerRows::kSize : 0) +
                             (distances ? 4 * DistanceRows::kSize : 0);

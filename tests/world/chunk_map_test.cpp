@@ -199,6 +199,37 @@ TEST(ChunkMap, PutsNeighboursSideBySideOnceMostChunksAreNew) {
   EXPECT_EQ(failure(map), "");
 }
 
+// What comes in bulk leaves chunks no more room than they need, and what comes, moves and goes afterwards
+// finds its place all the same.
+TEST(ChunkMap, HasLittleMoreRoomThanObjectsAfterABulk) {
+  Random random(8);
+  ChunkMap map({kGround, 0});
+  std::vector<Box> boxes;
+  const auto insert = [&](std::size_t count) {
+    for (; count > 0; --count) {
+      boxes.push_back(random_box(random, 90, 1));
+      map.insert(static_cast<ObjectId>(boxes.size() - 1), boxes.back());
+    }
+    map.tighten();
+  };
+  const auto room = [&] { return static_cast<double>(map.pool_ids(0).size()); };
+  insert(20000), insert(15000), insert(6000);
+  EXPECT_LT(room(), 1.18 * 41000);
+  EXPECT_EQ(failure(map), "");
+  for (int round = 0; round < 10; ++round) {
+    insert(500);
+    for (int i = 0; i < 300; ++i) {
+      const ObjectId moved = random.below(40000), replaced = random.below(40000);
+      map.move(moved, boxes[moved] = random_box(random, 90, 1));
+      map.remove(replaced);
+      map.insert(replaced, boxes[replaced] = random_box(random, 90, 1));
+    }
+    ASSERT_EQ(failure(map), "") << round;
+  }
+  for (ObjectId id = 0; id < boxes.size(); ++id) ASSERT_EQ(map.box(id), boxes[id]) << id;
+  EXPECT_LT(room(), 1.6 * static_cast<double>(boxes.size()));
+}
+
 TEST(ChunkMap, TellsWhichChunksChanged) {
   ChunkMap map({kGround, 3});
   Random random(9);
