@@ -15,6 +15,13 @@ export interface Convex {
 const mostTriangles = 200;
 interface Parts { points: Points; index: BufferAttribute | null; versions: number; made: Map<number, Convex | null> }
 const known = new WeakMap<BufferGeometry, Parts>();
+// They lie in the module's memory, where nobody collects them with their geometry.
+const collected = new FinalizationRegistry<Parts>((parts) => {
+  try {
+    free(parts);
+  } catch {} // nobody waits for this, should the module have ended
+});
+const disposed = ({ target }: { target: BufferGeometry }) => forgetConvex(target);
 
 // Of a geometry's vertices or indices from `start` on, made once for as long as they stay.
 function part(geometry: BufferGeometry, start: number, corners: number): Convex | null {
@@ -23,6 +30,7 @@ function part(geometry: BufferGeometry, start: number, corners: number): Convex 
   if (!parts || parts.points !== points || parts.index !== index || parts.versions !== versions) {
     forgetConvex(geometry);
     known.set(geometry, (parts = { points, index, versions, made: new Map() }));
+    geometry.addEventListener('dispose', disposed), collected.register(geometry, parts, parts);
   }
   let made = parts.made.get(start);
   if (made === undefined) parts.made.set(start, (made = make(geometry, start, corners)));
@@ -31,8 +39,13 @@ function part(geometry: BufferGeometry, start: number, corners: number): Convex 
 
 /** What is known of a geometry holds no longer. */
 export function forgetConvex(geometry: BufferGeometry): void {
-  for (const made of known.get(geometry)?.made.values() ?? []) made?.mesh.dispose();
-  known.delete(geometry);
+  const parts = known.get(geometry);
+  if (!parts) return;
+  free(parts), collected.unregister(parts), known.delete(geometry);
+  geometry.removeEventListener('dispose', disposed);
+}
+function free({ made }: Parts): void {
+  for (const convex of made.values()) convex?.mesh.dispose();
 }
 
 /** The geometry as an occluder; null where it is not closed and convex, or has more than 200 triangles. */
@@ -52,24 +65,40 @@ export function convexOfInstance(mesh: Batch, instance: number): Convex | null {
 function make(geometry: BufferGeometry, start: number, corners: number): Convex | null {
   const position = geometry.attributes.position!;
   if (corners % 3 !== 0 || corners > 3 * mostTriangles || corners < 12) return null;
-  const points: number[] = [], indices = new Uint32Array(corners), names = new Map<string, number>();
-  for (let i = 0; i < corners; ++i) {
+  const all = Array.from({ length: corners }, (_, i) => {
     const v = geometry.index ? geometry.index.getX(start + i) : start + i;
-    const at = [position.getX(v), position.getY(v), position.getZ(v)];
-    const name = at.map((x) => x + 0).join();
-    let index = names.get(name);
-    if (index === undefined) names.set(name, (index = names.size)), points.push(...at);
-    indices[i] = index;
-  }
+    return [position.getX(v), position.getY(v), position.getZ(v)];
+  });
+  const { points, names } = join(all), indices = names.flatMap((a, i) => {
+    const [b, c] = [names[i + 1]!, names[i + 2]!];
+    return i % 3 === 0 && a !== b && b !== c && c !== a ? [a, b, c] : []; // a pole's triangles may have no width
+  });
   const inside = measure(points, indices);
   if (!inside) return null;
-  return { mesh: new OccluderMesh(Float32Array.from(points), indices, 'front'), ...inside };
+  return { mesh: new OccluderMesh(Float32Array.from(points), Uint32Array.from(indices), 'front'), ...inside };
+}
+
+// Points so near to each other are one, the first: a seam ends at the sine of 2 π, which is not 0 in a computer. Single
+// precision, in which all is drawn, is a hundred times as coarse, so no gap opens there, and what the shape gains is far
+// below the part of a pixel by which occluders are drawn smaller.
+const near = 1e-9;
+
+function join(all: readonly number[][]): { points: number[]; names: number[] } {
+  const extents = [0, 1, 2].map((k) => Math.max(...all.map((p) => p[k]!)) - Math.min(...all.map((p) => p[k]!)));
+  const most = near * Math.max(...extents), points: number[] = [];
+  const names = all.map((p) => {
+    for (let i = 0; i < points.length; i += 3)
+      if (p.every((x, k) => Math.abs(x - points[i + k]!) <= most)) return i / 3;
+    return points.push(...p) / 3 - 1;
+  });
+  return { points, names };
 }
 
 type Inside = Pick<Convex, 'centre' | 'radius'>;
 
 // Null unless every edge has one triangle on each side, and every point lies behind every face.
-function measure(points: number[], indices: Uint32Array): Inside | null {
+function measure(points: number[], indices: number[]): Inside | null {
+  if (indices.length < 12) return null;
   const edges = new Set<string>();
   for (let i = 0; i < indices.length; ++i) {
     const edge = `${indices[i]},${indices[i % 3 === 2 ? i - 2 : i + 1]}`;
