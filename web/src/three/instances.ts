@@ -1,6 +1,6 @@
 // How instances that nobody sees are left out: of an InstancedMesh by drawing a shorter copy of its matrices, of a
 // BatchedMesh by listing those that are seen. What the user set stays as it is.
-import { InstancedBufferAttribute, Matrix4, Sphere, Vector3 } from 'three';
+import { InstancedBufferAttribute, Matrix4, Object3D, Sphere, Vector3 } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material } from 'three';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
@@ -24,15 +24,25 @@ const copies = new WeakMap<InstancedMesh, Copy>();
 
 function copyOf(mesh: InstancedMesh, count: number): Copy {
   let copy = copies.get(mesh);
-  const room = mesh.instanceColor ? mesh.instanceColor.itemSize : 0;
-  if (!copy || copy.matrix.count < count || (copy.color?.itemSize ?? 0) !== room) {
-    const size = Math.min(2 * count, mesh.instanceMatrix.count);
-    const make = (items: number) => new InstancedBufferAttribute(new Float32Array(size * items), items);
-    copy = { matrix: make(16), color: room ? make(room) : null, list: new Uint32Array(0), from: [] };
+  const { instanceMatrix, instanceColor } = mesh;
+  if (!copy || copy.matrix.count < count || !isAlike(copy.color, instanceColor)) {
+    const size = Math.min(2 * count, instanceMatrix.count);
+    const color = instanceColor && room(instanceColor, size);
+    copy = { matrix: room(instanceMatrix, size), color, list: new Uint32Array(0), from: [] };
     copies.set(mesh, copy);
   }
   return copy;
 }
+
+// Another attribute of the same kind: numbers of other kinds mean other colours.
+function room({ array, itemSize, normalized, gpuType }: Attribute, size: number): Attribute {
+  const Kind = array.constructor as Float32ArrayConstructor;
+  const made = new InstancedBufferAttribute(new Kind(size * itemSize), itemSize, normalized);
+  made.gpuType = gpuType;
+  return made;
+}
+const isAlike = (a: Attribute | null, b: Attribute | null): boolean => a === b || (a !== null && b !== null &&
+  a.array.constructor === b.array.constructor && a.itemSize === b.itemSize && a.normalized === b.normalized);
 
 function pick(from: Attribute, to: Attribute, list: Uint32Array): void {
   const { itemSize } = from, target = to.array;
@@ -50,9 +60,12 @@ const isSame = (a: Uint32Array, b: Uint32Array): boolean => a.length === b.lengt
 /** What a mesh draws while a culled scene is drawn: fewer instances, or, for a render within that one, all of them again. */
 export interface Narrowing { apply(): void; undo(): void }
 
+const callbacks = ['onBeforeRender', 'onAfterRender', 'onBeforeShadow', 'onAfterShadow'] as const;
+type Callback = (...all: unknown[]) => void;
+
 /** Draws only the listed instances, of which the camera sees the first `seen`, once it is applied. */
 export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): Narrowing {
-  const { instanceMatrix, instanceColor, count } = mesh;
+  const { instanceMatrix, instanceColor } = mesh;
   const copy = copyOf(mesh, list.length);
   const from = [instanceMatrix, instanceMatrix.version, instanceColor, instanceColor?.version];
   if (from.some((one, i) => one !== copy.from[i]) || !isSame(copy.list, list)) {
@@ -60,25 +73,41 @@ export function narrow(mesh: InstancedMesh, list: Uint32Array, seen: number): Na
     if (instanceColor) pick(instanceColor, copy.color!, list);
     copy.from = from, (copy.list = list);
   }
-  const own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeShadow');
-  const ownAfter = Object.getOwnPropertyDescriptor(mesh, 'onAfterShadow');
-  const { onBeforeShadow, onAfterShadow } = mesh;
+  let own = ownOf(mesh);
+  const shorten = (count: number) => {
+    // A render within a callback has done so already.
+    if (mesh.instanceMatrix !== copy.matrix) own = ownOf(mesh);
+    mesh.instanceMatrix = copy.matrix, (mesh.instanceColor = copy.color), (mesh.count = count);
+  };
+  const undos: (() => void)[] = [];
   const apply = () => {
-    if (list.length > seen) {
-      mesh.onBeforeShadow = (...all) => ((mesh.count = list.length), onBeforeShadow.apply(mesh, all));
-      mesh.onAfterShadow = (...all) => ((mesh.count = seen), onAfterShadow.apply(mesh, all));
-    }
     withhold(instanceMatrix);
     if (instanceColor) withhold(instanceColor);
-    mesh.instanceMatrix = copy.matrix;
-    mesh.instanceColor = copy.color;
-    mesh.count = seen;
+    for (const name of callbacks) {
+      const isLonger = list.length > seen && name.endsWith('Shadow');
+      if (!isLonger && mesh[name] === Object3D.prototype[name]) continue;
+      // The user's own callback finds the mesh as the user has made it.
+      undos.push(put(mesh, name, (call, all) => {
+        Object.assign(mesh, own), call.apply(mesh, all), shorten(name === 'onBeforeShadow' ? list.length : seen);
+      }));
+    }
+    shorten(seen);
   };
   const undo = () => {
-    mesh.instanceMatrix = instanceMatrix, (mesh.instanceColor = instanceColor), (mesh.count = count);
-    restore(mesh, 'onBeforeShadow', own), restore(mesh, 'onAfterShadow', ownAfter);
+    Object.assign(mesh, own);
+    for (const takeAway of undos.splice(0)) takeAway();
   };
   return { apply, undo };
+}
+
+const ownOf = ({ instanceMatrix, instanceColor, count }: InstancedMesh) => ({ instanceMatrix, instanceColor, count });
+
+// Puts a callback over a mesh's own; returns what takes it away, unless the own one has put another there.
+function put(mesh: InstancedMesh, name: (typeof callbacks)[number],
+  over: (call: Callback, all: unknown[]) => void): () => void {
+  const before = Object.getOwnPropertyDescriptor(mesh, name), call = mesh[name] as Callback;
+  const ours = (mesh[name] = (...all: unknown[]) => over(call, all));
+  return () => mesh[name] === ours && restore(mesh, name, before);
 }
 
 const matrix = new Matrix4(), eye = new Vector3(), forward = new Vector3();
