@@ -40,7 +40,7 @@ test('without SIMD a three.js scene is drawn whole, and the console says so once
     const { Mesh, PerspectiveCamera, Scene } = await import('three');
     const { ready, SightlineCuller } = await import('sightline-culling/three');
     const scene = new Scene().add(new Mesh()), { children } = scene;
-    new SightlineCuller(scene), new SightlineCuller(scene);
+    new SightlineCuller(scene), new SightlineCuller(new Scene());
     await ready.catch(() => {});
     for (let frame = 0; frame < 3; ++frame) {
       scene.onBeforeRender({ sortObjects: true }, scene, new PerspectiveCamera(), null);

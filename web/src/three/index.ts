@@ -5,14 +5,18 @@
 // While a scene is rendered its `children` are a shorter list, of what the camera may see; before and after they are what
 // they were. What the culler does not know (sprites, lines, skinned meshes, LODs, meshes with children, frustumCulled =
 // false) stands in the list as before.
-import type { ArrayCamera, BatchedMesh, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
+import { BatchedMesh } from 'three';
+import type { ArrayCamera, BufferGeometry, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
+import type { PerspectiveCamera } from 'three';
 import { refuse } from '../errors.js';
 import '../index.js';
 import { floats } from '../memory.js';
 import { OcclusionBuffer } from '../occlusion.js';
 import { buffer as memory, ready, supported } from '../runtime.js';
 import { Culler, type CullView } from '../world.js';
+import { forgetConvex } from './convex.js';
 import { eyeOf, isRigid } from './eye.js';
+import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
 import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
@@ -46,13 +50,11 @@ interface Renderer {
   clippingPlanes?: readonly unknown[];
   shadowMap?: { enabled: boolean; autoUpdate: boolean; needsUpdate: boolean };
 }
-type BeforeRender = (renderer: Renderer, scene: Scene, camera: Camera, target: unknown) => void;
-type AfterRender = (renderer: Renderer, scene: Scene, camera: Camera, target?: unknown) => void;
 
 /** What three walks, and which of instances it draws. */
 interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
 interface Shadow { light: Light & { shadow: LightShadow }; viewport: number; pass: Pass }
-interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[]; count: number }
+interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[] }
 
 const mostViews = 8;
 const restFrames = 16;
@@ -60,6 +62,8 @@ const restFrames = 16;
 const fewest = 64;
 /** Pixels of the occlusion buffer that an occluder covers at least. */
 const leastArea = 100;
+/** Scenes that have a culler. */
+const taken = new WeakSet<Scene>();
 
 export class SightlineCuller {
   /** Whether it culls; the scene is drawn as three draws it while it does not. */
@@ -73,9 +77,7 @@ export class SightlineCuller {
   readonly #scene: Scene;
   readonly #bufferWidth: number;
   readonly #frames: Frame[] = [];
-  readonly #own: [PropertyDescriptor | undefined, PropertyDescriptor | undefined];
-  readonly #before: BeforeRender;
-  readonly #after: AfterRender;
+  readonly #hooks: Hooks;
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
   #drawn: Eye | undefined;
   readonly #whole = new Whole();
@@ -88,21 +90,16 @@ export class SightlineCuller {
     const { occlusion = true, bufferWidth = 512 } = options;
     if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
       refuse(`SightlineCuller: a bufferWidth of ${bufferWidth}, expected an integer from 16 to 4096`);
+    if (taken.has(scene)) refuse('SightlineCuller: the scene has one already, expected dispose() of that first');
+    taken.add(scene);
     this.#scene = scene;
     this.occlusion = occlusion;
     this.#bufferWidth = bufferWidth;
-    this.#own = [Object.getOwnPropertyDescriptor(scene, 'onBeforeRender'),
-      Object.getOwnPropertyDescriptor(scene, 'onAfterRender')];
-    this.#before = scene.onBeforeRender as never;
-    this.#after = scene.onAfterRender as never;
-    scene.onBeforeRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
-      this.#before.call(scene, renderer, given, camera, target);
-      this.#begin(renderer, this.camera ?? camera);
-    }) as never;
-    scene.onAfterRender = ((renderer: Renderer, given: Scene, camera: Camera, target: unknown) => {
-      this.#end();
-      this.#after.call(scene, renderer, given, camera, target);
-    }) as never;
+    this.#hooks = new Hooks(scene, {
+      before: (renderer, camera) => this.#begin(renderer as Renderer, this.camera ?? camera),
+      after: () => this.#end(),
+      whole: () => this.#frames.at(-1)?.children,
+    });
     ready.then(() => (this.#inside ??= this.#make()), (error: Error) => this.#tell(error));
   }
 
@@ -121,16 +118,19 @@ export class SightlineCuller {
 
   /** Takes the culler out of the scene, which is drawn as before. */
   dispose(): void {
+    if (this.#hooks.disposed) return;
     while (this.#frames.length > 0) this.#end();
-    restore(this.#scene, 'onBeforeRender', this.#own[0]);
-    restore(this.#scene, 'onAfterRender', this.#own[1]);
+    this.#hooks.dispose();
+    taken.delete(this.#scene);
     this.enabled = false;
+    for (const { mesh } of this.#inside?.inventory.things ?? [])
+      for (const shape of [mesh.geometry, mesh.userData.occluder]) forgetConvex(shape as BufferGeometry);
     for (const thing of Object.values(this.#inside ?? {})) thing.dispose();
     this.#inside = undefined;
   }
 
   #make() {
-    if (!this.enabled && this.#scene.onBeforeRender === this.#before as never) return undefined; // disposed of meanwhile
+    if (this.#hooks.disposed) return undefined; // meanwhile
     return { inventory: new Inventory(this.#scene), culler: new Culler(), buffer: new OcclusionBuffer() };
   }
 
@@ -143,10 +143,10 @@ export class SightlineCuller {
   #begin(renderer: Renderer, camera: Camera): void {
     const outer = this.#frames.at(-1);
     if (outer) this.#leave(outer); // of a render within a render
-    const { children } = this.#scene, frame: Frame = { children, restore: [], narrowed: [], list: children, count: 0 };
+    const { children } = this.#scene, frame: Frame = { children, restore: [], narrowed: [], list: children };
     this.#frames.push(frame);
-    // compileAsync() begins and never ends.
-    if (!outer) queueMicrotask(() => this.#frames.includes(frame) && this.#end());
+    // compileAsync() begins and never ends; nor does any render where somebody has put another onAfterRender over ours.
+    if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
     this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     try {
@@ -155,7 +155,6 @@ export class SightlineCuller {
       this.#tell(error as Error);
     }
     this.#scene.children = frame.list;
-    frame.count = frame.list.length;
   }
 
   #end(): void {
@@ -163,12 +162,7 @@ export class SightlineCuller {
     if (!frame) return;
     for (const undo of frame.restore) undo();
     for (const each of frame.narrowed) each.undo();
-    const { children } = this.#scene;
     this.#scene.children = frame.children;
-    // What was added or removed while drawing went to the list that stood in.
-    if (children !== frame.list || children === frame.children || children.length === frame.count) return this.#outer();
-    for (const object of children.slice(frame.count)) frame.children.push(object);
-    frame.children.splice(0, Infinity, ...frame.children.filter(({ parent }) => parent === this.#scene));
     this.#outer();
   }
   // What the render around one takes away of its own, and has back after it.
@@ -278,6 +272,8 @@ export class SightlineCuller {
         const light = each as Shadow['light'];
         const { shadow } = light;
         if (!light.isLight || !light.castShadow || !shadow || !(shadow.autoUpdate || shadow.needsUpdate)) return;
+        // As three does where it has yet to make the map.
+        if (!shadow.map) (shadow.camera as PerspectiveCamera).updateProjectionMatrix();
         for (let viewport = 0; viewport < shadow.getViewportCount(); ++viewport) {
           (shadow.updateMatrices as (light: Light, viewport: number) => void)(light, viewport);
           views.push({ light, viewport, view: eyeOf(shadow.camera, shadow.mapSize.x) });
@@ -315,13 +311,13 @@ export class SightlineCuller {
     frame.narrowed.push(narrowing), narrowing.apply();
   }
 
-  // What somebody else has put there stays, and the batch is drawn whole.
+  // What somebody else has put there stays, a method of a class of theirs, too, and the batch is drawn whole.
   #narrowBatch(thing: Thing, main: Pass, frame: Frame): void {
     const mesh = thing.mesh as BatchedMesh, own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeRender');
-    if (own && !this.#fills.has(own.value as object)) return;
+    if (own ? !this.#fills.has(own.value as object) : mesh.onBeforeRender !== listing) return;
     const fills: BatchedMesh['onBeforeRender'] = (by, scene, camera, geometry, material, group) => {
       // A render within this one that culls nothing.
-      if (this.#frames.at(-1) !== frame) return void wholeOf(mesh).call(mesh, by, scene, camera, geometry, material, group);
+      if (this.#frames.at(-1) !== frame) return void listing.call(mesh, by, scene, camera, geometry, material, group);
       const pass = scene === null ? this.#shadow : main;
       fill(thing, pass?.ranges.get(thing), by as Sender, camera, geometry, material);
     };
@@ -331,7 +327,8 @@ export class SightlineCuller {
   readonly #fills = new WeakSet<object>();
 }
 
-const wholeOf = (mesh: BatchedMesh) => (Object.getPrototypeOf(mesh) as BatchedMesh).onBeforeRender;
+/** three's own, which lists what of a batch is drawn. */
+const listing = BatchedMesh.prototype.onBeforeRender;
 
 // Those that the camera sees, then those that only lights see; none where they are more than `most`.
 function instancesOf(thing: Thing, main: Pass, shadows: Shadow[], most: number): Uint32Array {

@@ -5,7 +5,10 @@ import { World } from '../world.js';
 import { Resting } from './resting.js';
 import { classify, disposeOf, isOther, isRestless, makeThing, sumOf, takeNote, update, type Known, type Thing } from './things.js';
 
-interface Node { object: Object3D; parent: number; shown: boolean }
+/** With the list of children that we know, and how many it has. */
+interface Node { object: Object3D; parent: number; shown: boolean; children: Object3D[]; count: number }
+const nodeOf = (object: Object3D, parent: number): Node =>
+  ({ object, parent, shown: true, children: object.children, count: object.children.length });
 /** Something that is left to three, with all below it. */
 export interface Left { object: Object3D; parent: number }
 
@@ -49,7 +52,7 @@ export class Inventory {
   #matrices = new Float64Array(0);
   #changed = true;
   readonly #moved: number[] = [];
-  readonly #added = (event: { child: Object3D; target: Object3D }) => this.#add(event.child, event.target);
+  readonly #added = (event: { child: Object3D; target: Object3D }) => this.#add(event.child, event.target, 1);
   readonly #removed = (event: { child: Object3D }) => this.#remove(event.child);
 
   constructor(scene: Scene) {
@@ -66,8 +69,11 @@ export class Inventory {
     if (!this.#changed) this.#scan();
     if (this.#changed) this.#rebuild();
     for (const [i, node] of this.nodes.entries()) {
-      node.shown = node.object.visible && (i === 0 || this.nodes[node.parent]!.shown);
-      if (i > 0 && node.object.renderOrder !== 0) this.#changed = true;
+      const { object, parent } = node, { children } = object;
+      node.shown = object.visible && (i === 0 || this.nodes[parent]!.shown);
+      if (i > 0 && object.renderOrder !== 0) this.#changed = true;
+      // Somebody has written there by themselves.
+      if (children !== node.children || children.length !== node.count) this.#changed = true;
     }
     if (this.#changed) this.update();
   }
@@ -99,7 +105,7 @@ export class Inventory {
     for (const thing of this.#instanced) if (isRestless(thing)) this.#leave(thing);
     for (const left of this.#resting.calm()) {
       this.left.splice(this.left.indexOf(left), 1);
-      this.#add(left.object, this.nodes[left.parent]!.object);
+      this.#add(left.object, this.nodes[left.parent]!.object, 0);
     }
   }
   #look(some: Thing[]): void {
@@ -135,7 +141,7 @@ export class Inventory {
     for (const all of [this.things, this.#instanced, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = this.size = 0;
     this.world.dispose(), (this.world = new World());
-    this.nodes.push({ object: this.#scene, parent: -1, shown: true });
+    this.nodes.push(nodeOf(this.#scene, -1));
     this.#listen(this.#scene, true);
     const found: Thing[] = [];
     for (const child of this.#scene.children) this.#walk(child, 0, found);
@@ -147,7 +153,7 @@ export class Inventory {
     const taken = classify(object);
     if (taken) return void found.push(this.#thing(object as Mesh, parent, taken.kind, taken.count));
     if (!isThrough(object)) return void this.left.push({ object, parent });
-    const index = this.nodes.push({ object, parent, shown: true }) - 1;
+    const index = this.nodes.push(nodeOf(object, parent)) - 1;
     this.#listen(object, true);
     for (const child of object.children) this.#walk(child, index, found);
   }
@@ -200,16 +206,18 @@ export class Inventory {
   }
 
   // Meshes come and go one by one; for all else the scene is walked anew.
-  #add(child: Object3D, parent: Object3D): void {
+  #add(child: Object3D, parent: Object3D, more: number): void {
     const taken = classify(child);
     const index = taken ? this.nodes.findIndex((node) => node.object === parent) : -1;
     if (this.#changed || index < 0 || !taken) return void (this.#changed = true);
+    this.nodes[index]!.count += more;
     child.updateWorldMatrix(true, false);
     this.#enter([this.#thing(child as Mesh, index, taken.kind, taken.count)]);
   }
   #remove(child: Object3D): void {
     const thing = this.#thingOfMesh.get(child);
     if (this.#changed || !thing) return void (this.#changed = true);
+    --this.nodes[thing.parent]!.count;
     this.#forget(thing);
   }
   // Three draws it by itself as long as it is restless.

@@ -1,0 +1,100 @@
+// A scene under SightlineCuller whose owner does things to it, too.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
+import * as THREE from 'three';
+import { bytes, SightlineError } from 'sightline-culling';
+import { ready, SightlineCuller } from 'sightline-culling/three';
+import { withPage } from './browser/chromium.mjs';
+
+const page = new URL('browser/hooks.mjs', import.meta.url).pathname;
+const renderer = { isWebGLRenderer: true, sortObjects: true }, camera = new THREE.PerspectiveCamera(60, 1.5, 0.1, 500);
+const loaded = () => new Promise((resolve) => setTimeout(resolve, 10));
+
+test('what is done to a scene while and between it is drawn is as without the culler', async () => {
+  await withPage(page, async (tab) => {
+    await tab.waitForFunction(() => window.play);
+    for (const [name, { differs, off, on, culled, shy }] of Object.entries(await tab.evaluate(() => window.play()))) {
+      assert.deepEqual(differs.filter((pixels) => pixels > 0), [], `${name}: ${differs}`);
+      assert.deepEqual(on, off, name);
+      assert.ok(culled > 0, `${name}: nothing was culled`);
+      assert.equal(shy, 0, `${name}: too little was hidden`);
+    }
+  });
+});
+
+const hooks = ['onBeforeRender', 'onAfterRender', 'add', 'remove', 'attach', 'clear'];
+const ownOf = (scene) => hooks.filter((name) => Object.hasOwn(scene, name));
+
+test('dispose() takes away what the culler has put there, once, and leaves what came after it', async () => {
+  await ready;
+  const scene = new THREE.Scene(), first = new SightlineCuller(scene), calls = [], { onAfterRender } = scene;
+  scene.onBeforeRender = () => calls.push('before');
+  scene.onAfterRender = (...all) => (calls.push('after'), onAfterRender(...all));
+  first.dispose();
+  assert.deepEqual(ownOf(scene), ['onBeforeRender', 'onAfterRender']);
+  scene.onBeforeRender(renderer, scene, camera, null), scene.onAfterRender(renderer, scene, camera);
+  assert.deepEqual(calls, ['before', 'after']);
+  delete scene.onBeforeRender, delete scene.onAfterRender;
+  const second = new SightlineCuller(scene);
+  first.dispose();
+  assert.deepEqual(ownOf(scene), hooks);
+  second.dispose();
+  assert.deepEqual(ownOf(scene), []);
+});
+
+test('a scene has one culler', async () => {
+  const scene = new THREE.Scene(), culler = new SightlineCuller(scene);
+  assert.throws(() => new SightlineCuller(scene), (error) => error instanceof SightlineError && /has one already/.test(error.message));
+  culler.dispose();
+  new SightlineCuller(scene).dispose();
+});
+
+// A box before the eye that is another for every frame; how much the module's memory grows after the first of them.
+async function stream(frames, discard) {
+  await ready;
+  const scene = new THREE.Scene(), culler = new SightlineCuller(scene), probe = bytes(1);
+  let size = 0, occluders = 0;
+  scene.add(new THREE.Mesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial()));
+  scene.children[0].position.z = 50; // behind, lest all be in view and left to three
+  await loaded();
+  for (let frame = 0; frame < frames; ++frame) {
+    const mesh = new THREE.Mesh(new THREE.BoxGeometry(2, 2, 2), new THREE.MeshBasicMaterial());
+    mesh.position.z = -10, scene.add(mesh), camera.updateMatrixWorld(), scene.updateMatrixWorld();
+    scene.onBeforeRender(renderer, scene, camera, null), scene.onAfterRender(renderer, scene, camera);
+    occluders += culler.stats.occluders;
+    scene.remove(mesh), await discard(mesh, frame);
+    if (frame === 400) size = probe.array.buffer.byteLength;
+  }
+  assert.equal(occluders, frames);
+  const grown = probe.array.buffer.byteLength - size;
+  return culler.dispose(), probe.dispose(), grown;
+}
+
+test('occluders go with their geometries', async () => {
+  setFlagsFromString('--expose-gc');
+  const collect = runInNewContext('gc');
+  assert.equal(await stream(2000, ({ geometry }) => geometry.dispose()), 0);
+  // Dropped without a word.
+  assert.equal(await stream(2000, async (_, frame) => frame % 100 === 0 && (collect(), await loaded())), 0);
+});
+
+test('occluders go with the culler', async () => {
+  await ready;
+  const probe = bytes(1), geometries = Array.from({ length: 100 }, () => new THREE.BoxGeometry(2, 2, 2));
+  let size = 0;
+  for (let round = 0; round < 30; ++round) {
+    const scene = new THREE.Scene(), culler = new SightlineCuller(scene);
+    await loaded();
+    const meshes = geometries.map((geometry) => new THREE.Mesh(geometry.clone(), new THREE.MeshBasicMaterial()));
+    meshes.forEach((mesh, i) => mesh.position.set((i % 10) - 5, Math.floor(i / 10) - 5, -15)), scene.add(...meshes);
+    geometries.splice(0, Infinity, ...meshes.map(({ geometry }) => geometry)); // kept
+    camera.updateMatrixWorld(), scene.updateMatrixWorld();
+    scene.onBeforeRender(renderer, scene, camera, null), scene.onAfterRender(renderer, scene, camera);
+    assert.ok(culler.stats.occluders > 50);
+    culler.dispose();
+    if (round === 3) size = probe.array.buffer.byteLength;
+  }
+  assert.equal(probe.array.buffer.byteLength, size);
+});
