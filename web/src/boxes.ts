@@ -1,6 +1,6 @@
 // Boxes as calls take them.
 import { refuse } from './errors.js';
-import { Block, type Call, type Input } from './memory.js';
+import { Block, expectOrigin, type Call, type Input } from './memory.js';
 
 /** Boxes in an array, in metres. Single precision may be about an `origin`. */
 export interface BoxArray {
@@ -34,17 +34,15 @@ export function readBoxes(what: string, boxes: Boxes): {
   const double = kind === Float64Array;
   if (form === 2 && double) refuse(`${what}: columns of double precision, expected single`);
   if (!Number.isInteger(stride) || stride < 6) refuse(`${what}: a stride of ${stride}, expected an integer of 6 or more`);
-  if (origin.length !== 3) refuse(`${what}: an origin of ${origin.length} numbers, expected 3`);
+  expectOrigin(what, origin);
   const step = form === 2 ? 6 : stride;
-  const count = (data.length + step - 6) / step;
-  if (!Number.isInteger(count) && data.length > 0)
-    refuse(`${what}: ${data.length} numbers, expected a multiple of ${step}`);
-  const code = form === 2 ? 4 : form * 2 + (double ? 1 : 0);
-  const whole = data.length > 0 ? count : 0;
+  const count = data.length && (data.length + step - 6) / step;
+  if (!Number.isInteger(count)) refuse(`${what}: ${data.length} numbers, expected a multiple of ${step}`);
   return {
     data,
-    count: whole,
-    args: (pointer) => [code, pointer, step * (double ? 8 : 4), whole, origin[0]!, origin[1]!, origin[2]!],
+    count,
+    args: (pointer) =>
+      [2 * form + (double ? 1 : 0), pointer, step * (double ? 8 : 4), count, origin[0]!, origin[1]!, origin[2]!],
   };
 }
 

@@ -1,5 +1,5 @@
 // Typed arrays that lie in the module's memory, and how calls take these and all others.
-import { refuse } from './errors.js';
+import { refuse, type Code } from './errors.js';
 import { buffer, wasm } from './runtime.js';
 
 export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
@@ -115,6 +115,11 @@ export function calling<R>(body: (call: Call) => R): R {
 export function expectKind<T extends Numbers>(what: string, input: unknown, kind: Kind<T>): asserts input is Input<T> {
   if (input instanceof kind || (input instanceof Block && (input.kind as unknown) === kind)) return;
   refuse(`${what}: expected a ${(kind as unknown as { name: string }).name} or a Block of one`);
+}
+
+/** Throws unless they are three numbers. */
+export function expectOrigin(what: string, origin: ArrayLike<number>, code?: Code): void {
+  if (origin?.length !== 3) refuse(`${what}: an origin of ${origin?.length} numbers, expected 3`, code);
 }
 
 /** Throws unless it has so many elements. */

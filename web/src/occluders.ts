@@ -1,6 +1,7 @@
 // What the whole module's World has beside that of `core`: occluders that its objects carry.
 import { refuse } from './errors.js';
-import { Block, calling, expectKind, expectLength, type Call, type Input, type Numbers } from './memory.js';
+import { Block, calling, expectKind, expectLength, expectOrigin } from './memory.js';
+import type { Call, Input, Numbers } from './memory.js';
 import { buffer, check, need } from './runtime.js';
 import { handleList, World as CoreWorld, type Handle, type Handles } from './world.js';
 
@@ -99,7 +100,8 @@ export class World extends CoreWorld {
    * moved. None takes them away. */
   setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0]): void {
     calling((call) => {
-      if (origin.length !== 3) refuse(`setTriangles: an origin of ${origin.length} numbers, expected 3`);
+      this.expect('setTriangles', handle);
+      expectOrigin('setTriangles', origin);
       const [at, count] = column('setTriangles', call, 'corners', corners, Float32Array, 3);
       check(need('world_set_triangles')(this.pointer, handle, at, count, origin[0]!, origin[1]!, origin[2]!));
     });
@@ -117,6 +119,6 @@ function placeOrigins(origins: Input<Float64Array> | readonly [number, number, n
     expectLength('setOccluders: origins', origins, 3 * count);
     return origins;
   }
-  if (origins.length !== 3) refuse(`setOccluders: an origin of ${(origins as readonly number[]).length} numbers, expected 3`);
+  expectOrigin('setOccluders', origins);
   return Float64Array.from({ length: 3 * count }, (_, i) => origins[i % 3]!);
 }

@@ -40,17 +40,21 @@ export interface OcclusionOptions {
 
 /** One view's depth of occluders: begin it with a view, draw occluders, ask. */
 export class OcclusionBuffer extends Owned {
+  #begun = false;
+
   constructor() {
     super('OcclusionBuffer', 'occlusion_create', 'occlusion_destroy');
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
-  begin(view: View, { coverage = 'centres', scale = 1 }: OcclusionOptions = {}): void {
+  begin(view: View, options?: OcclusionOptions): void {
+    const { coverage = 'centres', scale = 1 } = options ?? {};
     const places = coverages.indexOf(coverage);
     if (places < 0) refuse(`begin: a coverage of ${coverage}, expected ${coverages.join(', ')}`);
     calling((call) => {
       const at = call.room(viewBytes);
       writeView('begin', view, at);
       check(wasm().occlusion_begin!(this.pointer, at, places, Number.isInteger(scale) ? scale : 0));
+      this.#begun = true;
     });
   }
   /** Draws boxes of which every point inside is solid. */
@@ -71,7 +75,8 @@ export class OcclusionBuffer extends Owned {
   }
   /** Draws a mesh, moved by an affine matrix about the view's origin. */
   drawMesh(mesh: OccluderMesh, transform: ArrayLike<number>): void {
-    if (transform.length !== 16) refuse(`drawMesh: a transform of ${transform.length} numbers, expected 16`);
+    if (!(mesh instanceof OccluderMesh)) refuse('drawMesh: expected an OccluderMesh');
+    if (transform?.length !== 16) refuse(`drawMesh: a transform of ${transform?.length} numbers, expected 16`);
     calling((call) => {
       const at = call.room(64);
       new Float32Array(buffer(), at, 16).set(transform);
@@ -81,6 +86,7 @@ export class OcclusionBuffer extends Owned {
   /** Whether some pixel centre, or place on the image, may see each box: 1 or 0, where 0 is certain. */
   maySee(boxes: Boxes, out: Block<Uint8Array>): void {
     calling((call) => {
+      if (!this.#begun) refuse('maySee: the buffer was never begun, expected begin() first', 'stale_buffer');
       const { count, args } = placeBoxes('maySee', call, boxes);
       expectKind('maySee: out', out, Uint8Array);
       expectLength('maySee: out', out, count);

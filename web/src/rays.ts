@@ -46,6 +46,10 @@ export class BoxBvh extends Owned {
     return calling((call) => {
       const viewAt = call.room(176), out = call.room(4 * this.size);
       writeView('visibleSet', view, viewAt);
+      // The module would take them modulo 2^32.
+      for (const side of [columns, rows])
+        if (!Number.isInteger(side) || side < 1 || side > 2 ** 24)
+          refuse(`visibleSet: ${columns} x ${rows} rays, expected 1 to 2^24 of them`);
       check(wasm().bvh_visible_set!(this.pointer, viewAt, columns, rows, out, viewAt + 168));
       return new Uint32Array(buffer(), out, new Float64Array(buffer(), viewAt + 168, 1)[0]!).slice();
     });

@@ -23,13 +23,12 @@ let loading: Promise<void> | undefined;
 
 async function compile(source: Source): Promise<WebAssembly.Module> {
   const given = await source;
-  if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return WebAssembly.compile(given as BufferSource);
   if (given instanceof WebAssembly.Module) return given;
   if (typeof Response !== 'undefined' && given instanceof Response) {
     if (!given.ok) refuse(`sightline: ${given.url} could not be fetched (${given.status})`);
     return WebAssembly.compile(await given.arrayBuffer());
   }
-  return WebAssembly.compile(given as unknown as BufferSource);
+  return WebAssembly.compile(given as BufferSource);
 }
 
 async function start(source: Source): Promise<void> {
@@ -87,10 +86,13 @@ export async function inflate(base64: string): Promise<BufferSource> {
   // Without Blob and Response, which Node takes as long to load as all the rest.
   const { writable, readable } = new DecompressionStream('gzip'), writer = writable.getWriter(), reader = readable.getReader();
   void writer.write(packed), void writer.close();
-  const parts: Uint8Array[] = [];
-  for (let part = await reader.read(); !part.done; part = await reader.read()) parts.push(part.value as Uint8Array);
-  const whole = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
-  parts.reduce((at, part) => (whole.set(part, at), at + part.length), 0);
+  // gzip ends with how many bytes it unpacks to.
+  const whole = new Uint8Array(new DataView(packed.buffer).getUint32(packed.length - 4, true));
+  let at = 0;
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    whole.set(part.value, at);
+    at += part.value.length;
+  }
   return whole;
 }
 

@@ -1,5 +1,6 @@
 // Views as the library lays them out: WorldView of 160 bytes, CullView of 184.
 import { refuse } from './errors.js';
+import { expectOrigin } from './memory.js';
 import { buffer } from './runtime.js';
 
 /** A camera. Matrices are column-major and multiply columns, as in three.js and glTF. */
@@ -30,13 +31,13 @@ export function writeView(what: string, view: View, pointer: number): void {
   const { worldToEye, eyeToClip, width, height, origin = [0, 0, 0] } = view ?? {};
   if (worldToEye?.length !== 16 || eyeToClip?.length !== 16)
     refuse(`${what}: a view needs worldToEye and eyeToClip, expected 16 numbers each`, 'bad_view');
-  if (origin.length !== 3) refuse(`${what}: an origin of ${origin.length} numbers, expected 3`, 'bad_view');
+  expectOrigin(what, origin, 'bad_view');
   for (const side of [width, height]) {
     if (!Number.isInteger(side) || side < 1 || side > 16384)
       refuse(`${what}: an image of ${width} x ${height}, expected 1 to 16384 pixels a side`, 'bad_view');
   }
   const floats = new Float32Array(buffer(), pointer, 32);
-  for (let i = 0; i < 16; ++i) (floats[i] = worldToEye[i]!), (floats[16 + i] = eyeToClip[i]!);
+  floats.set(worldToEye), floats.set(eyeToClip, 16);
   const data = new DataView(buffer(), pointer, viewBytes);
   data.setUint32(128, width, true), data.setUint32(132, height, true);
   for (let axis = 0; axis < 3; ++axis) data.setFloat64(136 + 8 * axis, origin[axis]!, true);

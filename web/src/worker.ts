@@ -86,7 +86,7 @@ export class WorkerWorld {
     this.#waiting.clear();
   }
 
-  #post<R>(name: string, ...args: unknown[]): Promise<R> {
+  async #post<R>(name: string, ...args: unknown[]): Promise<R> {
     if (this.#disposed) refuse('WorkerWorld: used after dispose()', 'disposed');
     return new Promise<R>((resolve, reject) => {
       const id = this.#next++;

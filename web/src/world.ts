@@ -29,6 +29,11 @@ export const handleList = (handles: Handles): Input<Float64Array> => {
   return all;
 };
 
+function expectColumn(what: string, column: Input<Uint32Array>, length: number): void {
+  expectKind(what, column, Uint32Array);
+  expectLength(what, column, length);
+}
+
 /** A world of boxes, anywhere within 10¹¹ m of 0. A refused call changes nothing. */
 export class World extends Owned {
   constructor() {
@@ -36,16 +41,12 @@ export class World extends Owned {
   }
 
   /** Puts objects in. Returns their handles. Linear: some 0.3 µs an object. */
-  insert(boxes: Boxes, columns: Columns = {}): Float64Array {
+  insert(boxes: Boxes, columns?: Columns): Float64Array {
     return calling((call) => {
-      const { data, count, args } = readBoxes('insert', boxes);
-      for (const column of ['layers', 'values'] as const) {
-        const given = columns[column];
-        if (given === undefined) continue;
-        expectKind(`insert: ${column}`, given, Uint32Array);
-        expectLength(`insert: ${column}`, given, count);
-      }
-      const [at, layers, values] = call.place(data, columns.layers, columns.values);
+      const { data, count, args } = readBoxes('insert', boxes), given = columns ?? {};
+      for (const name of ['layers', 'values'] as const)
+        if (given[name] !== undefined) expectColumn(`insert: ${name}`, given[name], count);
+      const [at, layers, values] = call.place(data, given.layers, given.values);
       const out = call.room(8 * count);
       check(wasm().world_insert!(this.pointer, ...args(at!), layers!, values!, out));
       return new Float64Array(buffer(), out, count).slice();
@@ -88,37 +89,42 @@ export class World extends Owned {
   }
   /** Whether the handle names an object of this world. */
   contains(handle: Handle): boolean {
-    return wasm().world_contains!(this.pointer, handle) !== 0;
+    return typeof handle === 'number' && wasm().world_contains!(this.pointer, handle) !== 0;
   }
   /** The handle of the object that has this id now. */
   handle(id: number): Handle | undefined {
-    const handle = wasm().world_handle!(this.pointer, id);
+    // The module would take other numbers modulo 2^32.
+    const handle = id >>> 0 === id ? wasm().world_handle!(this.pointer, id) : -1;
     return handle < 0 ? undefined : handle;
   }
   /** The box as it is kept, minimum and maximum: it holds what was given. */
   box(handle: Handle): Float64Array {
+    this.expect('box', handle);
     return calling((call) => {
       const out = call.room(48);
-      if (!wasm().world_box!(this.pointer, handle, out)) refuse('box: no object has this handle', 'stale_handle');
+      wasm().world_box!(this.pointer, handle, out);
       return new Float64Array(buffer(), out, 6).slice();
     });
   }
   /** The object's layers. */
   layers(handle: Handle): number {
-    if (!this.contains(handle)) refuse('layers: no object has this handle', 'stale_handle');
+    this.expect('layers', handle);
     return wasm().world_layers!(this.pointer, handle) >>> 0;
   }
   /** The object's value. */
   value(handle: Handle): number {
-    if (!this.contains(handle)) refuse('value: no object has this handle', 'stale_handle');
+    this.expect('value', handle);
     return wasm().world_value!(this.pointer, handle) >>> 0;
+  }
+  /** @internal Throws unless it names an object. */
+  expect(what: string, handle: Handle): void {
+    if (!this.contains(handle)) refuse(`${what}: no object has this handle`, 'stale_handle');
   }
 
   #setColumn(name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
     calling((call) => {
       const named = handleList(handles);
-      expectKind(what, column, Uint32Array);
-      expectLength(what, column, named.length);
+      expectColumn(what, column, named.length);
       const [numbers, at] = call.place(named, column);
       check(wasm()[name]!(this.pointer, numbers!, at!, named.length));
     });
@@ -197,9 +203,8 @@ export class Culler extends Owned {
 
   /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
    * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
-  cull(world: World, views: CullView | readonly CullView[], options: CullOptions = {}): Culled {
-    const all = Array.isArray(views) ? (views as readonly CullView[]) : [views as CullView];
-    const count = this.#run(world, all, options);
+  cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
+    const count = this.#run(world, [views].flat() as CullView[], options);
     const [, tested, nodesVisited, culledOcclusion, cost, frustumCost] = this.#result.array;
     return {
       ids: this.#ids!.array.subarray(0, count),
@@ -227,8 +232,8 @@ export class Culler extends Owned {
     super.dispose();
   }
 
-  #run(world: World, views: readonly CullView[], { valuesForIds, occlusion, costs }: CullOptions): number {
-    const pointer = this.pointer;
+  #run(world: World, views: readonly CullView[], options?: CullOptions): number {
+    const { valuesForIds, occlusion, costs } = options ?? {}, pointer = this.pointer;
     if (!(world instanceof World)) refuse('cull: expected a World');
     if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
     const capacity = wasm().cull_capacity!(world.pointer);
@@ -259,11 +264,12 @@ export class Culler extends Owned {
     const { occlusion, layers = allLayers } = view;
     if (occlusion && !(occlusion instanceof Owned && occlusion.what === 'OcclusionBuffer'))
       refuse('cull: expected an OcclusionBuffer as a view\'s occlusion');
-    if (!Number.isInteger(layers)) refuse(`cull: layers of ${layers}, expected an integer of 32 bits`);
+    if (!Number.isInteger(layers) || Math.abs(layers) >= 2 ** 32)
+      refuse(`cull: layers of ${layers}, expected an integer of 32 bits`);
     data.setUint32(160, occlusion?.pointer ?? 0, true);
     data.setUint32(164, layers, true);
     data.setFloat32(168, view.minArea ?? 0, true);
-    data.setFloat32(172, 1, true), data.setUint32(176, 0xffffffff, true);  // distances, which objects have none of here
+    data.setFloat32(172, 1, true), data.setUint32(176, allLayers, true);  // distances, which objects have none of here
     data.setUint32(180, 0, true);  // casters: none
   }
 }

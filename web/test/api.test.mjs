@@ -103,8 +103,44 @@ test('bad input is refused with one sentence and changes nothing', async () => {
   // More bytes than a module can address.
   for (const make of [() => floats(2 ** 30), () => doubles(2 ** 29 + 8), () => floats(2 ** 31)])
     assert.throws(make, refusal('too_many', /no memory for/));
+  for (const layers of [2 ** 40, 2 ** 32, -(2 ** 32)])
+    assert.throws(() => culler.cull(world, { ...view, layers }), refusal('bad_argument', /expected an integer of 32 bits/));
+  assert.equal(culler.cull(world, { ...view, layers: -1 }).ids.length, 1); // as three has them
   assert.equal(culler.cull(world, view).ids.length, 1);
   assert.throws(() => new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 3)), refusal('bad_mesh', /index 2/));
+});
+
+test('what is no number is no handle, and what is no size is none', async () => {
+  await ready;
+  const world = new World(), box = Float32Array.from(cube(0, 0, -5)), handle = world.insert(box)[0];
+  assert.equal(world.handle(0), handle);
+  for (const id of [2 ** 32, 0.5, NaN, -1, undefined, null, '0', []]) assert.equal(world.handle(id), undefined, String(id));
+  for (const nonsense of ['0', [], null, undefined]) {
+    assert.equal(world.contains(nonsense), false);
+    for (const ask of ['box', 'layers', 'value'])
+      assert.throws(() => world[ask](nonsense), refusal('stale_handle', new RegExp(`^${ask}: no object has this handle`)));
+    assert.throws(() => world.setTriangles(nonsense, new Float32Array(9)), refusal('stale_handle', /^setTriangles/));
+  }
+  const bvh = new BoxBvh();
+  bvh.build(box);
+  for (const [columns, rows] of [[2 ** 32 + 1, 1], [1, 2 ** 32 + 1], [0.5, 1], [0, 1], [1, '1']])
+    assert.throws(() => bvh.visibleSet(view, columns, rows), refusal('bad_argument', /rays, expected 1 to 2\^24/));
+});
+
+test('null is no options, and refused elsewhere', async () => {
+  await ready;
+  const world = new World(), culler = new Culler(), buffer = new OcclusionBuffer(), box = Float32Array.from(cube(0, 0, -5));
+  const handle = world.insert(box, null)[0], mesh = new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 2));
+  assert.equal(culler.cull(world, view, null).ids.length, 1);
+  assert.throws(() => buffer.maySee(box, bytes(1)), refusal('stale_buffer', /never begun, expected begin/));
+  buffer.begin(view, null);
+  const origin = /an origin of undefined numbers, expected 3/;
+  assert.throws(() => world.insert({ data: box, origin: null }), refusal('bad_argument', origin));
+  assert.throws(() => culler.cull(world, { ...view, origin: null }), refusal('bad_view', origin));
+  assert.throws(() => world.setTriangles(handle, new Float32Array(9), null), refusal('bad_argument', origin));
+  assert.throws(() => buffer.drawMesh(mesh, null), refusal('bad_argument', /transform of undefined numbers, expected 16/));
+  assert.throws(() => buffer.drawMesh(null, identity), refusal('bad_argument', /expected an OccluderMesh/));
+  assert.equal(world.size, 1);
 });
 
 test('what was disposed of is not used', async () => {
@@ -338,4 +374,5 @@ test('a worker culls', async () => {
   const pending = worker.cull(view);
   worker.dispose();
   await assert.rejects(pending, refusal('disposed', /./));
+  await assert.rejects(worker.cull(view), refusal('disposed', /used after dispose/)); // and does not throw
 });
