@@ -15,8 +15,9 @@ async function show(name) {
   if (shown === part) return;
   shown = part;
   for (const [own, , each] of parts) {
-    each.element.hidden = each !== part;
-    document.getElementById(`tab-${own}`).ariaSelected = String(each === part);
+    const tab = document.getElementById(`tab-${own}`), isShown = each === part;
+    each.element.hidden = !isShown;
+    tab.setAttribute('aria-selected', isShown), (tab.tabIndex = isShown ? 0 : -1);
   }
   if (started.has(part)) return;
   started.add(part);
@@ -46,7 +47,20 @@ function themeButton() {
   }, { class: 'theme', title: 'light or dark', ariaLabel: 'light or dark' });
 }
 
-document.querySelector('nav').append(...parts.map(([name, words]) => element('a', { href: `#/${name}`, role: 'tab', id: `tab-${name}` }, words)));
+// Arrows, Home and End go from tab to tab, as they do elsewhere.
+function turn(event) {
+  const tabs = [...event.currentTarget.children], at = tabs.indexOf(event.target), last = tabs.length - 1;
+  const to = { ArrowRight: at === last ? 0 : at + 1, ArrowLeft: at === 0 ? last : at - 1, Home: 0, End: last }[event.key];
+  if (at < 0 || to === undefined) return;
+  event.preventDefault(), tabs[to].focus(), tabs[to].click();
+}
+
+const nav = document.querySelector('nav');
+nav.addEventListener('keydown', turn);
+for (const [name, words, { element: panel }] of parts) {
+  nav.append(element('a', { href: `#/${name}`, role: 'tab', id: `tab-${name}`, 'aria-controls': panel.id }, words));
+  panel.setAttribute('role', 'tabpanel'), panel.setAttribute('aria-labelledby', `tab-${name}`);
+}
 document.querySelector('.bar').append(themeButton());
 document.querySelector('main').append(...parts.map(([, , part]) => part.element));
 const go = () => show(location.hash.slice(2) || 'models');

@@ -6,11 +6,21 @@ import { extname, join, normalize } from 'node:path';
 const root = new URL('../../build/web/page', import.meta.url).pathname;
 const kinds = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8', '.wasm': 'application/wasm' };
 
+// The file that an address names; undefined where it is no address.
+function fileOf(address) {
+  try {
+    const path = normalize(decodeURIComponent(new URL(address, 'http://localhost').pathname));
+    return path.includes('\0') ? undefined : join(root, path.endsWith('/') ? `${path}index.html` : path);
+  } catch {
+    return undefined;
+  }
+}
+
 /** Serves the page to this machine alone; resolves to its address, and what ends it. */
 export function serve(port = 0) {
   const server = createServer((request, response) => {
-    const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
-    const file = join(root, path.endsWith('/') ? `${path}index.html` : path);
+    const file = fileOf(request.url);
+    if (!file) return void response.writeHead(400).end();
     if (!file.startsWith(`${root}/`) || !statSync(file, { throwIfNoEntry: false })?.isFile()) return void response.writeHead(404).end();
     response.setHeader('Content-Type', kinds[extname(file)] ?? 'application/octet-stream');
     createReadStream(file).pipe(response);

@@ -1,6 +1,7 @@
 // The page in a browser: its three parts clicked through, small, for here the GPU is a CPU; nothing of ours on the console.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { get } from 'node:http';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { serve } from '../page/serve.mjs';
@@ -9,8 +10,8 @@ import { withAddress } from './browser/chromium.mjs';
 const pictures = new URL('../../build/web/screenshots', import.meta.url).pathname;
 mkdirSync(pictures, { recursive: true });
 
-/** A GLB of so many cubes in a row, each a mesh of its own. */
-function glb(cubes) {
+/** A GLB of so many cubes in a row, each a mesh of its own; `without` of what it says of itself. */
+function glb(cubes, without = []) {
   const corners = Array.from({ length: 8 }, (_, i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]).flat();
   const indices = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
   const bytes = Buffer.concat([Buffer.from(Float32Array.from(corners).buffer), Buffer.from(Uint16Array.from(indices).buffer)]);
@@ -21,6 +22,7 @@ function glb(cubes) {
     buffers: [{ byteLength: bytes.length }], bufferViews: [{ buffer: 0, byteLength: 96 }, { buffer: 0, byteOffset: 96, byteLength: 72 }],
     accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
       { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }] };
+  for (const key of without) delete scene[key];
   const text = Buffer.from(JSON.stringify(scene)), json = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
   const chunk = (data, kind) => Buffer.concat([Buffer.from(Uint32Array.of(data.length, kind).buffer), data]);
   const body = Buffer.concat([chunk(json, 0x4e4f534a), chunk(bytes, 0x004e4942)]);
@@ -120,6 +122,24 @@ async function clickDrop(page) {
   assert.match(await text(page, '#drop .said'), /^none\.glb cannot be shown: it is no binary glTF/);
   await page.setInputFiles('#file', { name: 'cut.glb', mimeType: 'model/gltf-binary', buffer: glb(3).subarray(0, 200) });
   await page.waitForFunction(() => document.querySelector('#drop .said').textContent.startsWith('cut.glb'));
+  const bare = { name: 'bare.glb', mimeType: 'model/gltf-binary', buffer: glb(3, ['scene', 'scenes']) };
+  await page.setInputFiles('#file', bare);
+  await page.waitForFunction(() => document.querySelector('#drop .said').textContent.startsWith('bare.glb'));
+  assert.equal(await text(page, '#drop .said'), 'bare.glb cannot be shown: the model has no scene.');
+}
+
+// By keys and by names alone.
+async function goAbout(page) {
+  const shown = () => page.getByRole('tabpanel').evaluateAll((all) => all.map(({ id }) => id));
+  await page.focus('#tab-drop');
+  for (const [key, part] of [['ArrowRight', 'models'], ['ArrowRight', 'city'], ['ArrowLeft', 'models'], ['End', 'drop'], ['Home', 'models']]) {
+    await page.keyboard.press(key);
+    await page.waitForFunction((id) => !document.getElementById(id).hidden && document.activeElement.id === `tab-${id}`, part);
+    assert.deepEqual(await shown(), [part]);
+  }
+  assert.equal(await page.locator('[role=tab][tabindex="0"]').count(), 1);
+  assert.equal(await page.getByRole('tabpanel', { name: 'Models' }).count(), 1);
+  assert.equal(await page.getByRole('slider', { name: 'Rays along each side', exact: true }).count(), 1);
 }
 
 test('its three parts work', async () => {
@@ -128,7 +148,20 @@ test('its three parts work', async () => {
     if (process.env.SIGHTLINE_FULL) await measure(page);
     await clickCity(page);
     await clickDrop(page);
+    await goAbout(page);
   }, { width: 1400, height: 900 });
+});
+
+test('its server answers nonsense, and goes on', async () => {
+  const { address, close } = await serve(), { port } = new URL(address);
+  const ask = (path) => new Promise((resolve, reject) =>
+    get({ port, path, agent: false }, (answer) => (answer.resume(), resolve(answer.statusCode))).on('error', reject));
+  try {
+    for (const path of ['/%', '/%00', '/%c3%28', '//']) assert.equal(await ask(path), 400, path);
+    assert.deepEqual([await ask('/nothing'), await ask('/../serve.mjs'), await ask('/')], [404, 404, 200]);
+  } finally {
+    close();
+  }
 });
 
 test('nothing is cut off, narrow and wide, light and dark', async () => {

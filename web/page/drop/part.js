@@ -84,6 +84,7 @@ export class DropPart {
       if (new DataView(bytes).byteLength < 20 || new DataView(bytes).getUint32(0, true) !== 0x46546c67)
         throw new Error('it is no binary glTF, which begins with “glTF”');
       const { scene } = await new GLTFLoader().parseAsync(bytes, '');
+      if (!scene) throw new Error('the model has no scene');
       let meshes = 0;
       scene.traverse(({ isMesh }) => (meshes += isMesh ? 1 : 0));
       if (meshes === 0) throw new Error('there is no mesh in it');

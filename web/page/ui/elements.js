@@ -33,7 +33,8 @@ export function choice(label, choices, value, changed) {
 
 export function slider(label, { min, max, step = 1, value }, changed, show = String) {
   const output = element('output', {}, show(value));
-  const input = element('input', { type: 'range', min, max, step, value, oninput: () => {
+  // The label's first control would be the output.
+  const input = element('input', { type: 'range', 'aria-label': label, min, max, step, value, oninput: () => {
     output.textContent = show(Number(input.value)), changed(Number(input.value));
   } });
   return element('label', { class: 'slider' }, element('span', {}, label, output), input);
