@@ -1,5 +1,5 @@
 // Bounds of geometries, which are made anew where their points have changed.
-import { Box3 } from 'three';
+import { Box3, Sphere } from 'three';
 import type { BufferAttribute, BufferGeometry } from 'three';
 
 /** What has a version of a geometry's points. */
@@ -11,17 +11,34 @@ export function pointsOf(geometry: BufferGeometry): Points {
   return position.data ?? position;
 }
 
-interface Bounds { points: Points; version: number; box: Box3 }
+interface Bounds { points: Points; version: number; radius: number | undefined; own: Box3; box: Box3 }
 const known = new WeakMap<BufferGeometry, Bounds>();
 
-/** Holds all points. The geometry's own box is taken for it until the points change; from then on it holds them, too. */
+/** Holds all points, the geometry's own box if it was given one, and the sphere by which three culls it where somebody has made
+ * that larger than the points need, as for a shader that moves them. */
 export function boxOf(geometry: BufferGeometry): Box3 {
-  const points = pointsOf(geometry), { version } = points, made = known.get(geometry);
-  if (made && made.points === points && made.version === version && geometry.boundingBox !== null) return made.box;
-  const isGiven = geometry.boundingBox !== null;
-  if (!isGiven) geometry.computeBoundingBox();
-  const box = geometry.boundingBox!.clone(), position = geometry.attributes.position as BufferAttribute;
-  if (made && isGiven && 'getX' in position) box.union(new Box3().setFromBufferAttribute(position));
-  known.set(geometry, { points, version, box });
+  const points = pointsOf(geometry), { version } = points, made = known.get(geometry), radius = geometry.boundingSphere?.radius;
+  const isKnown = made && made.points === points && made.version === version && geometry.boundingBox !== null;
+  if (isKnown && made.radius === radius) return made.box;
+  const own = isKnown ? made.own : boxOfPoints(geometry), box = withSphere(own, geometry.boundingSphere);
+  known.set(geometry, { points, version, radius, own, box });
   return box;
+}
+
+// What a box says that was given may be older than the points.
+function boxOfPoints(geometry: BufferGeometry): Box3 {
+  const isGiven = geometry.boundingBox !== null, position = geometry.attributes.position as BufferAttribute;
+  if (!isGiven) geometry.computeBoundingBox();
+  const box = geometry.boundingBox!.clone();
+  return isGiven && 'getX' in position ? box.union(new Box3().setFromBufferAttribute(position)) : box;
+}
+
+const ofBox = new Sphere();
+
+function withSphere(box: Box3, sphere: Sphere | null): Box3 {
+  if (!sphere || !(sphere.radius >= 0) || box.isEmpty()) return box;
+  box.getBoundingSphere(ofBox);
+  // three's own is no larger than that.
+  if (ofBox.center.distanceTo(sphere.center) + sphere.radius <= 1.00001 * ofBox.radius) return box;
+  return box.clone().union(sphere.getBoundingBox(new Box3()));
 }

@@ -14,9 +14,10 @@ export interface Left { object: Object3D; parent: number }
 
 const atOnce = 32; // things that are looked at together
 
-/** Nodes that only hold others. */
+/** Nodes that only hold others; not those that clip them. */
 const isThrough = (object: Object3D): boolean =>
-  (object.type === 'Object3D' || object.type === 'Group') && object.renderOrder === 0;
+  (object.type === 'Object3D' || object.type === 'Group') && object.renderOrder === 0 &&
+  !(object as { isClippingGroup?: boolean }).isClippingGroup;
 
 // Where the first of ascending slots is that lies at or behind `slot`, from … to.
 function firstFrom(slots: Uint32Array, slot: number, from: number, to = slots.length): number {

@@ -1,5 +1,6 @@
 // Which things occlude, frame by frame: those that look largest. Whatever picks better takes this file's place.
-import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh, Object3D } from 'three';
+import { Object3D } from 'three';
+import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh } from 'three';
 import type { OcclusionBuffer } from '../occlusion.js';
 import { convexOf, convexOfInstance, type Convex } from './convex.js';
 import type { Range } from './instances.js';
@@ -15,20 +16,25 @@ const least = 0.03;
 /** Pixels of the buffer by which occluders are drawn smaller: no GPU is off by as much at the edges of what it draws. */
 const margin = 0.7;
 
-// Surely draws every pixel that its triangles cover, with their depth. What a shader of one's own does is not known; a
-// mark says it: userData.occluder = true, or another geometry that lies inside.
-export function isSolid(material: Material): boolean {
-  const m = material as Material & { wireframe?: boolean; alphaMap?: unknown; displacementMap?: unknown; transmission?: number;
-    isShaderMaterial?: boolean; isNodeMaterial?: boolean };
+// Draws every pixel that its triangles cover, with their depth, unless a shader of one's own does something else.
+function isWhole(material: Material): boolean {
+  const m = material as Material & { wireframe?: boolean; alphaMap?: unknown; transmission?: number };
   return m.visible && !m.transparent && m.alphaTest === 0 && !m.alphaHash && m.depthWrite && m.depthTest && m.colorWrite &&
-    m.depthFunc === 3 && m.side !== 1 && !m.wireframe && !m.alphaMap && !m.displacementMap && !m.transmission &&
-    !m.polygonOffset && !m.alphaToCoverage && m.blending <= 1 && !m.clippingPlanes?.length && !m.stencilWrite && !m.isShaderMaterial && !m.isNodeMaterial &&
-    !Object.hasOwn(m, 'onBeforeCompile');
+    m.depthFunc === 3 && m.side !== 1 && !m.wireframe && !m.alphaMap && !m.transmission &&
+    !m.polygonOffset && !m.alphaToCoverage && m.blending <= 1 && !m.clippingPlanes?.length && !m.stencilWrite;
 }
 
+// The same, and surely. What a shader of one's own does is not known; a mark says it: userData.occluder = true, or another
+// geometry that lies inside.
+export function isSolid(material: Material): boolean {
+  const m = material as Material & { displacementMap?: unknown; isShaderMaterial?: boolean; isNodeMaterial?: boolean };
+  return isWhole(m) && !m.displacementMap && !m.isShaderMaterial && !m.isNodeMaterial && !Object.hasOwn(m, 'onBeforeCompile');
+}
+
+// With what an object is drawn, if its own materials are visible.
 const materialsOf = (object: Object3D, override: Material | null): Material[] => {
-  const { material } = object as Mesh;
-  return override ? [override] : Array.isArray(material) ? material : material ? [material] : [];
+  const { material } = object as Mesh, own = Array.isArray(material) ? material : material ? [material] : [];
+  return own.map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
 
 /** Whether an object, or one below it, writes depth behind what is there, so that others may show through occluders. */
@@ -37,18 +43,27 @@ export function breaksDepth(object: Object3D, override: Material | null): boolea
     materialsOf(object, override).some((m) => m.depthWrite && (!m.depthTest || m.depthFunc === 1 || m.depthFunc > 4)));
 }
 
-/** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not. */
+// What is called when a mesh is drawn may move it, or empty the depth buffer before it.
+const { onBeforeRender, onAfterRender } = Object3D.prototype;
+const isCalled = (mesh: Mesh): boolean => mesh.onAfterRender !== onAfterRender ||
+  ((mesh as { isBatchedMesh?: boolean }).isBatchedMesh ? Object.hasOwn(mesh, 'onBeforeRender') : mesh.onBeforeRender !== onBeforeRender);
+
+/** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not; nor what is drawn late on
+ * purpose, as it is drawn over the others where somebody has emptied the depth buffer first. */
 export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
-  return materialsOf(mesh, override).every((m) => m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
+  return mesh.renderOrder <= 0 && !isCalled(mesh) && materialsOf(mesh, override).every((m) =>
+    m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
     !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap);
 }
 
 const markOf = (mesh: Mesh) => (mesh.userData.occluder ?? undefined) as boolean | BufferGeometry | undefined;
 
 function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
-  const mark = markOf(mesh), material = override ?? mesh.material;
-  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers)) return false;
-  return Boolean(mark) || (!Array.isArray(material) && isSolid(material));
+  const mark = markOf(mesh), { material } = mesh;
+  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalled(mesh)) return false;
+  // Of several materials nobody says that they are all there are faces for.
+  if (Array.isArray(material) ? !mark : !material.visible) return false;
+  return materialsOf(mesh, override).every(mark ? isWhole : isSolid);
 }
 
 /** The shape that a thing which may occludes with; null where it has none. */
@@ -95,6 +110,8 @@ const found = { slots: new Uint32Array(0), sizes: new Float64Array(0), order: ne
 /** Draws this frame's occluders among the slots in view, ascending; returns how many. */
 export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, camera: Camera,
   override: Material | null, slots: Uint32Array): number {
+  // A near plane that stands askew, as mirrors have it, opens occluders wherever it likes.
+  if (eye.eyeToClip[2] !== 0 || eye.eyeToClip[6] !== 0) return 0;
   const flat = eye.eyeToClip[15] === 1;
   if (found.slots.length < slots.length) {
     const room = 2 * slots.length;

@@ -20,6 +20,8 @@ export interface Thing {
   geometry: BufferGeometry;
   points: Points;
   pointsVersion: number;
+  radius: number | undefined;
+  material: Mesh['material'];
   /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
   source: unknown;
@@ -34,18 +36,23 @@ export interface Thing {
 /** What is known by slot, of instanced ones their mesh's matrix by the first; and the slots whose boxes have changed. */
 export interface Known { boxes: Float64Array; matrices: Float64Array; moved: number[] }
 
+// Lines as wide as one likes are meshes of instanced geometries, and displaced points are where no box says.
 const isPlain = (mesh: Mesh): boolean =>
   mesh.children.length === 0 && mesh.frustumCulled && !(mesh as { isSkinnedMesh?: boolean }).isSkinnedMesh &&
   !mesh.morphTargetInfluences?.length && mesh.userData.sightline !== false &&
-  mesh.geometry?.attributes.position !== undefined;
+  mesh.geometry?.attributes.position !== undefined && !isDisplaced(mesh.material) &&
+  ((mesh as { isInstancedMesh?: boolean }).isInstancedMesh || !(mesh.geometry as { isInstancedBufferGeometry?: boolean }).isInstancedBufferGeometry);
 
-// Instances whose other attributes can be picked out one by one.
+const isDisplaced = (material: Mesh['material']): boolean =>
+  Array.isArray(material) ? material.some(isDisplaced) : Boolean((material as { displacementMap?: unknown } | undefined)?.displacementMap);
+
+// Instances without attributes of their own: shorter copies of their matrices and colours are all that is made.
 function isSimple(mesh: InstancedMesh): boolean {
   if (mesh.morphTexture || mesh.instanceMatrix.count === 0) return false;
   return Object.values(mesh.geometry.attributes).every((attribute) => {
-    const { isInstancedBufferAttribute, meshPerAttribute, data } = attribute as unknown as {
-      isInstancedBufferAttribute?: boolean; meshPerAttribute?: number; data?: { isInstancedInterleavedBuffer?: boolean } };
-    return isInstancedBufferAttribute ? meshPerAttribute === 1 : !data?.isInstancedInterleavedBuffer;
+    const { isInstancedBufferAttribute, data } = attribute as unknown as {
+      isInstancedBufferAttribute?: boolean; data?: { isInstancedInterleavedBuffer?: boolean } };
+    return !isInstancedBufferAttribute && !data?.isInstancedInterleavedBuffer;
   });
 }
 
@@ -65,7 +72,7 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
 /** A thing, of which nothing is known yet. */
 export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
   const { geometry } = mesh;
-  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1,
+  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, radius: undefined, material: mesh.material,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
     sending: kind === 'batched' ? new Sending(count) : undefined,
@@ -88,8 +95,12 @@ export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
 export function isOther(thing: Thing): boolean {
   const { mesh, kind, count } = thing;
   if (mesh.children.length > 0 || !mesh.frustumCulled || mesh.geometry?.attributes.position === undefined) return true;
+  if (mesh.userData.sightline === false) return true;
+  const isRedressed = mesh.material !== thing.material || mesh.geometry !== thing.geometry;
+  if (isRedressed && !isPlain(mesh)) return true;
+  thing.material = mesh.material;
   if (kind === 'mesh') return false;
-  if (kind === 'instanced') return (mesh as InstancedMesh).instanceMatrix.count !== count;
+  if (kind === 'instanced') return (mesh as InstancedMesh).instanceMatrix.count !== count || !isSimple(mesh as InstancedMesh);
   return (mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled;
 }
 
@@ -114,9 +125,10 @@ export function update(thing: Thing, known: Known): void {
 // Whether a mesh has other points than are known of it; takes them over.
 function reshapes(thing: Thing, geometry: BufferGeometry): boolean {
   const points = pointsOf(geometry), { version } = points;
-  if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && geometry.boundingBox !== null)
-    return false;
-  thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version);
+  const radius = geometry.boundingSphere?.radius;
+  if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && radius === thing.radius &&
+    geometry.boundingBox !== null) return false;
+  thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version), (thing.radius = radius);
   return true;
 }
 
