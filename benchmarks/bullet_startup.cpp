@@ -8,7 +8,7 @@ namespace {
 
 void bullet_dbvt(benchmark::State& state) {
   const Boxes& boxes = case_of(1'000'000).flat;
-  start_up(state, Held::heap, [&] {
+  start_up(state, Held::counted, [&] {
     auto tree = std::make_unique<btDbvt>();
     fill(*tree, boxes);
     return tree;

@@ -15,7 +15,7 @@ constexpr std::size_t kBoxes = 1'000'000;
 void world(benchmark::State& state) {
   const Case& c = case_of(kBoxes);
   std::vector<Handle> handles(kBoxes);
-  start_up(state, Held::heap, [&] {
+  start_up(state, Held::counted, [&] {
     World made;
     or_throw(made.insert(c.flat.view(), handles));
     return made;
@@ -27,7 +27,7 @@ void culler(benchmark::State& state) {
   const Case& c = case_of(kBoxes);
   std::vector<ObjectId> visible(cull_capacity(c.world));
   const CullView view{.view = {looking(0.3f, tenth_of_view()), {}}};
-  start_up(state, Held::heap, [&] {
+  start_up(state, Held::counted, [&] {
     Culler made;
     or_throw(made.cull(c.world, view, visible));
     return made;
@@ -36,7 +36,7 @@ void culler(benchmark::State& state) {
 
 void box_bvh(benchmark::State& state) {
   const Boxes& boxes = case_of(kBoxes).flat;
-  start_up(state, Held::heap, [&] {
+  start_up(state, Held::counted, [&] {
     BoxBvh made;
     or_throw(made.build(boxes.view()));
     return made;

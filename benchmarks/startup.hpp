@@ -4,16 +4,31 @@
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
+#include <fstream>
 #include <optional>
+#include <string>
 
 namespace sightline::benchmarks {
 
-/// Whether all that is made lies on malloc's heap, so that it can be counted.
-enum class Held { heap, elsewhere };
+/// Whether all that is made is of this library's or malloc's, so that it can be counted.
+enum class Held { counted, elsewhere };
 
-inline double heap_bytes() {
+/// Of all memory of its own that the process has mapped: "VmData:   123 kB".
+inline double mapped_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kilobytes = 0;
+    if (word == "VmData:" && status >> kilobytes) return 1024 * kilobytes;
+  }
+  return 0;
+}
+
+/// What malloc has given out, and what is mapped besides malloc's own: large vectors are mapped by themselves.
+inline double bytes_held() {
   const struct mallinfo2 now = mallinfo2();
-  return static_cast<double>(now.uordblks + now.hblkhd);
+  const auto given = static_cast<double>(now.uordblks + now.hblkhd),
+             of_malloc = static_cast<double>(now.arena + now.hblkhd);
+  return given + mapped_bytes() - of_malloc;
 }
 
 template <class Make>
@@ -21,15 +36,15 @@ void start_up(benchmark::State& state, Held held, const Make& make) {
   double bytes = 0;
   for (auto _ : state) {
     state.PauseTiming();
-    const double before = heap_bytes();
+    const double before = bytes_held();
     state.ResumeTiming();
     std::optional made(make());
     state.PauseTiming();
-    bytes = heap_bytes() - before;
+    bytes = bytes_held() - before;
     made.reset();
     state.ResumeTiming();
   }
-  if (held == Held::heap) state.counters["bytes_each"] = bytes / 1e6;
+  if (held == Held::counted) state.counters["bytes_each"] = bytes / 1e6;
 }
 
 }  // namespace sightline::benchmarks
