@@ -23,7 +23,8 @@ inline double mapped_bytes() {
   return 0;
 }
 
-/// What malloc has given out, and what is mapped besides malloc's own: large vectors are mapped by themselves.
+/// What malloc has given out, and what is mapped besides malloc's own: large vectors are mapped by
+/// themselves.
 inline double bytes_held() {
   const struct mallinfo2 now = mallinfo2();
   const auto given = static_cast<double>(now.uordblks + now.hblkhd),

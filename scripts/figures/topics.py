@@ -19,7 +19,7 @@ def repeats(quick):
 def world(quick):
     """One world and its peers on the same million boxes; views at once; sectors far apart."""
     only = "-^(build|move_|columns/|far_sectors/move" + ("|openscenegraph/d|.*/10000000)" if quick else ")")
-    rows = google_benchmark("world", 3, 0.02 if quick else 0.1, only)
+    rows = google_benchmark("world", 3 if quick else 11, 0.02 if quick else 0.1, only)
     return compare_with(rows, lambda name: None if name in ("far_sectors/cull", "one_view") else
                         "one_view" if name.startswith("four_views") else "world/1000000")
 
@@ -27,7 +27,7 @@ def world(quick):
 def columns(quick):
     """Layers, distances and levels of a million boxes beside a world that has none: where a chunk's objects have the same,
     and where each has its own; there also what each visible object costs more, in turns with the plain cull."""
-    rows = google_benchmark("world", 3 if quick else 9, 0.02 if quick else 0.1, "^columns/")
+    rows = google_benchmark("world", 3 if quick else 21, 0.02 if quick else 0.1, "^columns/")
     plain = next(row for row in rows if row.id == "columns/none")
     whole = ("columns/whole_layers", "columns/whole")
     compare_with(rows, lambda name: plain.id if name in whole else None)
@@ -69,7 +69,7 @@ def snapshots(quick):
 
 def ranges(quick):
     """What is seen of a million boxes as ranges of their order beside the same as ids."""
-    rows = google_benchmark("ranges", 3, 0.02 if quick else 0.2)
+    rows = google_benchmark("ranges", 3 if quick else 21, 0.02 if quick else 0.1)
     return compare_with(rows, lambda name: name.replace(name.split("/")[0], "ids")
                         if name.startswith(("ranges/", "whole_chunks/")) else None)
 
