@@ -145,23 +145,32 @@ HWY_INLINE hn::Mask<P> meet(const Packet& packet, const Beam& beam, const float*
   return hn::Le(entry, exit);
 }
 
+// Whether none of the vector of rays from `part` on is among those `going`, where a packet takes several.
+HWY_INLINE bool all_over(std::uint32_t going, std::size_t part) {
+  const P p;
+  return hn::Lanes(p) < kPacket && (going >> part & ~(~0u << hn::Lanes(p))) == 0;
+}
+
 // Which of the rays `going` meet a box.
 HWY_INLINE std::uint32_t meeting(const Packet& packet, const Beam& beam, const float* box,
                                  std::uint32_t going) {
   const P p;
   std::uint32_t bits = 0;
   for (std::size_t part = 0; part < kPacket; part += hn::Lanes(p)) {
+    if (all_over(going, part)) continue;
     VP entry;
     bits |= bits_of(p, meet(packet, beam, box, part, hn::Load(p, packet.best + part), entry)) << part;
   }
   return bits & going;
 }
 
-// Offers an object's box to all rays.
-HWY_INLINE void offer(Packet& packet, const Beam& beam, const float* box, ObjectId object) {
+// Offers an object's box to the rays `going`, and to others that can meet nothing.
+HWY_INLINE void offer(Packet& packet, const Beam& beam, const float* box, std::uint32_t going,
+                      ObjectId object) {
   const P p;
   const PU pu;
   for (std::size_t part = 0; part < kPacket; part += hn::Lanes(p)) {
+    if (all_over(going, part)) continue;
     const VP best = hn::Load(p, packet.best + part);
     const auto had = hn::Load(pu, packet.object + part), id = hn::Set(pu, object);
     VP entry;
@@ -211,7 +220,7 @@ void walk_together(const WideNode* nodes, Packet& packet, std::uint32_t going, s
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       const std::uint32_t child = node.child[lane];
       if (leaf || child < WideNode::kInner) {
-        offer(packet, beam, planes + lane, child);
+        offer(packet, beam, planes + lane, going, child);
         continue;
       }
       const std::uint32_t met = meeting(packet, beam, planes + lane, going);
