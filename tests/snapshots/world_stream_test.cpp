@@ -1,4 +1,5 @@
 // Sectors in and out of a world: within a budget, beside another thread, and with the handles that they had.
+#include <sightline/instances.hpp>
 #include <sightline/ranges.hpp>
 #include <sightline/snapshot.hpp>
 
@@ -9,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "support/placed.hpp"
 #include "support/random_views.hpp"
 #include "support/snapshots.hpp"
 #include "support/solid_boxes.hpp"
@@ -258,6 +260,54 @@ TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
   ASSERT_TRUE(stream->bring_in({&there, 1}, {.budget = 1}));
   EXPECT_TRUE(stream->stands_out(handle));
   EXPECT_TRUE(world.remove_occluder(*occluder));
+}
+
+// Instances of a streamed world show what those of the whole one show, less what is out; and a cull is
+// refused until they were told that the world reaches farther than it did.
+TEST(WorldStream, InstancesShowWhatIsIn) {
+  Ground ground(5000);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  Instances whole, streamed;
+  const PlacedWorldId of_whole = *whole.add_world(ground.world), of_streamed = *streamed.add_world(world);
+  Random random(7);
+  std::vector<InstancePlacement> placements;
+  for (const float scale : {1.0f, 0.25f, 0.5f})
+    placements.push_back(
+        {of_whole,
+         test::random_turn(random, scale, random.inside({{-kSide, -99, -kSide}, {kSide, 99, kSide}})),
+         {}});
+  std::vector<Handle> handles(placements.size());
+  ASSERT_TRUE(whole.insert(placements, handles));
+  for (InstancePlacement& placement : placements) placement.world = of_streamed;
+  ASSERT_TRUE(streamed.insert(placements, handles));
+  const StreamOptions options{.budget = memory_of_all(*stream) / 4};
+  InstanceCuller all_culler, culler;
+  std::size_t shown = 0, out = 0, refused = 0;
+  for (int step = 0; step < 30; ++step) {
+    const CullView near = looking_from({-kSide + 1000.0f * step, 0, 0}, 0.2f * step, 2 * kSide);
+    ASSERT_TRUE(stream->bring_in({&near, 1}, options));
+    const auto cull = [&] { return culler.cull(streamed, near); };
+    if (const auto early = cull(); !early) {
+      ++refused;
+      ASSERT_EQ(early.error().code(), StatusCode::bad_argument);
+      ASSERT_EQ(early.error().index(), of_streamed);
+    }
+    ASSERT_TRUE(streamed.update());
+    const auto now = cull();
+    ASSERT_TRUE(now) << now.error().message();
+    test::AllSaid left = test::all_said(*now);
+    for (const auto& [which, said] : test::all_said(*all_culler.cull(whole, near))) {
+      const bool in = world.contains(ground.world.handle(which.second));
+      ASSERT_EQ(left.erase(which), in) << which.first << ", " << which.second;
+      (in ? shown : out) += 1;
+    }
+    ASSERT_TRUE(left.empty()) << "more is seen than there is";
+  }
+  EXPECT_GT(shown, 1000u);
+  EXPECT_GT(out, 1000u);
+  EXPECT_GT(refused, 0u);
 }
 
 TEST(WorldStream, RefusesWhatIsNoView) {
