@@ -44,6 +44,8 @@ target_link_libraries(sightline_dependencies INTERFACE ${headers})
 # Every vector target is another compilation of the same file. Processors with SSSE3 have SSE4 since 2008.
 set(SIGHTLINE_DISABLED_TARGETS "HWY_SSSE3" CACHE STRING "Highway's targets to leave out, as an expression")
 target_compile_definitions(sightline_dependencies INTERFACE HWY_DISABLED_TARGETS=${SIGHTLINE_DISABLED_TARGETS})
+# Below SSE4 one lane serves, with clang as with g++: four emulated ones take clang's sanitizers minutes a source.
+target_compile_definitions(sightline_dependencies INTERFACE HWY_BROKEN_EMU128=1)
 # On ARM, g++ inlines nothing into lambdas where Highway raises the instruction set for a part of a source: NEON is all
 # that the library wants, and the baseline has it.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
