@@ -95,6 +95,17 @@ bool is_finite(const Mat4& m) {
   return true;
 }
 
+// Scaled by the rows so that a small but sound matrix is not taken for a singular one.
+template <class Matrix>
+bool is_singular(const Matrix& matrix) {
+  Matrix rows = glm::transpose(matrix);
+  for (int r = 0; r < Matrix::length(); ++r) {
+    const double length = glm::length(rows[r]);
+    if (length > 0) rows[r] /= length;
+  }
+  return !(std::fabs(glm::determinant(rows)) > 1e-12);
+}
+
 }  // namespace
 
 Result<View> make_view(const Camera& camera, std::uint32_t width, std::uint32_t height) noexcept {
@@ -118,19 +129,13 @@ Status check(const View& view) noexcept {
   if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1) {
     return bad("view: world_to_eye must be affine, with the last row 0 0 0 1");
   }
-  // Scaled by the rows so that a small but sound matrix is not taken for a singular one.
-  for (const Mat4* matrix : {&view.world_to_eye, &view.eye_to_clip}) {
-    glm::dmat4 rows = glm::transpose(to_double(*matrix));
-    for (int r = 0; r < 4; ++r) {
-      const double length = glm::length(rows[r]);
-      if (length > 0) rows[r] /= length;
-    }
-    if (!(std::fabs(glm::determinant(rows)) > 1e-12)) {
-      return bad(matrix == &view.world_to_eye
-                     ? "view: world_to_eye is singular, expected an invertible matrix"
-                     : "view: eye_to_clip is singular, expected an invertible matrix");
-    }
-  }
+  // How far the eye is from the origin says nothing of whether the axes are sound.
+  const glm::dmat4 to_eye = to_double(view.world_to_eye);
+  const glm::dmat3 axes(to_eye);
+  if (is_singular(axes) || !(glm::length(glm::inverse(axes) * glm::dvec3(to_eye[3])) <= kWorldReach))
+    return bad("view: world_to_eye is singular, expected an invertible matrix and an eye within 1e11 m");
+  if (is_singular(to_double(view.eye_to_clip)))
+    return bad("view: eye_to_clip is singular, expected an invertible matrix");
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include "library/world/instance_cull.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -161,7 +162,7 @@ Result<CullResult> cull_boxes_of(InstanceCullerState& state, const InstancesStat
   const std::size_t count = std::min(state.views.size(), kMaxViews);
   std::copy_n(state.views.begin(), count, views.begin());
   for (CullView& view : views)
-    if (view.min_area > 0) view.min_area = 0;
+    if (view.min_area > 0 && std::isfinite(view.min_area)) view.min_area = 0;
   CullOptions options;
   options.jobs = state.options->jobs, options.zones = state.options->zones;
   const std::size_t room = cull_capacity(instances.boxes, options);

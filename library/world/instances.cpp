@@ -69,7 +69,7 @@ bool is_similarity(const Mat4& matrix) {
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) return false;
   const glm::dmat3 turn(to_double(matrix));
   const double squared = glm::dot(turn[0], turn[0]);
-  if (!(squared >= 1e-12 && squared <= 1e12)) return false;
+  if (!(squared >= 0.999e-12 && squared <= 1.001e12)) return false;
   const glm::dmat3 product = glm::transpose(turn) * turn;
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) {

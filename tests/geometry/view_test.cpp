@@ -100,6 +100,15 @@ TEST(View, RefusesMatricesThatCannotBeCulledWith) {
   EXPECT_FALSE(check(view));
 }
 
+// However far the eye is from the origin along every axis, its axes are sound.
+TEST(View, IsSoundFarFromItsOrigin) {
+  for (const float far : {1e4f, 1e5f, 1e7f, 1e10f}) {
+    const Result<View> view = make_view({.eye = {far, -far, far}, .forward = {1, 2, -3}}, 64, 64);
+    ASSERT_TRUE(view) << far << ": " << view.error().message();
+  }
+  EXPECT_EQ(make_view({.eye = {1e12f, 0, 0}}, 64, 64).error().code(), StatusCode::bad_view);
+}
+
 TEST(View, AcceptsAnyRandomCamera) {
   scene::Random random(3);
   for (int i = 0; i < 1000; ++i) {

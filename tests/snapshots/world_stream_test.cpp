@@ -244,6 +244,32 @@ TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
   for (const auto& [id, mask, level] : test::seen(world, {&here, 1})) ASSERT_TRUE(once.insert(id).second);
 }
 
+// A column's first use changes the objects that it is set of, and leaves all other sectors free to go.
+TEST(WorldStream, AFirstColumnPinsOnlyTheSectorsThatItIsSetIn) {
+  const Ground ground(5000);
+  World world;
+  auto stream = WorldStream::open(ground.bytes, world);
+  ASSERT_TRUE(stream);
+  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
+                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  const std::size_t before = world.size();
+  Handle one;
+  for (const Handle handle : ground.handles)
+    if (world.contains(handle)) one = handle;
+  const std::uint32_t layers = 4;
+  ASSERT_TRUE(world.set_layers(std::span<const Handle>(&one, 1), std::span(&layers, 1)));
+  ASSERT_TRUE(stream->bring_in({&there, 1}, {.budget = 1}));
+  EXPECT_TRUE(world.contains(one));
+  EXPECT_LT(world.size(), before / 2);
+  // What went comes back as it was.
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  EXPECT_EQ(world.size(), before);
+  for (const Handle handle : ground.handles)
+    if (world.contains(handle)) ASSERT_EQ(world.layers(handle), handle == one ? 4 : kAllLayers);
+  test::expect_sound(world);
+}
+
 TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
   const Ground ground(2000);
   World world;

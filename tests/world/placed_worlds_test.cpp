@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <sightline/instances.hpp>
@@ -195,6 +196,13 @@ TEST(Instances, RefuseWhatTheyCannotShow) {
   handles.resize(2);
   ASSERT_TRUE(instances.insert(placements, handles));
   EXPECT_EQ(instances.move(std::span(handles).first(1), placements).code(), StatusCode::bad_argument);
+  for (const float scale : {1e-6f, 1e6f}) {  // as documented
+    Mat4& m = placements[0].transform;
+    m.m[0] = m.m[5] = m.m[10] = scale;
+    EXPECT_TRUE(instances.move(handles, placements)) << scale;
+  }
+  placements[0].transform = {};
+  ASSERT_TRUE(instances.move(handles, placements));
 
   const CullView view{.view = {*make_view({}, 64, 48), {}}};
   InstanceCuller culler;
@@ -215,6 +223,9 @@ TEST(Instances, RefuseWhatTheyCannotShow) {
   EXPECT_FALSE(culler.cull(instances, view, {.levels = true, .level_options = {.hysteresis = 0.1f}}));
   EXPECT_FALSE(culler.cull(instances, view, {.levels = true, .level_options = {.fade = -1}}));
   EXPECT_FALSE(culler.cull(instances, view, {.levels = true, .level_options = {.scale = 0}}));
+  CullView endless = view;
+  endless.min_area = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(culler.cull(instances, endless));
   EXPECT_FALSE(culler.cull(instances, view, {.most_objects = std::size_t{1} << 32}));
   EXPECT_FALSE(culler.cull(instances, view, {.jobs = {.threads = 0}}));
   EXPECT_TRUE(culler.cull(instances, view));

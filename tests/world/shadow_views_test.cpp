@@ -80,6 +80,29 @@ TEST(Cascades, MoveByWholeTexelsWhereverTheCameraGoes) {
   }
 }
 
+// A light's eye stands as far off as what the camera sees reaches.
+TEST(ShadowViews, HoldWhatFarSightedAndFarOffCamerasSee) {
+  Random random(11);
+  for (const float far : {2e3f, 1.5e4f, 1e5f}) {
+    for (const float away : {0.0f, 3e4f}) {
+      for (int i = 0; i < 40; ++i) {
+        Camera camera{.eye = {away + random.between(-200, 200), 2, away}, .far_plane = far};
+        camera.forward = {random.between(-1, 1), random.between(-0.5f, 0.5f), random.between(-1, 1)};
+        const WorldView view{*make_view(camera, 1920, 1080), {}};
+        const Light sun{.direction = {random.between(-1, 1), -1, random.between(-1, 1)}};
+        const Result<WorldView> shadow = shadow_view(sun, view, {}, 2048);
+        ASSERT_TRUE(shadow) << far << ", " << away << ": " << shadow.error().message();
+        const Vec3& f = camera.forward;
+        const float along = 0.9f * far / std::hypot(f.x, f.y, f.z);
+        EXPECT_TRUE(is_seen(*shadow, {camera.eye.x + along * camera.forward.x, 2 + along * camera.forward.y,
+                                      camera.eye.z + along * camera.forward.z}));
+        std::array<Cascade, 4> cascades;
+        ASSERT_TRUE(split_cascades(sun, view, {}, cascades));
+      }
+    }
+  }
+}
+
 TEST(ShadowViews, OfAPointLightAreTheFacesOfACube) {
   const Light lamp{.kind = LightKind::point, .position = {2e6, 5, 7}, .range = 30};
   Random random(3);
