@@ -117,6 +117,12 @@ export function expectKind<T extends Numbers>(what: string, input: unknown, kind
   refuse(`${what}: expected a ${(kind as unknown as { name: string }).name} or a Block of one`);
 }
 
+/** Throws unless it is a Block of that kind, for what a call writes. */
+export function expectBlock<T extends Numbers>(what: string, out: unknown, kind: Kind<T>): asserts out is Block<T> {
+  if (!(out instanceof Block && (out.kind as unknown) === kind))
+    refuse(`${what}: expected a Block of a ${(kind as unknown as { name: string }).name}`);
+}
+
 /** Throws unless they are three numbers. */
 export function expectOrigin(what: string, origin: ArrayLike<number>, code?: Code): void {
   if (origin?.length !== 3) refuse(`${what}: an origin of ${origin?.length} numbers, expected 3`, code);

@@ -79,7 +79,7 @@ export class World extends CoreWorld {
         expectKind('setOccluders: transforms', transforms, Float32Array);
         expectLength('setOccluders: transforms', transforms, 16 * count);
       }
-      const from = origins && placeOrigins(origins, count);
+      const from = origins === undefined ? undefined : placeOrigins(origins, count);
       const [numbers, name, matrix, origin] = call.place(all, names, transforms, from);
       check(need('world_set_occluders')(this.pointer, numbers!, name!, matrix!, origin!, count));
     });

@@ -1,7 +1,7 @@
 // Occluders are drawn into a depth buffer on the CPU, then boxes are tested against it.
 import { placeBoxes, type Boxes } from './boxes.js';
 import { refuse } from './errors.js';
-import { calling, expectKind, expectLength, type Block, type Input } from './memory.js';
+import { calling, expectBlock, expectKind, expectLength, type Block, type Input } from './memory.js';
 import { buffer, check, need, Owned, wasm } from './runtime.js';
 import { viewBytes, writeView, type View } from './views.js';
 
@@ -13,6 +13,7 @@ export class OccluderMesh extends Owned {
     super('OccluderMesh', 'mesh_create', 'mesh_destroy', calling((call) => {
       expectKind('OccluderMesh: positions', positions, Float32Array);
       expectKind('OccluderMesh: indices', indices, Uint32Array);
+      if (sides !== 'both' && sides !== 'front') refuse(`OccluderMesh: sides of ${String(sides)}, expected both or front`);
       if (positions.length % 3 !== 0)
         refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
       const [at, index] = call.place(positions, indices);
@@ -53,7 +54,7 @@ export class OcclusionBuffer extends Owned {
     calling((call) => {
       const at = call.room(viewBytes);
       writeView('begin', view, at);
-      check(wasm().occlusion_begin!(this.pointer, at, places, Number.isInteger(scale) ? scale : 0));
+      check(wasm().occlusion_begin!(this.pointer, at, places, [1, 2, 4].includes(scale) ? scale : 0));
       this.#begun = true;
     });
   }
@@ -88,7 +89,7 @@ export class OcclusionBuffer extends Owned {
     calling((call) => {
       if (!this.#begun) refuse('maySee: the buffer was never begun, expected begin() first', 'stale_buffer');
       const { count, args } = placeBoxes('maySee', call, boxes);
-      expectKind('maySee: out', out, Uint8Array);
+      expectBlock('maySee: out', out, Uint8Array);
       expectLength('maySee: out', out, count);
       check(wasm().occlusion_may_see!(this.pointer, ...args, out.pointer));
     });
@@ -96,7 +97,7 @@ export class OcclusionBuffer extends Owned {
   /** 1 / depth of the occluder at each pixel (perspective), -depth (orthographic), -infinity where there is none; row by
    * row from the top, as many as the view has pixels. */
   readNearness(out: Block<Float32Array>): void {
-    expectKind('readNearness: out', out, Float32Array);
+    expectBlock('readNearness: out', out, Float32Array);
     check(wasm().occlusion_read_nearness!(this.pointer, out.pointer, out.length));
   }
 }

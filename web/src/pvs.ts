@@ -23,9 +23,12 @@ export class CellPvs {
   readonly #arrays: PvsArrays;
 
   constructor(arrays: PvsArrays) {
-    const { bounds, counts, objects, open, first, visible } = arrays;
+    const { bounds, counts, objects, open, first, visible } = arrays ?? ({} as PvsArrays);
+    if (!(open instanceof Uint8Array && first instanceof Uint32Array && visible instanceof Uint32Array))
+      refuse('CellPvs: expected open as a Uint8Array, first and visible as Uint32Arrays');
+    if (bounds?.length !== 6 || counts?.length !== 3) refuse('CellPvs: expected 6 numbers of bounds and 3 counts');
+    if (!Number.isInteger(objects) || objects < 0) refuse(`CellPvs: ${String(objects)} objects, expected a whole number of them`);
     const cells = counts[0]! * counts[1]! * counts[2]!;
-    if (bounds.length !== 6 || counts.length !== 3) refuse('CellPvs: expected 6 numbers of bounds and 3 counts');
     for (let axis = 0; axis < 3; ++axis) {
       if (!(bounds[axis]! < bounds[3 + axis]!) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
         refuse('CellPvs: bounds without extent or a count below 1, expected minimum < maximum and whole cells');

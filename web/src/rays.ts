@@ -1,7 +1,7 @@
 // Boxes to cast rays at, and what they meet first.
 import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
 import { refuse } from './errors.js';
-import { calling, expectKind, expectLength, type Block, type Input } from './memory.js';
+import { calling, expectBlock, expectKind, expectLength, type Block, type Input } from './memory.js';
 import { buffer, check, Owned, wasm } from './runtime.js';
 import { writeView, type View } from './views.js';
 
@@ -30,8 +30,8 @@ export class BoxBvh extends Owned {
   cast(rays: Input<Float32Array>, objects: Block<Uint32Array>, distances: Block<Float32Array>): void {
     calling((call) => {
       expectKind('cast: rays', rays, Float32Array);
-      expectKind('cast: objects', objects, Uint32Array);
-      expectKind('cast: distances', distances, Float32Array);
+      expectBlock('cast: objects', objects, Uint32Array);
+      expectBlock('cast: distances', distances, Float32Array);
       if (rays.length % 7 !== 0) refuse(`cast: ${rays.length} numbers of rays, expected a multiple of 7`);
       const count = rays.length / 7;
       expectLength('cast: objects', objects, count);

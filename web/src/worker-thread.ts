@@ -34,7 +34,8 @@ if (typeof scope.postMessage === 'function') {
   scope.onmessage = (event) => void handle(event.data, (reply, transfer) => scope.postMessage(reply, transfer));
 } else {
   const threads = 'node:worker_threads';
-  const { parentPort } = (await import(/* @vite-ignore */ threads)) as typeof import('node:worker_threads');
-  parentPort!.on('message', (request: Request) =>
-    void handle(request, (reply, transfer) => parentPort!.postMessage(reply, transfer)));
+  // Not awaited at the top, which workers as Vite bundles them by default may not.
+  void (import(/* @vite-ignore */ threads) as Promise<typeof import('node:worker_threads')>).then(({ parentPort }) =>
+    parentPort!.on('message', (request: Request) =>
+      void handle(request, (reply, transfer) => parentPort!.postMessage(reply, transfer))));
 }

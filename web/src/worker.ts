@@ -30,6 +30,7 @@ interface Thread {
   postMessage(message: unknown): void;
   terminate(): unknown;
   onmessage?: ((event: { data: Reply }) => void) | null;
+  onerror?: ((event: { message?: string; preventDefault?(): void }) => void) | null;
   on?(name: string, listener: (value: never) => void): void;
 }
 
@@ -39,6 +40,7 @@ export class WorkerWorld {
   readonly #waiting = new Map<number, { resolve: (value: never) => void; reject: (error: Error) => void }>();
   #next = 0;
   #disposed = false;
+  #ended: SightlineError | undefined; // why, unless by dispose()
 
   private constructor(thread: Thread) {
     this.#thread = thread;
@@ -48,8 +50,15 @@ export class WorkerWorld {
       if (reply.error) waiting?.reject(new SightlineError(reply.error.code, reply.error.message, reply.error.index));
       else waiting?.resolve(reply.value as never);
     };
-    if (thread.on) thread.on('message', settle as (value: never) => void);
-    else thread.onmessage = (event) => settle(event.data);
+    const fail = (error?: { message?: string }): void => this.#end(new SightlineError('ended',
+      `WorkerWorld: its thread has ended, is worker-thread.js beside worker.js? (${error?.message ?? 'it could not be loaded'})`));
+    if (thread.on) {
+      thread.on('message', settle as (value: never) => void);
+      thread.on('error', fail as (value: never) => void);
+    } else {
+      thread.onmessage = (event) => settle(event.data);
+      thread.onerror = (event) => (event.preventDefault?.(), fail(event));
+    }
   }
 
   /** Starts the thread, and waits until it can be called. */
@@ -79,19 +88,31 @@ export class WorkerWorld {
   }
   /** Ends the thread; calls that still wait are refused. */
   dispose(): void {
+    this.#end(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
+    this.#ended = undefined;
+  }
+
+  // Calls that wait, and all later ones, are refused.
+  #end(error: SightlineError): void {
+    if (!this.#disposed) this.#ended = error;
     this.#disposed = true;
     this.#thread.terminate();
-    for (const { reject } of this.#waiting.values())
-      reject(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
+    for (const { reject } of this.#waiting.values()) reject(error);
     this.#waiting.clear();
   }
 
   async #post<R>(name: string, ...args: unknown[]): Promise<R> {
+    if (this.#ended) throw this.#ended;
     if (this.#disposed) refuse('WorkerWorld: used after dispose()', 'disposed');
     return new Promise<R>((resolve, reject) => {
       const id = this.#next++;
       this.#waiting.set(id, { resolve: resolve as (value: never) => void, reject });
-      this.#thread.postMessage({ id, name, args } satisfies Request);
+      try {
+        this.#thread.postMessage({ id, name, args } satisfies Request);
+      } catch (error) { // Blocks and what is detached cannot go there
+        this.#waiting.delete(id);
+        reject(new SightlineError('bad_argument', `WorkerWorld: ${name} was given what cannot be posted, expected arrays of your own (${(error as Error).message})`));
+      }
     });
   }
 }

@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import {
   BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, noObject, noOccluder,
   OccluderMesh, OcclusionBuffer, ready, SightlineError, supported, World } from 'sightline-culling';
+import { visibleSet } from 'sightline-culling/webgpu';
 import { WorkerWorld } from 'sightline-culling/worker';
 
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -357,6 +358,28 @@ test('visible sets are asked by cell', () => {
   assert.throws(() => new CellPvs({ ...arrays, visible: Uint32Array.of(2, 0) }), refusal('bad_argument', /cell 0/));
 });
 
+test('what a call writes has to lie in the module', () => {
+  const buffer = new OcclusionBuffer(), bvh = new BoxBvh(), boxes = Float32Array.from(cube(0, 0, -5));
+  buffer.begin(view), bvh.build(boxes);
+  const needed = refusal('bad_argument', /expected a Block/), ray = Float32Array.of(0, 0, 0, 0, 0, -1, Infinity);
+  assert.throws(() => buffer.readNearness(new Float32Array(64 * 64)), needed);
+  assert.throws(() => buffer.maySee(boxes, new Uint8Array(1)), needed);
+  assert.throws(() => bvh.cast(ray, new Uint32Array(1), new Float32Array(1)), needed);
+  assert.throws(() => buffer.begin(view, { scale: 2 ** 32 + 1 }), SightlineError);
+  for (const each of [buffer, bvh, new BoxBvh()]) each.dispose(); // the module is as it was
+});
+
+test('arrays of visible sets and hits are checked', () => {
+  for (const arrays of [null, {}, { bounds: [0, 0, 0, 1, 1, 1], counts: [1, 1, 1], open: [1], first: [0, 0], visible: [] }])
+    assert.throws(() => new CellPvs(arrays), refusal('bad_argument', /^CellPvs: expected open/));
+  const arrays = { bounds: [0, 0, 0, 1, 1, 1], counts: [1, 1, 1], open: Uint8Array.of(1), first: Uint32Array.of(0, 0), visible: new Uint32Array(0) };
+  for (const objects of [undefined, NaN, -1]) assert.throws(() => new CellPvs({ ...arrays, objects }), refusal('bad_argument', /objects/));
+  const hits = { objects: Uint32Array.of(0), distances: Float32Array.of(1) };
+  for (const objects of [-1, Infinity, new Date()]) assert.throws(() => visibleSet(hits, objects), refusal('bad_argument', /objects/));
+  assert.throws(() => visibleSet(null, 1), refusal('bad_argument', /hits/));
+  assert.throws(() => new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 2), 'back'), refusal('bad_argument', /sides/));
+});
+
 test('clip depth of WebGL becomes 0 to 1', () => {
   const gl = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -3, -1, 0, 0, -4, 0]; // near 1, far 2
   const made = clipZeroToOne(gl);
@@ -371,6 +394,7 @@ test('a worker culls', async () => {
   assert.equal(handles.length, 2);
   assert.deepEqual([...(await worker.cull(view)).ids], [0]);
   await assert.rejects(worker.insert(Float32Array.of(1, 0, 0, 0, 0, 0)), refusal('bad_box', /./));
+  await assert.rejects(worker.insert(() => {}), refusal('bad_argument', /cannot be posted/));
   const pending = worker.cull(view);
   worker.dispose();
   await assert.rejects(pending, refusal('disposed', /./));

@@ -53,6 +53,17 @@ test('Vite bundles it, and the bundle runs', () => {
   assert.match(out, seen);
 });
 
+test('a worker is bundled by Vite as it comes, and refused where it is missing', () => {
+  mkdirSync(join(project, 'worker'));
+  writeFileSync(join(project, 'worker/index.html'), '<script type="module" src="start.mjs"></script>');
+  writeFileSync(join(project, 'worker/start.mjs'),
+    "import { WorkerWorld } from 'sightline-culling/worker';\nWorkerWorld.start().catch((error) => console.log(error.code, error.message));\n");
+  tool(project, 'vite/bin/vite.js', 'build', 'worker', '--logLevel', 'error');
+  assert.ok(readdirSync(join(project, 'worker/dist/assets')).some((name) => name.startsWith('worker-thread')));
+  esbuild(project, 'worker/start.mjs', '--bundle', '--format=esm', '--outfile=out/start.mjs');
+  assert.match(run(project, process.execPath, 'out/start.mjs'), /^ended WorkerWorld: its thread has ended/);
+});
+
 test('types check strictly', () => {
   writeFileSync(join(project, 'tsconfig.json'), JSON.stringify({
     compilerOptions: { strict: true, module: 'NodeNext', target: 'ES2022', lib: ['ES2022', 'DOM'], types: ['@webgpu/types'], noEmit: true },

@@ -80,6 +80,25 @@ test('occluders go with their geometries', async () => {
   assert.equal(await stream(2000, async (_, frame) => frame % 100 === 0 && (collect(), await loaded())), 0);
 });
 
+test('instances that come and go in ever other numbers take no more memory', async () => {
+  await ready;
+  const scene = new THREE.Scene(), culler = new SightlineCuller(scene), camera = new THREE.PerspectiveCamera(), probe = bytes(1);
+  const geometry = new THREE.BoxGeometry(), material = new THREE.MeshBasicMaterial();
+  camera.updateMatrixWorld(), await loaded();
+  let size = 0;
+  for (let i = 0; i < 300; ++i) {
+    const mesh = new THREE.InstancedMesh(geometry, material, 2000 + i);
+    scene.add(mesh);
+    scene.onBeforeRender({ isWebGLRenderer: true, sortObjects: true }, scene, camera, null), scene.onAfterRender();
+    assert.equal(culler.stats.objects, mesh.count);
+    scene.remove(mesh), mesh.dispose();
+    if (i === 20) size = probe.array.buffer.byteLength;
+  }
+  const grown = probe.array.buffer.byteLength - size;
+  culler.dispose(), probe.dispose();
+  assert.ok(grown < 2 ** 20, `${grown} bytes`);
+});
+
 test('occluders go with the culler', async () => {
   await ready;
   const probe = bytes(1), geometries = Array.from({ length: 100 }, () => new THREE.BoxGeometry(2, 2, 2));

@@ -6,18 +6,20 @@ import { ClippingGroup } from 'three/webgpu';
 import { ready, SightlineCuller } from 'sightline-culling/three';
 import { withPage } from './browser/chromium.mjs';
 
-const page = new URL('browser/shown.mjs', import.meta.url).pathname;
-
-test('what is displaced, marked, mirrored, overridden or drawn over all is as without the culler', async () => {
-  await withPage(page, async (tab) => {
+async function isAsWithout(cases) {
+  await withPage(new URL(`browser/${cases}.mjs`, import.meta.url).pathname, async (tab) => {
     await tab.waitForFunction(() => window.play);
-    for (const [name, { differs, culled, shy }] of Object.entries(await tab.evaluate(() => window.play()))) {
+    for (const [name, { differs, off, on, culled, shy }] of Object.entries(await tab.evaluate(() => window.play()))) {
       assert.deepEqual(differs.filter((pixels) => pixels > 0), [], `${name}: ${differs}`);
+      assert.deepEqual(on, off, name);
       assert.ok(culled > 0, `${name}: nothing was culled`);
       assert.equal(shy, 0, `${name}: too little was hidden`);
     }
   });
-});
+}
+
+test('what is displaced, marked, mirrored, overridden or drawn over all is as without the culler', () => isAsWithout('shown'));
+test('what changes later, or is done by shaders and mirrors, is as without the culler', () => isAsWithout('changed'));
 
 test('a group that clips its children is handed to three with them', async () => {
   await ready;

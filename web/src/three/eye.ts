@@ -1,7 +1,7 @@
 // Cameras of three.js as the library sees them.
 import type { Camera } from 'three';
 import { clipZeroToOne } from '../views.js';
-import type { Eye } from './occluders.js';
+import { determinantOf, type Eye } from './occluders.js';
 
 /** A camera as the library sees it, about its own place. */
 export function eyeOf(camera: Camera, width: number, most = 4096): Eye {
@@ -18,7 +18,7 @@ export function eyeOf(camera: Camera, width: number, most = 4096): Eye {
   return { worldToEye, eyeToClip, origin, width, height, near: (camera as { near?: number }).near ?? 0 };
 }
 
-// Whether a metre in the world is one for the eye, as occlusion takes it to be.
-export function isRigid({ worldToEye: m }: Eye): boolean {
-  return [0, 1, 2].every((row) => Math.abs(Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!) - 1) < 1e-5);
+// Whether a metre in the world is one for the eye, and the fronts of faces are what it is shown, as occlusion takes it to be.
+export function isRigid({ worldToEye: m, eyeToClip: p }: Eye): boolean {
+  return determinantOf(m) * p[0]! * p[5]! > 0 && [0, 1, 2].every((row) => Math.abs(Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!) - 1) < 1e-5);
 }

@@ -5,7 +5,7 @@
 // While a scene is rendered its `children` are a shorter list, of what the camera may see; before and after they are what
 // they were. What the culler does not know (sprites, lines, skinned meshes, LODs, meshes with children, frustumCulled =
 // false) stands in the list as before.
-import { BatchedMesh } from 'three';
+import { BatchedMesh, Layers } from 'three';
 import type { ArrayCamera, BufferGeometry, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
 import type { PerspectiveCamera } from 'three';
 import { refuse } from '../errors.js';
@@ -22,7 +22,7 @@ import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
-import type { Thing } from './things.js';
+import { isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
 
 export { ready, supported };
@@ -80,6 +80,7 @@ export class SightlineCuller {
   readonly #hooks: Hooks;
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
   #drawn: Eye | undefined;
+  #layers = new Layers(); // of the camera that draws
   readonly #whole = new Whole();
   #rest = 0;
   #left = new Uint32Array(0);
@@ -96,7 +97,7 @@ export class SightlineCuller {
     this.occlusion = occlusion;
     this.#bufferWidth = bufferWidth;
     this.#hooks = new Hooks(scene, {
-      before: (renderer, camera) => this.#begin(renderer as Renderer, this.camera ?? camera),
+      before: (renderer, camera) => this.#begin(renderer as Renderer, camera),
       after: () => this.#end(),
       whole: () => this.#frames.at(-1)?.children,
     });
@@ -149,8 +150,10 @@ export class SightlineCuller {
     if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
     this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
+    if (isDisplaced(this.#scene.overrideMaterial as Material | null)) return; // then all of it may be elsewhere
+    this.#layers = camera.layers;
     try {
-      this.#cull(renderer, camera, frame, outer !== undefined);
+      this.#cull(renderer, this.camera ?? camera, frame, outer !== undefined);
     } catch (error) {
       this.#tell(error as Error);
     }
@@ -185,6 +188,7 @@ export class SightlineCuller {
     const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
     if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.size);
     inventory.update();
+    inventory.measure(this.#layers);
     if (inventory.size === 0) return this.#count(0);
     const lights = this.#shadowViews(renderer);
     const seen = this.#seen(eyes, camera, !renderer.clippingPlanes?.length);
@@ -303,6 +307,8 @@ export class SightlineCuller {
     if (kind === 'batched') this.#narrowBatch(thing, main, frame);
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
+    // Neither does three look at it, so its sphere stays unmade until its instances are where they are to be.
+    if (!instanced.visible || !instanced.layers.test(this.#layers)) return;
     if (instanced.boundingSphere === null) instanced.computeBoundingSphere();
     const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn
     const list = instancesOf(thing, main, shadows, most);

@@ -1,5 +1,5 @@
 // What stands in a scene, kept up to date: things with boxes in a World, and what three draws by itself.
-import type { InstancedMesh, Mesh, Object3D, Scene } from 'three';
+import type { BatchedMesh, InstancedMesh, Layers, Mesh, Object3D, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
 import { Resting } from './resting.js';
@@ -13,6 +13,7 @@ const nodeOf = (object: Object3D, parent: number): Node =>
 export interface Left { object: Object3D; parent: number }
 
 const atOnce = 32; // things that are looked at together
+const fewestFreed = 1024; // slots without a thing that are worth making all anew
 
 /** Nodes that only hold others; not those that clip them. */
 const isThrough = (object: Object3D): boolean =>
@@ -47,8 +48,10 @@ export class Inventory {
   readonly #scene: Scene;
   readonly #thingOfMesh = new Map<Object3D, Thing>();
   readonly #instanced = new Set<Thing>();
+  readonly #unmeasured = new Set<Thing>(); // instanced and batched ones without a sphere
   readonly #resting = new Resting();
   readonly #free = new Map<number, number[]>();
+  #freed = 0; // slots of what was removed
   #handles = new Float64Array(0);
   #matrices = new Float64Array(0);
   #changed = true;
@@ -68,7 +71,8 @@ export class Inventory {
   /** Takes over what has moved, come or gone since the last call. */
   update(): void {
     if (!this.#changed) this.#scan();
-    if (this.#changed) this.#rebuild();
+    // Slots that nobody's count fits would pile up.
+    if (this.#changed || this.#freed > this.size + fewestFreed) this.#rebuild();
     for (const [i, node] of this.nodes.entries()) {
       const { object, parent } = node, { children } = object;
       node.shown = object.visible && (i === 0 || this.nodes[parent]!.shown);
@@ -77,6 +81,16 @@ export class Inventory {
       if (children !== node.children || children.length !== node.count) this.#changed = true;
     }
     if (this.#changed) this.update();
+  }
+
+  /** Has things measured that three would measure now: it culls by the sphere that it made when it first looked. */
+  measure(layers: Layers): void {
+    for (const thing of this.#unmeasured) {
+      const mesh = thing.mesh as InstancedMesh | BatchedMesh;
+      if (!mesh.visible || !mesh.layers.test(layers) || !this.nodes[thing.parent]!.shown) continue;
+      if (mesh.boundingSphere === null) mesh.computeBoundingSphere();
+      this.#unmeasured.delete(thing);
+    }
   }
 
   /** Visits the slots of each thing that is shown, from … to - 1 of ascending ones. */
@@ -139,8 +153,8 @@ export class Inventory {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
-    for (const all of [this.things, this.#instanced, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
-    this.slots = this.size = 0;
+    for (const all of [this.things, this.#instanced, this.#unmeasured, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
+    this.slots = this.size = this.#freed = 0;
     this.world.dispose(), (this.world = new World());
     this.nodes.push(nodeOf(this.#scene, -1));
     this.#listen(this.#scene, true);
@@ -162,9 +176,11 @@ export class Inventory {
   #thing(mesh: Mesh, parent: number, kind: Thing['kind'], count: number): Thing {
     const first = this.#free.get(count)?.pop() ?? this.slots;
     if (first === this.slots) this.slots += count;
+    else this.#freed = Math.max(this.#freed - count, 0);
     const thing = makeThing(mesh, kind, first, count, parent);
     this.things.add(thing);
     if (kind === 'instanced') this.#instanced.add(thing), takeNote(thing);
+    if (kind !== 'mesh') this.#unmeasured.add(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
     return thing;
@@ -219,6 +235,7 @@ export class Inventory {
     const thing = this.#thingOfMesh.get(child);
     if (this.#changed || !thing) return void (this.#changed = true);
     --this.nodes[thing.parent]!.count;
+    this.#freed += thing.count;
     this.#forget(thing);
   }
   // Three draws it by itself as long as it is restless.
@@ -231,7 +248,7 @@ export class Inventory {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
     this.size -= thing.count;
     disposeOf(thing);
-    this.things.delete(thing), this.#instanced.delete(thing), this.#thingOfMesh.delete(thing.mesh);
+    this.things.delete(thing), this.#instanced.delete(thing), this.#unmeasured.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
     const free = this.#free.get(thing.count);
     if (free) free.push(thing.first);

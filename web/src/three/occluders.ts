@@ -7,6 +7,7 @@ import type { Range } from './instances.js';
 import type { Inventory } from './inventory.js';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
+import { isPatched, writesDepth } from './shaders.js';
 import type { Thing } from './things.js';
 
 /** Occluders a frame. */
@@ -28,7 +29,7 @@ function isWhole(material: Material): boolean {
 // geometry that lies inside.
 export function isSolid(material: Material): boolean {
   const m = material as Material & { displacementMap?: unknown; isShaderMaterial?: boolean; isNodeMaterial?: boolean };
-  return isWhole(m) && !m.displacementMap && !m.isShaderMaterial && !m.isNodeMaterial && !Object.hasOwn(m, 'onBeforeCompile');
+  return isWhole(m) && !m.displacementMap && !m.isShaderMaterial && !m.isNodeMaterial && !isPatched(m);
 }
 
 // With what an object is drawn, if its own materials are visible.
@@ -37,23 +38,25 @@ const materialsOf = (object: Object3D, override: Material | null): Material[] =>
   return own.map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
 
-/** Whether an object, or one below it, writes depth behind what is there, so that others may show through occluders. */
+// What is called when an object is drawn may move it, or empty the depth buffer before it.
+const { onBeforeRender, onAfterRender } = Object3D.prototype;
+const isCalled = (object: Object3D): boolean => object.onAfterRender !== onAfterRender ||
+  ((object as { isBatchedMesh?: boolean }).isBatchedMesh ? Object.hasOwn(object, 'onBeforeRender') : object.onBeforeRender !== onBeforeRender);
+
+/** Whether an object, or one below it, writes depth behind what is there, or may empty the depth buffer before others are drawn,
+ * so that these may show through occluders. */
 export function breaksDepth(object: Object3D, override: Material | null): boolean {
-  return object.visible && (object.children.some((child) => breaksDepth(child, override)) ||
+  return object.visible && ((object.renderOrder < 0 && isCalled(object)) ||
+    object.children.some((child) => breaksDepth(child, override)) ||
     materialsOf(object, override).some((m) => m.depthWrite && (!m.depthTest || m.depthFunc === 1 || m.depthFunc > 4)));
 }
-
-// What is called when a mesh is drawn may move it, or empty the depth buffer before it.
-const { onBeforeRender, onAfterRender } = Object3D.prototype;
-const isCalled = (mesh: Mesh): boolean => mesh.onAfterRender !== onAfterRender ||
-  ((mesh as { isBatchedMesh?: boolean }).isBatchedMesh ? Object.hasOwn(mesh, 'onBeforeRender') : mesh.onBeforeRender !== onBeforeRender);
 
 /** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not; nor what is drawn late on
  * purpose, as it is drawn over the others where somebody has emptied the depth buffer first. */
 export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
   return mesh.renderOrder <= 0 && !isCalled(mesh) && materialsOf(mesh, override).every((m) =>
     m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
-    !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap);
+    !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap && !writesDepth(m));
 }
 
 const markOf = (mesh: Mesh) => (mesh.userData.occluder ?? undefined) as boolean | BufferGeometry | undefined;

@@ -7,6 +7,7 @@ import { writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
 import { Sending } from './sending.js';
+import { countsInstances } from './shaders.js';
 
 export interface Thing {
   readonly mesh: Mesh;
@@ -21,6 +22,7 @@ export interface Thing {
   points: Points;
   pointsVersion: number;
   radius: number | undefined;
+  given: Box3 | null;
   material: Mesh['material'];
   /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
@@ -43,12 +45,14 @@ const isPlain = (mesh: Mesh): boolean =>
   mesh.geometry?.attributes.position !== undefined && !isDisplaced(mesh.material) &&
   ((mesh as { isInstancedMesh?: boolean }).isInstancedMesh || !(mesh.geometry as { isInstancedBufferGeometry?: boolean }).isInstancedBufferGeometry);
 
-const isDisplaced = (material: Mesh['material']): boolean =>
+export const isDisplaced = (material: Mesh['material'] | null | undefined): boolean =>
   Array.isArray(material) ? material.some(isDisplaced) : Boolean((material as { displacementMap?: unknown } | undefined)?.displacementMap);
 
-// Instances without attributes of their own: shorter copies of their matrices and colours are all that is made.
+// Instances without attributes of their own, and which no shader counts: shorter copies of their matrices and colours are all that is made.
 function isSimple(mesh: InstancedMesh): boolean {
   if (mesh.morphTexture || mesh.instanceMatrix.count === 0) return false;
+  const { material, customDepthMaterial, customDistanceMaterial, userData } = mesh;
+  if (userData.sightline !== true && [material, customDepthMaterial, customDistanceMaterial].flat().some(countsInstances)) return false;
   return Object.values(mesh.geometry.attributes).every((attribute) => {
     const { isInstancedBufferAttribute, data } = attribute as unknown as {
       isInstancedBufferAttribute?: boolean; data?: { isInstancedInterleavedBuffer?: boolean } };
@@ -72,7 +76,8 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
 /** A thing, of which nothing is known yet. */
 export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
   const { geometry } = mesh;
-  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, radius: undefined, material: mesh.material,
+  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, radius: undefined, given: null,
+    material: mesh.material,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
     sending: kind === 'batched' ? new Sending(count) : undefined,
@@ -95,7 +100,7 @@ export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
 export function isOther(thing: Thing): boolean {
   const { mesh, kind, count } = thing;
   if (mesh.children.length > 0 || !mesh.frustumCulled || mesh.geometry?.attributes.position === undefined) return true;
-  if (mesh.userData.sightline === false) return true;
+  if (mesh.userData.sightline === false || mesh.morphTargetInfluences?.length || isDisplaced(mesh.material)) return true;
   const isRedressed = mesh.material !== thing.material || mesh.geometry !== thing.geometry;
   if (isRedressed && !isPlain(mesh)) return true;
   thing.material = mesh.material;
@@ -127,8 +132,9 @@ function reshapes(thing: Thing, geometry: BufferGeometry): boolean {
   const points = pointsOf(geometry), { version } = points;
   const radius = geometry.boundingSphere?.radius;
   if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && radius === thing.radius &&
-    geometry.boundingBox !== null) return false;
+    geometry.boundingBox === thing.given) return false;
   thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version), (thing.radius = radius);
+  thing.given = geometry.boundingBox;
   return true;
 }
 

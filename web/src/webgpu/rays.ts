@@ -114,6 +114,9 @@ export class RaySet extends Owned {
 
 /** The potentially visible set: every object that a ray met, ascending. */
 export function visibleSet(hits: RayHits, objects: number): Uint32Array {
+  if (!(hits?.objects instanceof Uint32Array)) refuse('visibleSet: hits, expected those of cast()');
+  if (!Number.isInteger(objects) || objects < 0 || objects > 2 ** 31)
+    refuse(`visibleSet: ${String(objects)} objects, expected an integer from 0 to 2^31`);
   const seen = new Uint8Array(objects);
   for (const object of hits.objects) if (object < objects) seen[object] = 1;
   const visible = new Uint32Array(seen.reduce((sum, one) => sum + one, 0));

@@ -5,17 +5,11 @@ import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { basic, box, playAll, scatter } from './play.mjs';
+import { walled } from './walls.mjs';
 
 const white = new THREE.DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
 white.needsUpdate = true;
 
-// A wall before the eye, and a hundred boxes behind it.
-function walled(scene) {
-  const wall = new THREE.Mesh(new THREE.BoxGeometry(20, 10, 1), basic(0x808080));
-  wall.position.z = -10, scene.add(wall);
-  for (let i = 0; i < 100; ++i) scene.add(box((i % 10) - 5, Math.floor(i / 10) - 5, -20, (i * 1234567) & 0xffffff, 0.6));
-  return wall;
-}
 // A wall that stops hiding by what `changes` does to it, after a frame in which it hides.
 const unwalled = (changes) => ({ scene, frame, hides }) => {
   const wall = walled(scene);
