@@ -138,7 +138,7 @@ Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
   s.sector_of_cell.emplace(SectorCell{x, y, z}, static_cast<std::uint32_t>(i));
   ChunkMapParts::join(*sector.map, s);
   if (s.columns.any()) sector.map->begin_column();
-  s.touch(static_cast<std::uint32_t>(i));
+  s.note_untidy(static_cast<std::uint32_t>(i));
   s.tidy(false);
   sector.snapshot = static_cast<std::uint32_t>(i);
   return {};

@@ -44,6 +44,10 @@ std::uint32_t WorldState::sector_at(const SectorCell& cell) {
 
 void WorldState::touch(std::uint32_t sector) {
   sectors[sector].snapshot = ChunkMap::kNone;
+  note_untidy(sector);
+}
+
+void WorldState::note_untidy(std::uint32_t sector) {
   if (sectors[sector].touched) return;
   sectors[sector].touched = true;
   touched.push_back(sector);

@@ -27,10 +27,7 @@ void WorldState::begin_column(const ColumnTests& tests) {
   for (std::uint32_t s = 0; s < sectors.size(); ++s) {
     if (!sectors[s].map) continue;
     sectors[s].map->begin_column();
-    // No object is another than it was, so what a snapshot holds of the sector still does.
-    const std::uint32_t snapshot = sectors[s].snapshot;
-    touch(s);
-    sectors[s].snapshot = snapshot;
+    note_untidy(s);
   }
 }
 

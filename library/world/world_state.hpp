@@ -86,8 +86,10 @@ struct WorldState {
   /// Made if there are none.
   WorldOccluders& own_occluders();
   std::uint32_t sector_at(const SectorCell& cell);
-  /// To be called of every sector whose map changes.
+  /// To be called of every sector whose objects change.
   void touch(std::uint32_t sector);
+  /// To be called where its map alone does: what a snapshot holds of it stays true.
+  void note_untidy(std::uint32_t sector);
   /// To be called of objects of which something changed that no map knows.
   void note_changed(const Strided<const Handle>& handles) noexcept;
   /// Shrinks bounds that changes left too large in the touched sectors, and frees those that they left empty;

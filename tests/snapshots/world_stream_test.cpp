@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "support/placed.hpp"
 #include "support/random_views.hpp"
@@ -49,6 +50,23 @@ CullView looking_from(const Vec3& eye, float heading, float far_plane = 4000) {
   return {.view = {*make_view(camera, 1280, 720), {}}};
 }
 
+// Views that have no sector in common.
+std::pair<CullView, CullView> from_opposite_corners() {
+  return {looking_from({-kSide, 0, -kSide}, 0.7f), looking_from({kSide, 0, kSide}, 3.9f)};
+}
+
+// The ground's world as its bytes bring it in.
+struct Streamed {
+  Ground ground;
+  World world;
+  Result<WorldStream> stream;
+
+  explicit Streamed(std::size_t count = 20'000)
+      : ground(count), stream(WorldStream::open(ground.bytes, world)) {
+    EXPECT_TRUE(stream);
+  }
+};
+
 // What all of the ground's boxes show, less those whose sectors are out, is what is seen.
 void expect_all_that_is_in(const Ground& ground, const World& world, const WorldStream& stream,
                            const CullView& view) {
@@ -71,10 +89,8 @@ std::size_t memory_of_all(const WorldStream& stream) {
 // An order learns of the chunks that come with a sector, also where one went and came again between two
 // updates.
 TEST(WorldStream, OrdersFollowWhatComesAndGoes) {
-  const Ground ground;
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
+  Streamed streamed;
+  auto& [ground, world, stream] = streamed;
   const StreamOptions options{.budget = memory_of_all(*stream) / 4};
   ObjectOrder order;
   RangeCuller culler;
@@ -107,10 +123,8 @@ TEST(WorldStream, OrdersFollowWhatComesAndGoes) {
 }
 
 TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
-  const Ground ground;
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
+  Streamed streamed;
+  auto& [ground, world, stream] = streamed;
   EXPECT_EQ(world.size(), 0u);
   Random random(1);
   for (int i = 0; i < 40; ++i) {
@@ -134,10 +148,8 @@ TEST(WorldStream, WithAllSectorsInItAnswersAsTheWorldThatWasSaved) {
 }
 
 TEST(WorldStream, StaysWithinItsBudgetBesideAThreadThatReads) {
-  const Ground ground;
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
+  Streamed streamed;
+  auto& [ground, world, stream] = streamed;
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
   for (int i = 0; i < 2; ++i)
@@ -173,12 +185,9 @@ TEST(WorldStream, StaysWithinItsBudgetBesideAThreadThatReads) {
 }
 
 TEST(WorldStream, HandlesNameTheSameObjectsAgain) {
-  const Ground ground(5000);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
-  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
-                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  Streamed streamed(5000);
+  auto& [ground, world, stream] = streamed;
+  const auto& [here, there] = from_opposite_corners();
   const StreamOptions options{.budget = memory_of_all(*stream) / 10};
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(stream->bring_in({i % 2 ? &here : &there, 1}, options));
@@ -201,12 +210,9 @@ TEST(WorldStream, HandlesNameTheSameObjectsAgain) {
 }
 
 TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
-  const Ground ground(5000);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
-  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
-                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  Streamed streamed(5000);
+  auto& [ground, world, stream] = streamed;
+  const auto& [here, there] = from_opposite_corners();
   // Before its sector has come.
   const Box box = test::box_at({-kSide + 10, 0, -kSide + 20}, {1, 1, 1});
   Handle added;
@@ -246,12 +252,9 @@ TEST(WorldStream, WhatWasChangedStaysInAndWhatWasPutThereComesTogether) {
 
 // A column's first use changes the objects that it is set of, and leaves all other sectors free to go.
 TEST(WorldStream, AFirstColumnPinsOnlyTheSectorsThatItIsSetIn) {
-  const Ground ground(5000);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
-  const CullView here = looking_from({-kSide, 0, -kSide}, 0.7f),
-                 there = looking_from({kSide, 0, kSide}, 3.9f);
+  Streamed streamed(5000);
+  auto& [ground, world, stream] = streamed;
+  const auto& [here, there] = from_opposite_corners();
   ASSERT_TRUE(stream->bring_in({&here, 1}));
   const std::size_t before = world.size();
   Handle one;
@@ -271,10 +274,8 @@ TEST(WorldStream, AFirstColumnPinsOnlyTheSectorsThatItIsSetIn) {
 }
 
 TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
-  const Ground ground(2000);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
+  Streamed streamed(2000);
+  auto& [ground, world, stream] = streamed;
   const CullView here = looking_from({0, 0, 0}, 0), there = looking_from({kSide, 0, kSide}, 0.7f);
   ASSERT_TRUE(stream->bring_in({&here, 1}));
   const auto occluder = world.add_occluder(test::kUnitBox);
@@ -291,12 +292,10 @@ TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
 // Instances of a streamed world show what those of the whole one show, less what is out; and a cull is
 // refused until they were told that the world reaches farther than it did.
 TEST(WorldStream, InstancesShowWhatIsIn) {
-  Ground ground(5000);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
-  Instances whole, streamed;
-  const PlacedWorldId of_whole = *whole.add_world(ground.world), of_streamed = *streamed.add_world(world);
+  Streamed streamed(5000);
+  auto& [ground, world, stream] = streamed;
+  Instances whole, parts;
+  const PlacedWorldId of_whole = *whole.add_world(ground.world), of_parts = *parts.add_world(world);
   Random random(7);
   std::vector<InstancePlacement> placements;
   for (const float scale : {1.0f, 0.25f, 0.5f})
@@ -306,21 +305,21 @@ TEST(WorldStream, InstancesShowWhatIsIn) {
          {}});
   std::vector<Handle> handles(placements.size());
   ASSERT_TRUE(whole.insert(placements, handles));
-  for (InstancePlacement& placement : placements) placement.world = of_streamed;
-  ASSERT_TRUE(streamed.insert(placements, handles));
+  for (InstancePlacement& placement : placements) placement.world = of_parts;
+  ASSERT_TRUE(parts.insert(placements, handles));
   const StreamOptions options{.budget = memory_of_all(*stream) / 4};
   InstanceCuller all_culler, culler;
   std::size_t shown = 0, out = 0, refused = 0;
   for (int step = 0; step < 30; ++step) {
     const CullView near = looking_from({-kSide + 1000.0f * step, 0, 0}, 0.2f * step, 2 * kSide);
     ASSERT_TRUE(stream->bring_in({&near, 1}, options));
-    const auto cull = [&] { return culler.cull(streamed, near); };
+    const auto cull = [&] { return culler.cull(parts, near); };
     if (const auto early = cull(); !early) {
       ++refused;
       ASSERT_EQ(early.error().code(), StatusCode::bad_argument);
-      ASSERT_EQ(early.error().index(), of_streamed);
+      ASSERT_EQ(early.error().index(), of_parts);
     }
-    ASSERT_TRUE(streamed.update());
+    ASSERT_TRUE(parts.update());
     const auto now = cull();
     ASSERT_TRUE(now) << now.error().message();
     test::AllSaid left = test::all_said(*now);
@@ -337,10 +336,8 @@ TEST(WorldStream, InstancesShowWhatIsIn) {
 }
 
 TEST(WorldStream, RefusesWhatIsNoView) {
-  const Ground ground(100);
-  World world;
-  auto stream = WorldStream::open(ground.bytes, world);
-  ASSERT_TRUE(stream);
+  Streamed streamed(100);
+  auto& [ground, world, stream] = streamed;
   EXPECT_EQ(stream->update({}).error().code(), StatusCode::bad_argument);
   CullView view = looking_from({0, 0, 0}, 0);
   EXPECT_EQ(stream->update({&view, 1}, {.ahead = -1}).error().code(), StatusCode::bad_argument);

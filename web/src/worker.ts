@@ -1,7 +1,7 @@
 // `sightline-culling/worker`: a world on another thread, which culls the next frame while this one is drawn. No shared
 // memory, so no special headers; what is seen is copied once a frame.
 import type { Boxes } from './boxes.js';
-import { refuse, SightlineError, type Code } from './errors.js';
+import { SightlineError, type Code } from './errors.js';
 import type { View } from './views.js';
 import type { CullOptions } from './world.js';
 
@@ -39,8 +39,7 @@ export class WorkerWorld {
   readonly #thread: Thread;
   readonly #waiting = new Map<number, { resolve: (value: never) => void; reject: (error: Error) => void }>();
   #next = 0;
-  #disposed = false;
-  #ended: SightlineError | undefined; // why, unless by dispose()
+  #ended: SightlineError | undefined; // what calls are refused with from then on
 
   private constructor(thread: Thread) {
     this.#thread = thread;
@@ -89,13 +88,12 @@ export class WorkerWorld {
   /** Ends the thread; calls that still wait are refused. */
   dispose(): void {
     this.#end(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
-    this.#ended = undefined;
+    this.#ended = new SightlineError('disposed', 'WorkerWorld: used after dispose()');
   }
 
   // Calls that wait, and all later ones, are refused.
   #end(error: SightlineError): void {
-    if (!this.#disposed) this.#ended = error;
-    this.#disposed = true;
+    this.#ended = error;
     this.#thread.terminate();
     for (const { reject } of this.#waiting.values()) reject(error);
     this.#waiting.clear();
@@ -103,7 +101,6 @@ export class WorkerWorld {
 
   async #post<R>(name: string, ...args: unknown[]): Promise<R> {
     if (this.#ended) throw this.#ended;
-    if (this.#disposed) refuse('WorkerWorld: used after dispose()', 'disposed');
     return new Promise<R>((resolve, reject) => {
       const id = this.#next++;
       this.#waiting.set(id, { resolve: resolve as (value: never) => void, reject });

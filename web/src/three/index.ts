@@ -307,9 +307,8 @@ export class SightlineCuller {
     if (kind === 'batched') this.#narrowBatch(thing, main, frame);
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
-    // Neither does three look at it, so its sphere stays unmade until its instances are where they are to be.
+    // Where three does not look at it either, it has no sphere yet, and must not get that of a few of its instances.
     if (!instanced.visible || !instanced.layers.test(this.#layers)) return;
-    if (instanced.boundingSphere === null) instanced.computeBoundingSphere();
     const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn
     const list = instancesOf(thing, main, shadows, most);
     if (list.length === 0 || list.length > most) return;

@@ -47,8 +47,7 @@ export class Inventory {
 
   readonly #scene: Scene;
   readonly #thingOfMesh = new Map<Object3D, Thing>();
-  readonly #instanced = new Set<Thing>();
-  readonly #unmeasured = new Set<Thing>(); // instanced and batched ones without a sphere
+  readonly #many = new Set<Thing>(); // instanced and batched ones
   readonly #resting = new Resting();
   readonly #free = new Map<number, number[]>();
   #freed = 0; // slots of what was removed
@@ -65,7 +64,7 @@ export class Inventory {
 
   /** To be called in every frame, before three draws, whether it is culled or not. */
   takeNote(): void {
-    for (const thing of this.#instanced) takeNote(thing);
+    for (const thing of this.#many) if (thing.ranges) takeNote(thing);
   }
 
   /** Takes over what has moved, come or gone since the last call. */
@@ -85,11 +84,10 @@ export class Inventory {
 
   /** Has things measured that three would measure now: it culls by the sphere that it made when it first looked. */
   measure(layers: Layers): void {
-    for (const thing of this.#unmeasured) {
+    for (const thing of this.#many) {
       const mesh = thing.mesh as InstancedMesh | BatchedMesh;
       if (!mesh.visible || !mesh.layers.test(layers) || !this.nodes[thing.parent]!.shown) continue;
       if (mesh.boundingSphere === null) mesh.computeBoundingSphere();
-      this.#unmeasured.delete(thing);
     }
   }
 
@@ -117,7 +115,7 @@ export class Inventory {
     this.#look(some);
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
-    for (const thing of this.#instanced) if (isRestless(thing)) this.#leave(thing);
+    for (const thing of this.#many) if (isRestless(thing)) this.#leave(thing);
     for (const left of this.#resting.calm()) {
       this.left.splice(this.left.indexOf(left), 1);
       this.#add(left.object, this.nodes[left.parent]!.object, 0);
@@ -153,7 +151,7 @@ export class Inventory {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
-    for (const all of [this.things, this.#instanced, this.#unmeasured, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
+    for (const all of [this.things, this.#many, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = this.size = this.#freed = 0;
     this.world.dispose(), (this.world = new World());
     this.nodes.push(nodeOf(this.#scene, -1));
@@ -179,8 +177,8 @@ export class Inventory {
     else this.#freed = Math.max(this.#freed - count, 0);
     const thing = makeThing(mesh, kind, first, count, parent);
     this.things.add(thing);
-    if (kind === 'instanced') this.#instanced.add(thing), takeNote(thing);
-    if (kind !== 'mesh') this.#unmeasured.add(thing);
+    if (kind !== 'mesh') this.#many.add(thing);
+    if (thing.ranges) takeNote(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
     return thing;
@@ -248,7 +246,7 @@ export class Inventory {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
     this.size -= thing.count;
     disposeOf(thing);
-    this.things.delete(thing), this.#instanced.delete(thing), this.#unmeasured.delete(thing), this.#thingOfMesh.delete(thing.mesh);
+    this.things.delete(thing), this.#many.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
     const free = this.#free.get(thing.count);
     if (free) free.push(thing.first);

@@ -23,7 +23,6 @@ export interface Thing {
   pointsVersion: number;
   radius: number | undefined;
   given: Box3 | null;
-  material: Mesh['material'];
   /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
   source: unknown;
@@ -77,7 +76,6 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
 export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
   const { geometry } = mesh;
   return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, radius: undefined, given: null,
-    material: mesh.material,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
     sending: kind === 'batched' ? new Sending(count) : undefined,
@@ -99,11 +97,7 @@ export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
 /** Whether a thing is no longer what it was taken for. */
 export function isOther(thing: Thing): boolean {
   const { mesh, kind, count } = thing;
-  if (mesh.children.length > 0 || !mesh.frustumCulled || mesh.geometry?.attributes.position === undefined) return true;
-  if (mesh.userData.sightline === false || mesh.morphTargetInfluences?.length || isDisplaced(mesh.material)) return true;
-  const isRedressed = mesh.material !== thing.material || mesh.geometry !== thing.geometry;
-  if (isRedressed && !isPlain(mesh)) return true;
-  thing.material = mesh.material;
+  if (!isPlain(mesh)) return true;
   if (kind === 'mesh') return false;
   if (kind === 'instanced') return (mesh as InstancedMesh).instanceMatrix.count !== count || !isSimple(mesh as InstancedMesh);
   return (mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled;
