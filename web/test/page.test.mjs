@@ -173,7 +173,9 @@ test('nothing is cut off, narrow and wide, light and dark', async () => {
       for (const part of ['models', 'city', 'drop']) {
         await page.click(`#tab-${part}`);
         await page.waitForFunction((name) => window.sightline[name].made || window.sightline[name].ready, part);
-        await page.waitForTimeout(process.env.SIGHTLINE_FULL ? 900 : 300); // for the pictures
+        // For the pictures.
+        await page.waitForFunction((name) => document.querySelector(`#${name} .readout b`).textContent !== '–', part);
+        await page.waitForTimeout(process.env.SIGHTLINE_FULL ? 900 : 300);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(wide <= width, `${part} at ${width} pixels is ${wide} wide`);
         writeFileSync(join(pictures, `${part}-${width}-${scheme}.png`), await page.screenshot({ fullPage: true }));

@@ -102,7 +102,7 @@ export class CityPart {
     this.graphs[0].add(thread), this.graphs[1].add(drawn ?? state.objects, culls ? stats.hidden : undefined);
     for (const graph of this.graphs) graph.draw();
     if (state.depth) stage.showDepth();
-    if (this.samples.length >= 15) this.#tell(drawn, stats);
+    if (this.samples.length >= this.readouts.frames.tellsAfter) this.#tell(drawn, stats);
   }
   #tell(drawn, stats) {
     const all = this.samples.splice(0), { info } = this.stage.renderer, r = this.readouts;

@@ -118,7 +118,9 @@ export class DropPart {
   #overviewFor(size) {
     const centre = this.box.getCenter(new THREE.Vector3());
     this.above = new THREE.PerspectiveCamera(35, 1, size / 1000, size * 6);
-    this.above.position.copy(centre).add(new THREE.Vector3(0.35 * size, 1.15 * size, 0.7 * size)), this.above.lookAt(centre);
+    // So far off that the sphere about the box is whole in it.
+    const away = (0.5 * size) / Math.sin((17.5 * Math.PI) / 180);
+    this.above.position.copy(centre).addScaledVector(new THREE.Vector3(0.35, 1.15, 0.7).normalize(), away), this.above.lookAt(centre);
     this.ghost ??= new THREE.MeshBasicMaterial({ color: '#8b939e', transparent: true, opacity: 0.34, depthWrite: false, depthFunc: THREE.LessDepth });
   }
   #mode() {
@@ -137,7 +139,7 @@ export class DropPart {
     if (state.overview) this.#overview();
     this.graph.add(thread), this.graph.draw();
     this.samples.push({ seconds, thread });
-    if (this.samples.length < 15) return;
+    if (this.samples.length < this.readouts.frames.tellsAfter) return;
     const all = this.samples.splice(0), r = this.readouts, culls = stage.culler.enabled;
     r.frames.set(String(Math.round(1 / median(all.map((each) => each.seconds)))), 'as shown');
     r.drawn.set(culls ? count(told.drawn) : '–', culls ? `of ${count(told.objects)}, ${count(told.hidden)} hidden` : '');

@@ -141,7 +141,7 @@ export class ModelsPart {
     if (state.byState) renderer.tell(this.visible);
     const triangles = renderer.draw(view, objects, { look: this.look, byState: state.byState && !state.frozen });
     this.frames.push(seconds);
-    if (this.frames.length > 20) this.#tell(triangles);
+    if (this.frames.length >= this.readouts.frames.tellsAfter) this.#tell(triangles);
     this.rest += seconds;
   }
 

@@ -49,11 +49,12 @@ export function toggle(label, checked, changed) {
 
 export const button = (words, pressed, properties = {}) => element('button', { type: 'button', onclick: pressed, ...properties }, words);
 
-/** A figure with its name: `set(text, note)`. */
+/** A figure with its name: `set(text, note)`. `tellsAfter`: of so many frames it is to be told, of few at first. */
 export function readout(label) {
   const value = element('b', {}, '–'), note = element('small', {});
   const made = element('div', { class: 'readout' }, element('span', {}, label), value, note);
-  made.set = (text, words = '') => (value.textContent = text, (note.textContent = words));
+  made.tellsAfter = 3;
+  made.set = (text, words = '') => (value.textContent = text, (note.textContent = words), (made.tellsAfter = 15));
   return made;
 }
 
