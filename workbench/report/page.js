@@ -16,8 +16,28 @@
     Chart.defaults.borderColor = colour("--rule");
   }
 
+  // Below the chart, as many lines as it takes: in the canvas a legend of thirty methods is cut off. A name hides its line.
+  function legend(chart) {
+    const list = document.createElement("ul"), figure = chart.canvas.closest("figure");
+    list.className = "legend";
+    chart.data.datasets.forEach((set, i) => {
+      const item = document.createElement("li"), name = document.createElement("button"), swatch = document.createElement("i");
+      const kind = set.borderDash.length === 0 ? "solid" : set.borderDash[0] < 5 ? "dotted" : "dashed";
+      swatch.style.borderTop = `2px ${kind} ${set.borderColor}`;
+      name.append(swatch, set.label), item.append(name), list.append(item);
+      name.setAttribute("aria-pressed", "true");
+      name.onclick = () => {
+        const shown = !chart.isDatasetVisible(i);
+        name.setAttribute("aria-pressed", shown), chart.setDatasetVisibility(i, shown), chart.update();
+      };
+    });
+    figure.querySelector(".legend")?.remove();
+    figure.append(list);
+    return chart;
+  }
+
   function line(id, y, series, logarithmic) {
-    return new Chart(document.getElementById(id), {
+    return legend(new Chart(document.getElementById(id), {
       type: "line",
       data: {
         labels: data.views,
@@ -28,14 +48,14 @@
       },
       options: {
         interaction: { mode: "index", intersect: false },
-        plugins: { legend: { position: "bottom", labels: { boxWidth: 22, boxHeight: 2 } } },
+        plugins: { legend: { display: false } },
         scales: {
           x: { title: { display: true, text: "view" }, ticks: { maxTicksLimit: 12 }, grid: { display: false } },
           y: { title: { display: true, text: y }, type: logarithmic ? "logarithmic" : "linear",
                ticks: { maxTicksLimit: 7 } },
         },
       },
-    });
+    }));
   }
 
   function bars(id, y, values) {
@@ -45,7 +65,7 @@
               datasets: [{ data: values, backgroundColor: data.methods.map((_, i) => of(i)), maxBarThickness: 46 }] },
       options: {
         plugins: { legend: { display: false } },
-        scales: { x: { grid: { display: false } },
+        scales: { x: { grid: { display: false }, ticks: { autoSkip: false, maxRotation: 90, font: { size: 10 } } },
                   y: { beginAtZero: true, title: { display: true, text: y }, ticks: { maxTicksLimit: 7 } } },
       },
     });
