@@ -216,29 +216,38 @@ HWY_INLINE void project_boxes(const DepthTiles& tiles, const Box* boxes, std::si
   out.cut = some & ~(before & ~grazing);
 }
 
+// Lists box i.
+HWY_INLINE void list_box(DepthTiles& tiles, const ProjectedBoxes& b, std::size_t i, TileList<3>& list) {
+  const TileRange range{static_cast<std::uint32_t>(b.begin_x[i]), static_cast<std::uint32_t>(b.end_x[i]),
+                        static_cast<std::uint32_t>(b.begin_y[i]), static_cast<std::uint32_t>(b.end_y[i])};
+  // A box behind what is drawn already changes nothing.
+  if (hidden_tiles(tiles, range, b.nearest[i])) return;
+  const Planes<3> planes{{b.at[0][i], b.at[1][i], b.at[2][i]},
+                         {b.across[0][i], b.across[1][i], b.across[2][i]},
+                         {b.down[0][i], b.down[1][i], b.down[2][i]}};
+  const auto width = static_cast<float>(tiles.width);
+  const auto spans_from = [&](float first_y) HWY_ATTR { return spans_of<6>(b, i, first_y, width); };
+  list_spans<3>(tiles, planes, range, spans_from, list);
+}
+
+HWY_INLINE void draw_projected(DepthTiles& tiles, const ProjectedBoxes& b, TileList<3>& list) {
+  for (std::uint32_t rest = b.cut; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
+                     {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
+  }
+  for (std::uint32_t rest = b.drawn; rest != 0; rest &= rest - 1)
+    list_box(tiles, b, static_cast<std::size_t>(std::countr_zero(rest)), list);
+  draw_listed(tiles, list);
+}
+
 void draw_all_boxes(DepthTiles& tiles, std::span<const Box> boxes) {
   const F f;
-  const auto width = static_cast<float>(tiles.width);
   ProjectedBoxes b;
+  TileList<3> list;
   for (std::size_t first = 0; first < boxes.size(); first += hn::Lanes(f)) {
     project_boxes(tiles, &boxes[first], std::min(hn::Lanes(f), boxes.size() - first), b);
-    for (std::uint32_t rest = b.cut; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      draw_clipped_box(tiles, {b.sides[0][i], b.sides[1][i], b.sides[2][i]},
-                       {b.sides[3][i], b.sides[4][i], b.sides[5][i]});
-    }
-    for (std::uint32_t rest = b.drawn; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const TileRange range{static_cast<std::uint32_t>(b.begin_x[i]), static_cast<std::uint32_t>(b.end_x[i]),
-                            static_cast<std::uint32_t>(b.begin_y[i]), static_cast<std::uint32_t>(b.end_y[i])};
-      // A box behind what is drawn already changes nothing.
-      if (hidden_tiles(tiles, range, b.nearest[i])) continue;
-      draw_spans<3>(tiles,
-                    {{b.at[0][i], b.at[1][i], b.at[2][i]},
-                     {b.across[0][i], b.across[1][i], b.across[2][i]},
-                     {b.down[0][i], b.down[1][i], b.down[2][i]}},
-                    range, [&](float first_y) HWY_ATTR { return spans_of<6>(b, i, first_y, width); });
-    }
+    draw_projected(tiles, b, list);
   }
 }
 

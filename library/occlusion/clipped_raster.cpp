@@ -22,8 +22,10 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
 void draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
-  draw_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom),
-               without);
+  TileList<1> list;
+  list_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom),
+               without, list);
+  draw_listed(tiles, list);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE
@@ -111,11 +113,7 @@ void add_line(const Outline& outline, std::size_t i, bool turns_right, const Sea
   const float rise = outline.y[next] - outline.y[i];
   // What rises less is bounded by the rows.
   if (!(std::fabs(rise) >= kFlatEdge) || !std::isfinite(line.at) || !std::isfinite(line.slope)) return;
-  if ((rise > 0) == turns_right) {
-    out.right_at[out.right_edges] = line.at, out.right_slope[out.right_edges++] = line.slope;
-  } else {
-    out.left_at[out.left_edges] = line.at, out.left_slope[out.left_edges++] = line.slope;
-  }
+  out.add_edge((rise > 0) == turns_right, line.at, line.slope);
 }
 
 // Adds the edge from corner i on, moved inwards by `inset` pixels.
@@ -133,13 +131,8 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
   }
   const float slope = (bx - ax) / dy, at = ax - ay * slope;
   const float inwards = inset * (1 + std::fabs(slope));
-  if ((by > ay) == turns_right) {
-    out.right_at[out.right_edges] = at - inwards;
-    out.right_slope[out.right_edges++] = slope;
-  } else {
-    out.left_at[out.left_edges] = at + inwards;
-    out.left_slope[out.left_edges++] = slope;
-  }
+  const bool on_right = (by > ay) == turns_right;
+  out.add_edge(on_right, on_right ? at - inwards : at + inwards, slope);
 }
 
 // A polygon that lies on the plane, if it turns that way; 0: whichever way it turns. Seams by the numbers of

@@ -7,183 +7,94 @@
 #define SIGHTLINE_OCCLUSION_DEPTH_RASTER_INL
 #endif
 
-#include <bit>
-
 #include "library/geometry/mutant.h"
-#include "library/occlusion/spans-inl.hpp"
+#include "library/occlusion/tile_steps-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-// What a polygon hides: the least of its planes' nearness, at + x·across + y·down.
-template <std::size_t kPlanes>
-struct Planes {
-  std::array<float, kPlanes> at, across, down;
-};
-
-// A polygon's planes, and their nearness from a tile's first pixel on over two rows of it: what is the same
-// for all its tiles.
-template <std::size_t kPlanes>
-struct PlaneTile {
-  Planes<kPlanes> planes;
-  alignas(64) std::array<std::array<float, 16>, kPlanes> offset;
-  std::array<float, kPlanes> most, least;  // of all eight rows
-};
-
-template <std::size_t kPlanes>
-HWY_INLINE PlaneTile<kPlanes> tile_of(const Planes<kPlanes>& planes) {
-  const F f;
-  PlaneTile<kPlanes> out;
-  out.planes = planes;
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    const VF across = hn::Set(f, planes.across[p]), down = hn::Set(f, planes.down[p]);
-    for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
-      hn::Store(hn::Add(hn::Mul(across, hn::Load(f, kColumn + i)), hn::Mul(down, hn::Load(f, kRow + i))), f,
-                &out.offset[p][i]);
-    }
-    out.most[p] = std::max(0.0f, 7 * planes.across[p]) + std::max(0.0f, 7 * planes.down[p]);
-    out.least[p] = std::min(0.0f, 7 * planes.across[p]) + std::min(0.0f, 7 * planes.down[p]);
-  }
-  return out;
+// The pixels of a step's tiles, of the spans of two rows.
+HWY_INLINE Held store_step_pixels(const Spans& spans, const Step& step, std::uint64_t* out) {
+  const Held first = store_pixels(spans, 0, step.tx * kTile, step.columns, out),
+             second = store_pixels(spans, kTile, step.tx * kTile, step.columns, out + kStepColumns);
+  return {first.some | second.some << kStepColumns, first.all | second.all << kStepColumns};
 }
 
-// Draws into these pixels of tile (tx, ty).
-template <std::size_t kPlanes>
-HWY_INLINE void draw_tile(DepthTiles& tiles, const PlaneTile<kPlanes>& of, std::uint32_t tx, std::uint32_t ty,
-                          std::uint64_t pixels) {
-  const F f;
-  const Planes<kPlanes>& planes = of.planes;
-  const float x = static_cast<float>(tx * kTile) + 0.5f, y = static_cast<float>(ty * kTile) + 0.5f;
-  std::array<float, kPlanes> base;
-  float nearest = kInfinity;
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    base[p] = (planes.at[p] + x * planes.across[p]) + y * planes.down[p];
-    nearest = std::min(nearest, base[p] + of.most[p]);
-  }
-  const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
-  if ((pixels == 0) | !(nearest > tiles.farthest[tile])) return;
-  float* HWY_RESTRICT out = &tiles.nearness[tile * 64];
-  if (tiles.nearest[tile] > -kInfinity && tiles.plane[tile].covers != 0) lay_plane(tiles.plane[tile], out);
-  tiles.plane[tile].covers = 0;
-  // No branch on whether the tile was touched, which is hard to guess.
-  const std::size_t kind = std::size_t{tx + 1 == tiles.columns} | std::size_t{ty + 1 == tiles.rows} << 1;
-  const float* before = &tiles.untouched[kind * 64];
-  before = tiles.nearest[tile] > -kInfinity ? out : before;
-  tiles.nearest[tile] = std::max(tiles.nearest[tile], nearest + std::fabs(nearest) * kTileRounding);
-  VF least = hn::Set(f, kInfinity);
-  for (std::size_t i = 0; i < 16; i += hn::Lanes(f)) {
-    VF depth[kPlanes];
-    for (std::size_t p = 0; p < kPlanes; ++p)
-      depth[p] = hn::Add(hn::Set(f, base[p]), hn::Load(f, &of.offset[p][i]));
-    for (std::size_t at = i; at < 64; at += 16) {
-      VF front = depth[0];
-      for (std::size_t p = 1; p < kPlanes; ++p) front = hn::Min(front, depth[p]);
-      for (std::size_t p = 0; p < kPlanes; ++p) depth[p] = hn::Add(depth[p], hn::Set(f, 2 * planes.down[p]));
-      const VF old = hn::Load(f, before + at);
-      const VF now = hn::IfThenElse(mask_of(f, pixels >> at), hn::Max(old, front), old);
-      hn::Store(now, f, out + at);
-      least = hn::Min(least, now);
+// Lists what `spans_from` says of sixteen lines from a pixel centre on; `leave_out` takes pixels of a step
+// away.
+template <std::size_t kPlanes, class SpansFrom, class LeaveOut>
+HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
+                           const SpansFrom& spans_from, const LeaveOut& leave_out, TileList<kPlanes>& list) {
+  if (list.shape_count == list.kMostShapes) draw_listed(tiles, list);
+  list.shapes[list.shape_count++] = tile_of(planes);
+  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
+    const Spans spans = spans_from(static_cast<float>(ty * kTile) + 0.5f);
+    TileColumns columns{range.begin_x, range.end_x};
+    // Of a wide polygon that lies aslant, two rows hold only a part.
+    if (range.end_x - range.begin_x > kStepColumns) {
+      columns = columns_of(spans);
+      columns = {std::max(columns.begin, range.begin_x), std::min(columns.end, range.end_x)};
     }
-  }
-  tiles.farthest[tile] = hn::GetLane(hn::MinOfLanes(f, least));
-}
-
-// Gives tiles [begin, end) of a row to a plane that covers them where it lies before all that they hold, and
-// draws the others pixel by pixel.
-HWY_INLINE void cover_tiles(DepthTiles& tiles, const PlaneTile<1>& of, std::uint32_t begin, std::uint32_t end,
-                            std::uint32_t ty) {
-  const F f;
-  const Planes<1>& planes = of.planes;
-  const VF at = hn::Set(f, planes.at[0]), across = hn::Set(f, planes.across[0]),
-           below = hn::Set(f, (static_cast<float>(ty * kTile) + 0.5f) * planes.down[0]),
-           rounding = hn::Set(f, kTileRounding), range = hn::Set(f, of.most[0] - of.least[0]);
-  const VF columns = hn::Mul(hn::Load(f, kLine), hn::Set(f, static_cast<float>(kTile)));
-  alignas(64) std::array<float, 16> bases;
-  for (std::uint32_t tx = begin; tx < end; tx += static_cast<std::uint32_t>(hn::Lanes(f))) {
-    const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
-    const VF x = hn::Add(hn::Set(f, static_cast<float>(tx * kTile) + 0.5f), columns);
-    const VF base = hn::Add(hn::Add(at, hn::Mul(x, across)), below),
-             nearest = hn::Add(base, hn::Set(f, of.most[0])),
-             slack = hn::Mul(rounding, hn::Add(hn::Abs(base), range)),
-             farthest = hn::Sub(hn::Add(base, hn::Set(f, of.least[0])), slack);
-    const VF was_farthest = hn::LoadU(f, &tiles.farthest[tile]),
-             was_nearest = hn::LoadU(f, &tiles.nearest[tile]);
-    const auto shows = hn::And(hn::FirstN(f, end - tx), hn::Gt(nearest, was_farthest));
-    const auto in_front = hn::And(shows, hn::Gt(farthest, was_nearest));
-    hn::StoreU(hn::IfThenElse(in_front, farthest, was_farthest), f, &tiles.farthest[tile]);
-    hn::StoreU(hn::IfThenElse(in_front, hn::Add(nearest, slack), was_nearest), f, &tiles.nearest[tile]);
-    hn::Store(base, f, bases.data());
-    for (std::uint32_t bits = bits_of(f, in_front); bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-      tiles.plane[tile + i] = {bases[i], planes.across[0], planes.down[0], 1};
+    const std::uint32_t rows = std::min(kStepRows, range.end_y - ty);
+    for (std::uint32_t tx = columns.begin; tx < columns.end; tx += kStepColumns) {
+      const Step step{tx, ty, std::min(kStepColumns, columns.end - tx), rows};
+      make_room(tiles, list);
+      std::uint64_t* pixels = &list.pixels[list.size];
+      Held held = store_step_pixels(spans, step, pixels);
+      leave_out(step, pixels, held);
+      take_step(tiles, step, held, list);
     }
-    for (std::uint32_t bits = bits_of(f, hn::AndNot(in_front, shows)); bits != 0; bits &= bits - 1)
-      draw_tile(tiles, of, tx + static_cast<std::uint32_t>(std::countr_zero(bits)), ty, ~std::uint64_t{0});
   }
 }
 
-// Draws what `spans_from` says of sixteen lines from a pixel centre on, tile by tile.
 template <std::size_t kPlanes, class SpansFrom>
-HWY_INLINE void draw_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
-                           const SpansFrom& spans_from) {
-  const PlaneTile<kPlanes> of = tile_of(planes);
-  Spans spans;
-  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
-    const std::size_t line = (ty - range.begin_y) % 2 * kTile;
-    if (line == 0) spans = spans_from(static_cast<float>(ty * kTile) + 0.5f);
-    // Of a polygon more than a tile wide that lies aslant, a row of tiles holds only a part.
-    const bool wide = range.end_x - range.begin_x > 1;
-    const std::uint32_t begin_x = wide ? first_column(spans, line) / kTile : range.begin_x,
-                        end_x = wide ? (end_column(spans, line) + kTile - 1) / kTile : range.end_x;
-    const auto draw = [&](std::uint32_t begin, std::uint32_t end) HWY_ATTR {
-      for (std::uint32_t tx = begin; tx < end; ++tx)
-        draw_tile(tiles, of, tx, ty, pixels_of(spans, line, tx * kTile));
-    };
-    // Tiles that all lines cover; the last row's lines may end beyond the image.
-    std::uint32_t full_x = end_x, full_end = end_x;
-    if (kPlanes == 1 && end_x - begin_x > 1 && (ty + 1 < tiles.rows || tiles.height % kTile == 0)) {
-      full_x = std::min(end_x, (last_begin(spans, line) + kTile - 1) / kTile);
-      full_end = std::max(full_x, first_end(spans, line) / kTile);
-    }
-    draw(begin_x, full_x);
-    if constexpr (kPlanes == 1) cover_tiles(tiles, of, full_x, full_end, ty);
-    draw(full_end, end_x);
-  }
+HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
+                           const SpansFrom& spans_from, TileList<kPlanes>& list) {
+  list_spans(
+      tiles, planes, range, spans_from, [](const Step&, std::uint64_t*, Held&) {}, list);
 }
 
-HWY_INLINE void draw_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range) {
-  if (polygon.left_edges == 0 || polygon.right_edges == 0) return;
-  draw_spans<1>(tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range, [&](float first_y) HWY_ATTR {
-    return spans_of(polygon, first_y, static_cast<float>(tiles.width));
-  });
+HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                      TileList<1>& list) {
+  if (!polygon.has_left || !polygon.has_right) return;
+  list_spans(
+      tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range,
+      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
+      list);
 }
 
 // The same without the pixels of some bands.
-HWY_INLINE void draw_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                             const Bands& without) {
-  if (without.count == 0) return draw_polygon(tiles, polygon, range);
-  if (polygon.left_edges == 0 || polygon.right_edges == 0) return;
+HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                      const Bands& without, TileList<1>& list) {
+  if (without.count == 0) return list_polygon(tiles, polygon, range, list);
+  if (!polygon.has_left || !polygon.has_right) return;
   const auto width = static_cast<float>(tiles.width);
-  const PlaneTile<1> of = tile_of<1>({{polygon.at}, {polygon.across}, {polygon.down}});
   std::array<Spans, Bands::kMost> left_out;
-  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
-    const float first_y = static_cast<float>(ty * kTile) + 0.5f;
-    const Spans spans = spans_of(polygon, first_y, width);
-    std::size_t bands = 0;
+  std::size_t bands = 0;
+  const auto spans_from = [&](float first_y) HWY_ATTR {
+    bands = 0;
     for (std::size_t i = 0; i < without.count; ++i) {
-      if (without.top[i] <= first_y + 7 && without.bottom[i] >= first_y)
+      if (without.top[i] <= first_y + 15 && without.bottom[i] >= first_y)
         left_out[bands++] = spans_of(without, i, first_y, width);
     }
-    const std::uint32_t end_x = std::min(range.end_x, (end_column(spans, 0) + kTile - 1) / kTile);
-    for (std::uint32_t tx = std::max(range.begin_x, first_column(spans, 0) / kTile); tx < end_x; ++tx) {
-      std::uint64_t pixels = pixels_of(spans, 0, tx * kTile);
-      for (std::size_t i = 0; i < bands; ++i) pixels &= ~pixels_of(left_out[i], 0, tx * kTile);
-      if (pixels == ~std::uint64_t{0})
-        cover_tiles(tiles, of, tx, tx + 1, ty);
-      else
-        draw_tile(tiles, of, tx, ty, pixels);
+    return spans_of(polygon, first_y, width);
+  };
+  const auto leave_out = [&](const Step& step, std::uint64_t* pixels, Held& held) HWY_ATTR {
+    const Words words;
+    alignas(64) std::array<std::uint64_t, kStepTiles> band;
+    for (std::size_t i = 0; i < bands; ++i) {
+      store_step_pixels(left_out[i], step, band.data());
+      held = {};
+      for (std::size_t row = 0; row < kStepTiles; row += kStepColumns) {
+        for (std::size_t tile = row; tile < row + step.columns; tile += kWords) {
+          const auto rest = hn::AndNot(hn::LoadU(words, &band[tile]), hn::LoadU(words, pixels + tile));
+          hn::StoreU(rest, words, pixels + tile);
+          add_held(rest, tile, held);
+        }
+      }
     }
-  }
+  };
+  list_spans(tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range, spans_from, leave_out, list);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

@@ -40,16 +40,25 @@ struct MeshScratch {
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
 };
 
-/// The depth of a tile that one plane covers, and so all that is written of it.
+/// The nearness of a tile that one plane covers.
 struct TilePlane {
-  float base, across, down;  ///< nearness at the first pixel's centre, and its growth
-  std::uint32_t covers;      ///< 0 where DepthTiles::nearness has the tile; undefined where nothing was drawn
+  float base, across, down;  ///< at the first pixel's centre, and its growth
+};
+
+/// All that is written of such tiles: a value a tile.
+template <class Floats>
+struct TilePlanes {
+  Floats base, across, down;
+
+  [[nodiscard]] TilePlane of(std::size_t tile) const noexcept {
+    return {base[tile], across[tile], down[tile]};
+  }
 };
 
 /// Where the tiles lie. What is undefined below is left as it was, so that a frame pays for what it draws.
 struct TileMemory {
   geometry::AlignedVector<float> farthest, nearest, nearness, untouched;
-  geometry::AlignedVector<TilePlane> plane;
+  TilePlanes<geometry::AlignedVector<float>> plane;
   std::vector<MeshScratch> scratch;  ///< one a job that draws; the first is there once a view is begun
 };
 
@@ -74,8 +83,8 @@ struct DepthTiles {
   float* farthest = nullptr;
   /// One a tile: no pixel of it is nearer; -infinity where nothing was drawn.
   float* nearest = nullptr;
-  /// One a tile.
-  TilePlane* plane = nullptr;
+  /// `base` is -infinity where `nearness` has the tile, and undefined where nothing was drawn.
+  TilePlanes<float*> plane{};
   /// 64 a tile, row by row; undefined where `nearest` is -infinity or a plane covers the tile. Pixels without
   /// an occluder hold -infinity, those beyond the image +infinity.
   float* nearness = nullptr;

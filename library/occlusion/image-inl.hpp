@@ -211,8 +211,8 @@ HWY_INLINE void lay_plane(const TilePlane& plane, float* HWY_RESTRICT out) {
 // The 64 pixels of a tile that was drawn to; `room` for those that are nowhere yet.
 HWY_INLINE const float* pixels_of_tile(const DepthTiles& tiles, std::size_t tile,
                                        std::array<float, 64>& room) {
-  if (tiles.plane[tile].covers == 0) return &tiles.nearness[tile * 64];
-  lay_plane(tiles.plane[tile], room.data());
+  if (!(tiles.plane.base[tile] > -kInfinity)) return &tiles.nearness[tile * 64];
+  lay_plane(tiles.plane.of(tile), room.data());
   return room.data();
 }
 

@@ -25,15 +25,14 @@ namespace sightline::occlusion::HWY_NAMESPACE {
 
 // Adds the first `count` edges of triangle i.
 HWY_INLINE void add_edges(const ReadyTriangles& ready, int i, std::size_t count, Convex& out) {
+  std::uint32_t left = 0, right = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    // Written to both lists and counted in one: no branch to guess.
-    const std::size_t l = out.left_edges, r = out.right_edges;
-    out.left_at[l] = out.right_at[r] = ready.edge_at[k][i];
-    out.left_slope[l] = out.right_slope[r] = ready.slope[k][i];
-    const std::uint32_t steep = ready.steep[k] >> i & 1, on_right = ready.on_right[k] >> i & 1;
-    out.right_edges += steep & on_right;
-    out.left_edges += steep & ~on_right & 1;
+    out.slope[out.edges] = ready.slope[k][i];
+    out.left_at[out.edges] = ready.left_at[k][i];
+    out.right_at[out.edges++] = ready.right_at[k][i];
+    left |= ready.on_left[k], right |= ready.on_right[k];
   }
+  out.has_left |= left >> i & 1, out.has_right |= right >> i & 1;
 }
 
 // Of a group of triangles, those that are drawn as one: a triangle, or a quad's halves. Of a quad each adds
@@ -48,19 +47,14 @@ HWY_INLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, C
   const float inset =
       piece.count == 2 ? std::max(ready.inset[first], ready.inset[first + 1]) : ready.inset[first];
   tight.left += inset, tight.right -= inset, tight.top += inset, tight.bottom -= inset;
-  tight.left_edges = tight.right_edges = 0;
+  tight.edges = 0;
   for (int i = first; i < first + static_cast<int>(piece.count); ++i) {
     const std::size_t edges = piece.count == 2 ? 2 : 3;
     for (std::size_t k = 0; k < edges; ++k) {
-      if (!(ready.steep[k] >> i & 1)) continue;
-      const float inwards = ready.seam[k] >> i & 1 ? inset * (1 + std::fabs(ready.slope[k][i])) : 0;
-      if (ready.on_right[k] >> i & 1) {
-        tight.right_at[tight.right_edges] = ready.edge_at[k][i] - inwards;
-        tight.right_slope[tight.right_edges++] = ready.slope[k][i];
-      } else {
-        tight.left_at[tight.left_edges] = ready.edge_at[k][i] + inwards;
-        tight.left_slope[tight.left_edges++] = ready.slope[k][i];
-      }
+      const float slope = ready.slope[k][i],
+                  inwards = ready.seam[k] >> i & 1 ? inset * (1 + std::fabs(slope)) : 0;
+      if (ready.on_right[k] >> i & 1) tight.add_edge(true, ready.right_at[k][i] - inwards, slope);
+      if (ready.on_left[k] >> i & 1) tight.add_edge(false, ready.left_at[k][i] + inwards, slope);
     }
   }
   return tight;
@@ -74,7 +68,7 @@ constexpr float kLeastDeeper = 1e-3f;
 HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const OccluderTopology& mesh,
                                    const RowTransform& transform, std::size_t group,
                                    const ReadyTriangles& ready, const Piece& piece, Convex tight,
-                                   const TileRange& range) {
+                                   const TileRange& range, TileList<1>& list) {
   const std::size_t end = piece.first + piece.count;
   Rim rim;
   for (std::size_t i = piece.first; i < end; ++i)
@@ -84,21 +78,21 @@ HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const OccluderTopology& me
   const Convex middle = inset_piece(ready, piece, tight);
   if (rim.known) {
     tight.at -= deeper;
-    draw_polygon(tiles, tight, range, rim.bands);
+    list_polygon(tiles, tight, range, rim.bands, list);
   }
   if (!rim.known || deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]))
-    draw_polygon(tiles, middle, range);
+    list_polygon(tiles, middle, range, list);
 }
 
 HWY_INLINE void draw_piece(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group, const ReadyTriangles& ready, const Piece& piece,
-                           const Convex& polygon, float nearest) {
+                           const Convex& polygon, float nearest, TileList<1>& list) {
   const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
   if (hidden_tiles(tiles, range, nearest)) return;
   if (tiles.margin > 0)
-    draw_with_margin(tiles, mesh, transform, group, ready, piece, polygon, range);
+    draw_with_margin(tiles, mesh, transform, group, ready, piece, polygon, range, list);
   else
-    draw_polygon(tiles, polygon, range);
+    list_polygon(tiles, polygon, range, list);
 }
 
 HWY_INLINE Convex triangle_of(const ReadyTriangles& ready, int i) {
@@ -145,8 +139,9 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(ready.seam[k] >> i & 1)) continue;
     const bool whole = ready.whole[k] >> i & 1;
-    out[k] = {whole ? SeamLine::Kind::given : SeamLine::Kind::through_near, ready.edge_at[k][i],
-              ready.slope[k][i]};
+    const bool on_right = ready.on_right[k] >> i & 1;
+    out[k] = {whole ? SeamLine::Kind::given : SeamLine::Kind::through_near,
+              on_right ? ready.right_at[k][i] : ready.left_at[k][i], ready.slope[k][i]};
   }
   return out;
 }
@@ -168,14 +163,14 @@ HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, cons
 }
 
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group) {
+                           std::size_t group, TileList<1>& list) {
   ReadyTriangles ready;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(F()))
     set_up(tiles, mesh, transform, group, lane, ready);
   const std::uint32_t alike = ready.sound & ready.sound >> 1 & ~(ready.to_right ^ ready.to_right >> 1) &
                               ~(ready.flat | ready.flat >> 1);
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest) HWY_ATTR {
-    draw_piece(tiles, mesh, transform, group, ready, piece, polygon, nearest);
+    draw_piece(tiles, mesh, transform, group, ready, piece, polygon, nearest, list);
   };
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t halves = mesh.groups[group].first_half & alike & (rest | rest >> 1); halves != 0;
@@ -225,6 +220,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
   const Projector projector = budget ? make_projector(tiles.view.view, {}) : Projector{};
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = *tiles.mesh;
+  TileList<1> list;
   for (std::size_t first = 0; first < s.near_first.size(); first += kGroupsAtOnce) {
     const std::size_t count = std::min(kGroupsAtOnce, s.near_first.size() - first);
     if (budget && !budget->pay(static_cast<double>(count) * budget->query)) return;
@@ -243,8 +239,9 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
       if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)]);
+      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)], list);
     }
+    draw_listed(tiles, list);
   }
 }
 

@@ -80,8 +80,8 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
 // A group of triangles, ready to be drawn.
 struct ReadyTriangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down, inset;
-  alignas(64) std::array<std::array<float, 16>, 3> slope, edge_at;
-  std::array<std::uint32_t, 3> on_right{}, steep{};  // a bit a triangle: the edge bounds it to the right
+  alignas(64) std::array<std::array<float, 16>, 3> slope, left_at, right_at;  // as Convex has them
+  std::array<std::uint32_t, 3> on_right{}, on_left{};  // a bit a triangle: the edge bounds it there
   std::uint32_t drawn = 0, cut = 0;
   std::array<std::uint32_t, 3> seam{}, whole{};  // drawn tight; of cut ones, before the near plane end to end
   // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
@@ -286,11 +286,14 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
            at = hn::Sub(ax, hn::Mul(ay, slope));
   const VF inwards = hn::Mul(hn::IfThenZeroElse(seam, inset), hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
   const auto steep = hn::Ge(hn::Abs(rise), hn::Set(f, kFlatEdge));
-  out.steep[k] |= bits_of(f, steep) << c.lane;
-  out.on_right[k] |= bits_of(f, on_right) << c.lane;
-  hn::Store(slope, f, &out.slope[k][c.lane]);
+  const auto at_right = hn::And(steep, on_right), at_left = hn::AndNot(on_right, steep);
+  const VF far = hn::Set(f, kInfinity);
+  out.on_right[k] |= bits_of(f, at_right) << c.lane;
+  out.on_left[k] |= bits_of(f, at_left) << c.lane;
+  hn::Store(hn::IfThenElseZero(steep, slope), f, &out.slope[k][c.lane]);
   hn::Store(inset, f, &out.inset[c.lane]);
-  hn::Store(hn::IfThenElse(on_right, hn::Sub(at, inwards), hn::Add(at, inwards)), f, &out.edge_at[k][c.lane]);
+  hn::Store(hn::IfThenElse(at_right, hn::Sub(at, inwards), far), f, &out.right_at[k][c.lane]);
+  hn::Store(hn::IfThenElse(at_left, hn::Add(at, inwards), hn::Neg(far)), f, &out.left_at[k][c.lane]);
   // A flat edge that is no seam bounds the rows.
   const auto bounds = hn::AndNot(seam, hn::Not(steep));
   out.flat |= bits_of(f, bounds) << c.lane;

@@ -34,7 +34,10 @@ void set_size(DepthTiles& t, TileMemory& memory, std::uint32_t width, std::uint3
     std::fill_n(memory.farthest.begin() + std::size_t{row} * t.stride, t.columns, -kInfinity);
   }
   memory.nearest.assign(tiles, -kInfinity);
-  if (memory.plane.size() < tiles) memory.plane.resize(tiles), memory.nearness.resize(64 * tiles);
+  if (memory.nearness.size() < 64 * tiles) {
+    memory.nearness.resize(64 * tiles);
+    for (auto* floats : {&memory.plane.base, &memory.plane.across, &memory.plane.down}) floats->resize(tiles);
+  }
   memory.untouched.resize(4 * 64);
   for (std::uint32_t kind = 0; kind < 4; ++kind) {
     for (std::uint32_t i = 0; i < 64; ++i) {
@@ -45,7 +48,8 @@ void set_size(DepthTiles& t, TileMemory& memory, std::uint32_t width, std::uint3
   }
   if (memory.scratch.empty()) memory.scratch.resize(1);
   t.farthest = memory.farthest.data(), t.nearest = memory.nearest.data();
-  t.plane = memory.plane.data(), t.nearness = memory.nearness.data();
+  t.plane = {memory.plane.base.data(), memory.plane.across.data(), memory.plane.down.data()};
+  t.nearness = memory.nearness.data();
   t.untouched = memory.untouched.data(), t.mesh = memory.scratch.data();
 }
 
@@ -60,7 +64,7 @@ float nearness_at(const DepthTiles& t, std::uint32_t x, std::uint32_t y) noexcep
   const std::size_t tile = std::size_t{y / kTile} * t.stride + x / kTile;
   if (!(t.nearest[tile] > -kInfinity)) return -kInfinity;
   const std::uint32_t column = x % kTile, row = y % kTile;
-  if (t.plane[tile].covers != 0) return occlusion::nearness_of(t.plane[tile], column, row);
+  if (t.plane.base[tile] > -kInfinity) return occlusion::nearness_of(t.plane.of(tile), column, row);
   return t.nearness[tile * 64 + row * kTile + column];
 }
 

@@ -63,13 +63,10 @@ HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   for (std::size_t i = 0; i < 2 * kTile; i += hn::Lanes(f)) {
     const auto y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + i));
     auto left = hn::Set(f, polygon.left), right = hn::Set(f, polygon.right);
-    for (std::size_t e = 0; e < polygon.left_edges; ++e) {
-      left = hn::Max(left,
-                     hn::Add(hn::Set(f, polygon.left_at[e]), hn::Mul(hn::Set(f, polygon.left_slope[e]), y)));
-    }
-    for (std::size_t e = 0; e < polygon.right_edges; ++e) {
-      right = hn::Min(
-          right, hn::Add(hn::Set(f, polygon.right_at[e]), hn::Mul(hn::Set(f, polygon.right_slope[e]), y)));
+    for (std::size_t e = 0; e < polygon.edges; ++e) {
+      const auto along = hn::Mul(hn::Set(f, polygon.slope[e]), y);
+      left = hn::Max(left, hn::Add(hn::Set(f, polygon.left_at[e]), along));
+      right = hn::Min(right, hn::Add(hn::Set(f, polygon.right_at[e]), along));
     }
     store_spans(left, right,
                 hn::And(hn::Ge(y, hn::Set(f, polygon.top)), hn::Le(y, hn::Set(f, polygon.bottom))), width, i,
@@ -113,63 +110,93 @@ HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, floa
   return out;
 }
 
-// The columns that the spans of a tile's scanlines hold, and those from which on and up to which all hold
-// them; and of the tile that starts at column x the pixels,
-// a byte a scanline, a bit a pixel.
+// Columns of tiles that the spans hold.
+struct TileColumns {
+  std::uint32_t begin, end;
+};
+
+// Of tiles, a bit each: whether some, whether all of their pixels are set.
+struct Held {
+  std::uint32_t some = 0, all = 0;
+};
+
+// The tiles whose pixels fit a vector, a word each: a byte a scanline, a bit a pixel.
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::min_element(&spans.begin[line], &spans.begin[line] + kTile));
-}
-HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::max_element(&spans.end[line], &spans.end[line] + kTile));
-}
-HWY_INLINE std::uint32_t last_begin(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::max_element(&spans.begin[line], &spans.begin[line] + kTile));
-}
-HWY_INLINE std::uint32_t first_end(const Spans& spans, std::size_t line) {
-  return static_cast<std::uint32_t>(*std::min_element(&spans.end[line], &spans.end[line] + kTile));
-}
-HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
-  std::uint64_t pixels = 0;
-  for (std::uint32_t row = 0; row < 8; ++row) {
-    const auto column = [&](std::int16_t at) { return std::clamp(at - static_cast<int>(x), 0, 8); };
-    const std::uint32_t from = 0xffu << column(spans.begin[line + row]) & 0xff,
-                        beyond = 0xffu << column(spans.end[line + row]);
-    pixels |= std::uint64_t{from & ~beyond} << (8 * row);
+using Words = hn::Rebind<std::uint64_t, F>;
+#else
+using Words = hn::Repartition<std::uint64_t, hn::Rebind<std::uint8_t, hn::CappedTag<std::int16_t, 32> > >;
+#endif
+constexpr std::size_t kWords = hn::MaxLanes(Words());
+
+HWY_INLINE void add_held(hn::Vec<Words> pixels, std::size_t tile, Held& out) {
+  const Words words;
+  if constexpr (kWords == 1) {
+    const std::uint64_t its = hn::GetLane(pixels);
+    out.some |= std::uint32_t{its != 0} << tile, out.all |= std::uint32_t{its == ~std::uint64_t{0}} << tile;
+    return;
   }
-  return pixels;
+  out.some |= bits_of(words, hn::Ne(pixels, hn::Zero(words))) << tile;
+  out.all |= bits_of(words, hn::Eq(pixels, hn::Set(words, ~std::uint64_t{0}))) << tile;
+}
+
+// The pixels of `count` tiles of a row from column x on, of the eight spans from `line` on. Writes whole
+// vectors, and says something of their last tiles, too.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE TileColumns columns_of(const Spans& spans) {
+  const auto begin = std::min_element(spans.begin.begin(), spans.begin.end());
+  const auto end = std::max_element(spans.end.begin(), spans.end.end());
+  return {static_cast<std::uint32_t>(*begin) / kTile, (static_cast<std::uint32_t>(*end) + kTile - 1) / kTile};
+}
+HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t x, std::size_t count,
+                             std::uint64_t* HWY_RESTRICT out) {
+  Held held;
+  for (std::size_t tile = 0; tile < count; ++tile) {
+    const int first = static_cast<int>(x + tile * kTile);
+    out[tile] = 0;
+    for (std::uint32_t row = 0; row < kTile; ++row) {
+      const auto column = [&](std::int16_t at) { return std::clamp(at - first, 0, 8); };
+      const std::uint32_t from = 0xffu << column(spans.begin[line + row]) & 0xff,
+                          beyond = 0xffu << column(spans.end[line + row]);
+      out[tile] |= std::uint64_t{from & ~beyond} << (8 * row);
+    }
+    add_held(hn::Set(Words(), out[tile]), tile, held);
+  }
+  return held;
 }
 #else
-HWY_INLINE std::uint32_t first_column(const Spans& spans, std::size_t line) {
+HWY_INLINE TileColumns columns_of(const Spans& spans) {
   const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Load(i16, &spans.begin[line]))));
+  const auto begin = hn::Min(hn::Load(i16, &spans.begin[0]), hn::Load(i16, &spans.begin[8])),
+             end = hn::Max(hn::Load(i16, &spans.end[0]), hn::Load(i16, &spans.end[8]));
+  return {static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, begin))) / kTile,
+          (static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, end))) + kTile - 1) / kTile};
 }
-HWY_INLINE std::uint32_t end_column(const Spans& spans, std::size_t line) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.end[line]))));
-}
-HWY_INLINE std::uint32_t last_begin(const Spans& spans, std::size_t line) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Load(i16, &spans.begin[line]))));
-}
-HWY_INLINE std::uint32_t first_end(const Spans& spans, std::size_t line) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Load(i16, &spans.end[line]))));
-}
-HWY_INLINE std::uint64_t pixels_of(const Spans& spans, std::size_t line, std::uint32_t x) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  const hn::FixedTag<std::uint8_t, 8> half;
-  const hn::FixedTag<std::uint8_t, 16> u8;
+HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t x, std::size_t count,
+                             std::uint64_t* HWY_RESTRICT out) {
+  const hn::CappedTag<std::int16_t, 32> i16;
+  const hn::Rebind<std::uint8_t, decltype(i16)> half;
+  const hn::Twice<decltype(half)> u8;
   // The bits from a column on.
   alignas(16) static constexpr std::uint8_t kFrom[16] = {0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0};
-  const auto at = hn::Set(i16, static_cast<std::int16_t>(x));
-  const auto column = [&](const std::int16_t* columns)
-                          HWY_ATTR { return hn::DemoteTo(half, hn::Sub(hn::Load(i16, columns), at)); };
-  const auto both =
-      hn::Min(hn::Combine(u8, column(&spans.end[line]), column(&spans.begin[line])), hn::Set(u8, 8));
-  alignas(16) std::uint64_t bits[2];
-  hn::Store(hn::TableLookupBytes(hn::Load(u8, kFrom), both), u8, reinterpret_cast<std::uint8_t*>(bits));
-  return bits[0] & ~bits[1];
+  // The columns at which a vector of tiles begins, eight lanes a tile.
+  alignas(64) static constexpr std::int16_t kFirst[32] = {0,  0,  0,  0,  0,  0,  0,  0,  8,  8,  8,
+                                                          8,  8,  8,  8,  8,  16, 16, 16, 16, 16, 16,
+                                                          16, 16, 24, 24, 24, 24, 24, 24, 24, 24};
+  const auto begin = hn::LoadDup128(i16, &spans.begin[line]), end = hn::LoadDup128(i16, &spans.end[line]);
+  const auto from = hn::LoadDup128(u8, kFrom);
+  Held held;
+  for (std::size_t tile = 0; tile < count; tile += kWords) {
+    const auto first =
+        hn::Add(hn::Load(i16, kFirst), hn::Set(i16, static_cast<std::int16_t>(x + tile * kTile)));
+    const auto columns =
+        hn::Combine(u8, hn::DemoteTo(half, hn::Sub(end, first)), hn::DemoteTo(half, hn::Sub(begin, first)));
+    const auto bits = hn::TableLookupBytes(from, hn::Min(columns, hn::Set(u8, kTile)));
+    const auto pixels =
+        hn::BitCast(Words(), hn::AndNot(hn::UpperHalf(half, bits), hn::LowerHalf(half, bits)));
+    hn::StoreU(pixels, Words(), out + tile);
+    add_held(pixels, tile, held);
+  }
+  return held;
 }
 #endif
 

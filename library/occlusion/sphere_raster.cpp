@@ -80,7 +80,7 @@ struct Discs {
 };
 
 HWY_INLINE void draw_discs(DepthTiles& tiles, const Discs& discs, float aspect, std::size_t count,
-                           float least_radius) {
+                           float least_radius, TileList<1>& list) {
   const auto width = static_cast<float>(tiles.width);
   for (std::size_t i = 0; i < count; ++i) {
     if (!(discs.clear[i] > 0 && discs.radius[i] > least_radius && discs.radius[i] < 1e6f)) continue;
@@ -89,9 +89,11 @@ HWY_INLINE void draw_discs(DepthTiles& tiles, const Discs& discs, float aspect, 
     const TileRange range =
         tiles_of(tiles, disc.x - wide, disc.x + wide, disc.y - disc.radius_y, disc.y + disc.radius_y);
     if (hidden_tiles(tiles, range, discs.near[i])) continue;
-    draw_spans<1>(tiles, {{discs.near[i]}, {0}, {0}}, range,
-                  [&](float first_y) HWY_ATTR { return spans_of(disc, first_y, width); });
+    list_spans<1>(
+        tiles, {{discs.near[i]}, {0}, {0}}, range,
+        [&](float first_y) HWY_ATTR { return spans_of(disc, first_y, width); }, list);
   }
+  draw_listed(tiles, list);
 }
 
 // A vector of spheres about the eye, as they are drawn.
@@ -145,12 +147,13 @@ void draw_all_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) {
   const Scales scales = scales_of(tiles);
   if (!(scales.x > 0 && scales.y > 0)) return;
   Discs discs;
+  TileList<1> list;
   for (std::size_t first = 0; first < spheres.size(); first += lanes) {
     const std::size_t count = std::min(lanes, spheres.size() - first);
     const DrawnSpheres some = spheres_of(tiles.projection, spheres.subspan(first, count));
     for (const Layer& layer : kLayers) {
       find_discs(tiles, some, scales, layer, discs);
-      draw_discs(tiles, discs, scales.aspect(), count, layer.offset > 0 ? kLeastLayered : kLeastDisc);
+      draw_discs(tiles, discs, scales.aspect(), count, layer.offset > 0 ? kLeastLayered : kLeastDisc, list);
     }
   }
 }

@@ -115,7 +115,7 @@ void ReceiverMask::write(OcclusionBuffer& buffer) const {
         least = std::min(least, nearness);
         if (within) most = std::max(most, nearness);
       }
-      t.plane[tile].covers = 0, t.farthest[tile] = least, t.nearest[tile] = most;
+      t.plane.base[tile] = -kNowhere, t.farthest[tile] = least, t.nearest[tile] = most;
     }
   }
 }
