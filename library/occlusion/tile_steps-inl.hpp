@@ -20,8 +20,8 @@ struct StepOffsets {
 
   constexpr StepOffsets() {
     for (std::uint32_t i = 0; i < kStepTiles; ++i) {
-      x[i] = static_cast<float>(i % kStepColumns * kTile);
-      y[i] = static_cast<float>(i / kStepColumns * kTile);
+      const std::uint32_t column = i % kStepColumns, row = i / kStepColumns;
+      x[i] = static_cast<float>(column * kTile), y[i] = static_cast<float>(row * kTile);
     }
   }
 };
