@@ -57,17 +57,22 @@ HWY_INLINE void store_spans(VF left, VF right, hn::Mask<F> in_rows, float width,
   hn::Store(hn::DemoteTo(i16, hn::ConvertTo(i32, hn::IfThenElseZero(in_rows, end))), i16, &out.end[i]);
 }
 
+// Narrows spans to an edge, as Convex has it.
+HWY_INLINE void narrow(VF y, float slope, float left_at, float right_at, VF& left, VF& right) {
+  const F f;
+  const VF along = hn::Mul(hn::Set(f, slope), y);
+  left = hn::Max(left, hn::Add(hn::Set(f, left_at), along));
+  right = hn::Min(right, hn::Add(hn::Set(f, right_at), along));
+}
+
 HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   const F f;
   Spans out;
   for (std::size_t i = 0; i < 2 * kTile; i += hn::Lanes(f)) {
     const auto y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + i));
     auto left = hn::Set(f, polygon.left), right = hn::Set(f, polygon.right);
-    for (std::size_t e = 0; e < polygon.edges; ++e) {
-      const auto along = hn::Mul(hn::Set(f, polygon.slope[e]), y);
-      left = hn::Max(left, hn::Add(hn::Set(f, polygon.left_at[e]), along));
-      right = hn::Min(right, hn::Add(hn::Set(f, polygon.right_at[e]), along));
-    }
+    for (std::size_t e = 0; e < polygon.edges; ++e)
+      narrow(y, polygon.slope[e], polygon.left_at[e], polygon.right_at[e], left, right);
     store_spans(left, right,
                 hn::And(hn::Ge(y, hn::Set(f, polygon.top)), hn::Le(y, hn::Set(f, polygon.bottom))), width, i,
                 out);
@@ -99,11 +104,8 @@ HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, floa
   for (std::size_t line = 0; line < 2 * kTile; line += hn::Lanes(f)) {
     const VF y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + line));
     VF left = hn::Set(f, of.left[i]), right = hn::Set(f, of.right[i]);
-    for (std::size_t e = 0; e < kEdges; ++e) {
-      const VF along = hn::Mul(hn::Set(f, of.slope[e][i]), y);
-      left = hn::Max(left, hn::Add(hn::Set(f, of.left_at[e][i]), along));
-      right = hn::Min(right, hn::Add(hn::Set(f, of.right_at[e][i]), along));
-    }
+    for (std::size_t e = 0; e < kEdges; ++e)
+      narrow(y, of.slope[e][i], of.left_at[e][i], of.right_at[e][i], left, right);
     store_spans(left, right, hn::And(hn::Ge(y, hn::Set(f, of.top[i])), hn::Le(y, hn::Set(f, of.bottom[i]))),
                 width, line, out);
   }
@@ -139,14 +141,25 @@ HWY_INLINE void add_held(hn::Vec<Words> pixels, std::size_t tile, Held& out) {
   out.all |= bits_of(words, hn::Eq(pixels, hn::Set(words, ~std::uint64_t{0}))) << tile;
 }
 
-// The pixels of `count` tiles of a row from column x on, of the eight spans from `line` on. Writes whole
-// vectors, and says something of their last tiles, too.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE TileColumns columns_of(const Spans& spans) {
   const auto begin = std::min_element(spans.begin.begin(), spans.begin.end());
   const auto end = std::max_element(spans.end.begin(), spans.end.end());
   return {static_cast<std::uint32_t>(*begin) / kTile, (static_cast<std::uint32_t>(*end) + kTile - 1) / kTile};
 }
+#else
+HWY_INLINE TileColumns columns_of(const Spans& spans) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  const auto begin = hn::Min(hn::Load(i16, &spans.begin[0]), hn::Load(i16, &spans.begin[8])),
+             end = hn::Max(hn::Load(i16, &spans.end[0]), hn::Load(i16, &spans.end[8]));
+  return {static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, begin))) / kTile,
+          (static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, end))) + kTile - 1) / kTile};
+}
+#endif
+
+// The pixels of `count` tiles of a row from column x on, of the eight spans from `line` on. Writes whole
+// vectors, and says something of their last tiles, too.
+#if HWY_TARGET == HWY_SCALAR
 HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t x, std::size_t count,
                              std::uint64_t* HWY_RESTRICT out) {
   Held held;
@@ -164,13 +177,6 @@ HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t
   return held;
 }
 #else
-HWY_INLINE TileColumns columns_of(const Spans& spans) {
-  const hn::FixedTag<std::int16_t, 8> i16;
-  const auto begin = hn::Min(hn::Load(i16, &spans.begin[0]), hn::Load(i16, &spans.begin[8])),
-             end = hn::Max(hn::Load(i16, &spans.end[0]), hn::Load(i16, &spans.end[8]));
-  return {static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, begin))) / kTile,
-          (static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, end))) + kTile - 1) / kTile};
-}
 HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t x, std::size_t count,
                              std::uint64_t* HWY_RESTRICT out) {
   const hn::CappedTag<std::int16_t, 32> i16;

@@ -99,16 +99,16 @@ HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size
   const VF across = hn::Set(f, t.across[i]), down = hn::Set(f, t.down[i]), most = hn::Set(f, t.nearest[i]);
   Spans spans;
   alignas(64) std::array<float, 64> room;
-  std::array<std::uint64_t, kWords> pixels_at;
+  std::array<std::uint64_t, kWords> pixels_at;  // written whole; the first is asked for
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
     const std::size_t line = (ty - range.begin_y) % 2 * kTile;
     if (line == 0)
       spans = spans_of<3>(t, i, static_cast<float>(ty * kTile) + 0.5f, static_cast<float>(tiles.width));
     for (std::uint32_t tx = range.begin_x; tx < range.end_x; ++tx) {
-      const std::size_t tile = std::size_t{ty} * tiles.stride + tx, at_once = (tx - range.begin_x) % kWords;
-      if (at_once == 0) store_pixels(spans, line, tx * kTile, kWords, pixels_at.data());
+      const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
       if (t.nearest[i] < tiles.farthest[tile]) continue;
-      const std::uint64_t pixels = pixels_at[at_once];
+      store_pixels(spans, line, tx * kTile, 1, pixels_at.data());
+      const std::uint64_t pixels = pixels_at[0];
       if (pixels == 0) continue;
       if (!(tiles.nearest[tile] > -kInfinity)) return true;
       const float* depth = pixels_of_tile(tiles, tile, room);
