@@ -5,7 +5,8 @@
   const colour = name => style.getPropertyValue(name).trim();
   const palette = ["#7f8791", "#1f77c8", "#e09a22", "#2a9d6e", "#b04fc0", "#d9553f", "#18a0b0", "#8a6d3b"];
   const of = i => palette[i % palette.length];
-  const dash = i => [[], [7, 4], [2, 3], [], [9, 3, 2, 3]][i % 5];
+  // Five, as eight colours come round: no two of forty lines look alike.
+  const dash = i => [[], [7, 4], [2, 3], [16, 3], [9, 3, 2, 3]][i % 5];
 
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   Chart.defaults.animation = false;
@@ -16,14 +17,23 @@
     Chart.defaults.borderColor = colour("--rule");
   }
 
+  // A piece of a line, as the chart draws it.
+  function stroke(set) {
+    const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    const of = { viewBox: "0 0 32 2", stroke: set.borderColor, "stroke-width": 2, "stroke-dasharray": set.borderDash.join(" ") };
+    const path = document.createElementNS(picture.namespaceURI, "path");
+    path.setAttribute("d", "M0 1h32");
+    for (const [name, value] of Object.entries(of)) picture.setAttribute(name, value);
+    picture.append(path);
+    return picture;
+  }
+
   // Below the chart, as many lines as it takes: in the canvas a legend of thirty methods is cut off. A name hides its line.
   function legend(chart) {
     const list = document.createElement("ul"), figure = chart.canvas.closest("figure");
     list.className = "legend";
     chart.data.datasets.forEach((set, i) => {
-      const item = document.createElement("li"), name = document.createElement("button"), swatch = document.createElement("i");
-      const kind = set.borderDash.length === 0 ? "solid" : set.borderDash[0] < 5 ? "dotted" : "dashed";
-      swatch.style.borderTop = `2px ${kind} ${set.borderColor}`;
+      const item = document.createElement("li"), name = document.createElement("button"), swatch = stroke(set);
       name.append(swatch, set.label), item.append(name), list.append(item);
       name.setAttribute("aria-pressed", "true");
       name.onclick = () => {
