@@ -61,10 +61,12 @@ inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
 /// An affine transform as SIMD kernels read it: three rows of (linear part | translation).
 struct RowTransform {
   std::array<Vec4, 3> rows;
+  bool in_place = false;  ///< all stays where it is
 };
 
 inline RowTransform row_transform(const Mat4& matrix) noexcept {
   RowTransform out;
+  out.in_place = matrix == Mat4{};
   for (std::size_t r = 0; r < 3; ++r)
     out.rows[r] = {matrix.m[r], matrix.m[4 + r], matrix.m[8 + r], matrix.m[12 + r]};
   return out;

@@ -20,70 +20,41 @@ HWY_INLINE Held store_step_pixels(const Spans& spans, const Step& step, std::uin
   return {first.some | second.some << kStepColumns, first.all | second.all << kStepColumns};
 }
 
-// Lists what `spans_from` says of sixteen lines from a pixel centre on; `leave_out` takes pixels of a step
-// away.
-template <std::size_t kPlanes, class SpansFrom, class LeaveOut>
-HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
-                           const SpansFrom& spans_from, const LeaveOut& leave_out, TileList<kPlanes>& list) {
-  if (list.shape_count == list.kMostShapes) draw_listed(tiles, list);
-  list.shapes[list.shape_count++] = tile_of(planes);
-  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
-    const Spans spans = spans_from(static_cast<float>(ty * kTile) + 0.5f);
-    TileColumns columns{range.begin_x, range.end_x};
-    // Of a wide polygon that lies aslant, two rows hold only a part.
-    if (range.end_x - range.begin_x > kStepColumns) {
-      columns = columns_of(spans);
-      columns = {std::max(columns.begin, range.begin_x), std::min(columns.end, range.end_x)};
-    }
-    const std::uint32_t rows = std::min(kStepRows, range.end_y - ty);
-    for (std::uint32_t tx = columns.begin; tx < columns.end; tx += kStepColumns) {
-      const Step step{tx, ty, std::min(kStepColumns, columns.end - tx), rows};
-      make_room(tiles, list);
-      std::uint64_t* pixels = &list.pixels[list.size];
-      Held held = store_step_pixels(spans, step, pixels);
-      leave_out(step, pixels, held);
-      take_step(tiles, step, held, list);
+// The same where all of them are set.
+HWY_INLINE Held store_whole_step(const Step& step, std::uint64_t* out) {
+  const Words words;
+  for (std::size_t tile = 0; tile < kStepTiles; tile += kWords)
+    hn::StoreU(hn::Set(words, ~std::uint64_t{0}), words, out + tile);
+  return {step.asked(), step.asked()};
+}
+
+// What of a polygon's pixels is left out: nothing.
+struct NothingLeftOut {
+  // The sixteen lines from a pixel centre on come next.
+  void come_to(float) {}
+  // Nothing is left out of these lines.
+  [[nodiscard]] bool none() const { return true; }
+  void take_from(const Step&, std::uint64_t*, Held&) const {}
+};
+
+// The pixels of some bands.
+class BandsLeftOut {
+public:
+  BandsLeftOut(const DepthTiles& tiles, const Bands& bands)
+      : bands_(bands), width_(static_cast<float>(tiles.width)) {}
+  void come_to(float first_y) {
+    count_ = 0;
+    for (std::size_t i = 0; i < bands_.count; ++i) {
+      if (bands_.top[i] <= first_y + 15 && bands_.bottom[i] >= first_y)
+        spans_[count_++] = spans_of(bands_, i, first_y, width_);
     }
   }
-}
-
-template <std::size_t kPlanes, class SpansFrom>
-HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
-                           const SpansFrom& spans_from, TileList<kPlanes>& list) {
-  list_spans(
-      tiles, planes, range, spans_from, [](const Step&, std::uint64_t*, Held&) {}, list);
-}
-
-HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                                      TileList<1>& list) {
-  if (!polygon.has_left || !polygon.has_right) return;
-  list_spans(
-      tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range,
-      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
-      list);
-}
-
-// The same without the pixels of some bands.
-HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                                      const Bands& without, TileList<1>& list) {
-  if (without.count == 0) return list_polygon(tiles, polygon, range, list);
-  if (!polygon.has_left || !polygon.has_right) return;
-  const auto width = static_cast<float>(tiles.width);
-  std::array<Spans, Bands::kMost> left_out;
-  std::size_t bands = 0;
-  const auto spans_from = [&](float first_y) HWY_ATTR {
-    bands = 0;
-    for (std::size_t i = 0; i < without.count; ++i) {
-      if (without.top[i] <= first_y + 15 && without.bottom[i] >= first_y)
-        left_out[bands++] = spans_of(without, i, first_y, width);
-    }
-    return spans_of(polygon, first_y, width);
-  };
-  const auto leave_out = [&](const Step& step, std::uint64_t* pixels, Held& held) HWY_ATTR {
+  [[nodiscard]] bool none() const { return count_ == 0; }
+  HWY_INLINE void take_from(const Step& step, std::uint64_t* pixels, Held& held) const {
     const Words words;
     alignas(64) std::array<std::uint64_t, kStepTiles> band;
-    for (std::size_t i = 0; i < bands; ++i) {
-      store_step_pixels(left_out[i], step, band.data());
+    for (std::size_t i = 0; i < count_; ++i) {
+      store_step_pixels(spans_[i], step, band.data());
       held = {};
       for (std::size_t row = 0; row < kStepTiles; row += kStepColumns) {
         for (std::size_t tile = row; tile < row + step.columns; tile += kWords) {
@@ -93,8 +64,82 @@ HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, 
         }
       }
     }
-  };
-  list_spans(tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range, spans_from, leave_out, list);
+  }
+
+private:
+  const Bands& bands_;
+  float width_;
+  std::array<Spans, Bands::kMost> spans_;
+  std::size_t count_ = 0;
+};
+
+// The columns of two rows of tiles, of those in range. Of a wide polygon that lies aslant they hold only a
+// part, and most of that whole.
+HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, bool some_whole) {
+  if (range.end_x - range.begin_x <= kStepColumns) return {range.begin_x, range.end_x};
+  TileColumns out = columns_of(spans);
+  out.begin = std::max(out.begin, range.begin_x), out.end = std::min(out.end, range.end_x);
+  out.begin_whole = std::max(out.begin_whole, out.begin), out.end_whole = std::min(out.end_whole, out.end);
+  // A step that is cut short costs as much as one that is not.
+  if (!some_whole || out.end_whole < out.begin_whole + kStepColumns)
+    out.begin_whole = out.end_whole = out.end;
+  return out;
+}
+
+// Lists what `spans_from` says of sixteen lines from a pixel centre on, but what is left out.
+template <std::size_t kPlanes, class SpansFrom, class LeftOut>
+HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
+                           const SpansFrom& spans_from, LeftOut left_out, TileList<kPlanes>& list) {
+  if (list.shape_count == list.kMostShapes) draw_listed(tiles, list);
+  list.shapes[list.shape_count++] = tile_of(planes);
+  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
+    const float first_y = static_cast<float>(ty * kTile) + 0.5f;
+    const Spans spans = spans_from(first_y);
+    left_out.come_to(first_y);
+    const TileColumns columns = columns_in(range, spans, left_out.none());
+    const std::uint32_t rows = std::min(kStepRows, range.end_y - ty);
+    for (std::uint32_t tx = columns.begin, next = 0; tx < columns.end; tx = next) {
+      const bool whole = columns.begin_whole <= tx && tx < columns.end_whole;
+      const std::uint32_t end = tx < columns.begin_whole ? columns.begin_whole
+                                : whole                  ? columns.end_whole
+                                                         : columns.end;
+      const Step step{tx, ty, std::min(kStepColumns, end - tx), rows};
+      next = tx + step.columns;
+      make_room(tiles, list);
+      std::uint64_t* pixels = &list.pixels[list.size];
+      Held held = whole ? store_whole_step(step, pixels) : store_step_pixels(spans, step, pixels);
+      left_out.take_from(step, pixels, held);
+      take_step(tiles, step, held, list);
+    }
+  }
+}
+
+template <std::size_t kPlanes, class SpansFrom>
+HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
+                           const SpansFrom& spans_from, TileList<kPlanes>& list) {
+  list_spans(tiles, planes, range, spans_from, NothingLeftOut(), list);
+}
+
+template <class LeftOut>
+HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                             const LeftOut& left_out, TileList<1>& list) {
+  if (!polygon.has_left || !polygon.has_right) return;
+  list_spans(
+      tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range,
+      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
+      left_out, list);
+}
+
+HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                      TileList<1>& list) {
+  list_polygon(tiles, polygon, range, NothingLeftOut(), list);
+}
+
+// The same without the pixels of some bands.
+HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                      const Bands& without, TileList<1>& list) {
+  if (without.count == 0) return list_polygon(tiles, polygon, range, list);
+  list_polygon(tiles, polygon, range, BandsLeftOut(tiles, without), list);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

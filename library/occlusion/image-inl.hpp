@@ -28,6 +28,12 @@ using Corners = std::array<VPoints, 3>;  // of a vector of triangles, about the 
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Most levels are one mesh that is drawn where it lies.
+HWY_INLINE VPoints moved(const RowTransform& transform, const VPoints& p) {
+  if (transform.in_place) return p;
+  return {dot_row(transform.rows[0], p), dot_row(transform.rows[1], p), dot_row(transform.rows[2], p)};
+}
+
 // As EyeProjection says.
 HWY_INLINE VPoints about_eye(const EyeProjection& e, const VPoints& p) {
   const F f;

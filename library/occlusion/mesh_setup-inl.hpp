@@ -23,8 +23,7 @@ HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopol
   for (std::size_t k = 0; k < 3; ++k) {
     const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + lane];
     const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
-    out[k] = about_eye(
-        e, {dot_row(transform.rows[0], p), dot_row(transform.rows[1], p), dot_row(transform.rows[2], p)});
+    out[k] = about_eye(e, moved(transform, p));
   }
   return out;
 }

@@ -112,9 +112,10 @@ HWY_INLINE Spans spans_of(const Outlines& of, std::size_t i, float first_y, floa
   return out;
 }
 
-// Columns of tiles that the spans hold.
+// Columns of tiles that the spans hold, and of those the columns that all of them hold whole, if any.
 struct TileColumns {
   std::uint32_t begin, end;
+  std::uint32_t begin_whole = 0, end_whole = 0;
 };
 
 // Of tiles, a bit each: whether some, whether all of their pixels are set.
@@ -126,7 +127,7 @@ struct Held {
 #if HWY_TARGET == HWY_SCALAR
 using Words = hn::Rebind<std::uint64_t, F>;
 #else
-using Words = hn::Repartition<std::uint64_t, hn::Rebind<std::uint8_t, hn::CappedTag<std::int16_t, 32> > >;
+using Words = hn::Repartition<std::uint64_t, hn::CappedTag<std::uint8_t, 64> >;
 #endif
 constexpr std::size_t kWords = hn::MaxLanes(Words());
 
@@ -145,15 +146,25 @@ HWY_INLINE void add_held(hn::Vec<Words> pixels, std::size_t tile, Held& out) {
 HWY_INLINE TileColumns columns_of(const Spans& spans) {
   const auto begin = std::min_element(spans.begin.begin(), spans.begin.end());
   const auto end = std::max_element(spans.end.begin(), spans.end.end());
-  return {static_cast<std::uint32_t>(*begin) / kTile, (static_cast<std::uint32_t>(*end) + kTile - 1) / kTile};
+  const auto last_begin = std::max_element(spans.begin.begin(), spans.begin.end());
+  const auto first_end = std::min_element(spans.end.begin(), spans.end.end());
+  return {static_cast<std::uint32_t>(*begin) / kTile, (static_cast<std::uint32_t>(*end) + kTile - 1) / kTile,
+          (static_cast<std::uint32_t>(*last_begin) + kTile - 1) / kTile,
+          static_cast<std::uint32_t>(*first_end) / kTile};
 }
 #else
 HWY_INLINE TileColumns columns_of(const Spans& spans) {
   const hn::FixedTag<std::int16_t, 8> i16;
-  const auto begin = hn::Min(hn::Load(i16, &spans.begin[0]), hn::Load(i16, &spans.begin[8])),
-             end = hn::Max(hn::Load(i16, &spans.end[0]), hn::Load(i16, &spans.end[8]));
-  return {static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, begin))) / kTile,
-          (static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, end))) + kTile - 1) / kTile};
+  const auto begin = hn::Load(i16, &spans.begin[0]), more_begin = hn::Load(i16, &spans.begin[8]),
+             end = hn::Load(i16, &spans.end[0]), more_end = hn::Load(i16, &spans.end[8]);
+  const auto least = [&](auto p, auto q) HWY_ATTR {
+    return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(i16, hn::Min(p, q))));
+  };
+  const auto most = [&](auto p, auto q) HWY_ATTR {
+    return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i16, hn::Max(p, q))));
+  };
+  return {least(begin, more_begin) / kTile, (most(end, more_end) + kTile - 1) / kTile,
+          (most(begin, more_begin) + kTile - 1) / kTile, least(end, more_end) / kTile};
 }
 #endif
 
@@ -177,29 +188,36 @@ HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t
   return held;
 }
 #else
+// Of eight scanlines a byte each, how far beyond column x they lie, at every tile of a vector.
+HWY_INLINE hn::Vec<Words> columns_from(const std::int16_t* columns, std::uint32_t x) {
+  const hn::FixedTag<std::int16_t, 8> i16;
+  const hn::Rebind<std::uint8_t, decltype(i16)> u8;
+  const auto beyond = hn::Sub(hn::Load(i16, columns), hn::Set(i16, static_cast<std::int16_t>(x)));
+  const hn::Repartition<std::uint64_t, decltype(u8)> word;
+  return hn::Set(Words(), hn::GetLane(hn::BitCast(word, hn::DemoteTo(u8, beyond))));
+}
+
 HWY_INLINE Held store_pixels(const Spans& spans, std::size_t line, std::uint32_t x, std::size_t count,
                              std::uint64_t* HWY_RESTRICT out) {
-  const hn::CappedTag<std::int16_t, 32> i16;
-  const hn::Rebind<std::uint8_t, decltype(i16)> half;
-  const hn::Twice<decltype(half)> u8;
+  const Words words;
+  const hn::Repartition<std::uint8_t, Words> u8;
   // The bits from a column on.
   alignas(16) static constexpr std::uint8_t kFrom[16] = {0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0};
-  // The columns at which a vector of tiles begins, eight lanes a tile.
-  alignas(64) static constexpr std::int16_t kFirst[32] = {0,  0,  0,  0,  0,  0,  0,  0,  8,  8,  8,
-                                                          8,  8,  8,  8,  8,  16, 16, 16, 16, 16, 16,
-                                                          16, 16, 24, 24, 24, 24, 24, 24, 24, 24};
-  const auto begin = hn::LoadDup128(i16, &spans.begin[line]), end = hn::LoadDup128(i16, &spans.end[line]);
-  const auto from = hn::LoadDup128(u8, kFrom);
+  // The columns at which tiles begin, eight lanes a tile.
+  constexpr std::uint64_t kEach = 0x0101010101010101u * kTile;
+  alignas(64) static constexpr std::uint64_t kFirst[8] = {0,         kEach,     2 * kEach, 3 * kEach,
+                                                          4 * kEach, 5 * kEach, 6 * kEach, 7 * kEach};
+  const auto begin = hn::BitCast(u8, columns_from(&spans.begin[line], x)),
+             end = hn::BitCast(u8, columns_from(&spans.end[line], x));
+  const auto from = hn::LoadDup128(u8, kFrom), tile_width = hn::Set(u8, kTile);
   Held held;
   for (std::size_t tile = 0; tile < count; tile += kWords) {
-    const auto first =
-        hn::Add(hn::Load(i16, kFirst), hn::Set(i16, static_cast<std::int16_t>(x + tile * kTile)));
-    const auto columns =
-        hn::Combine(u8, hn::DemoteTo(half, hn::Sub(end, first)), hn::DemoteTo(half, hn::Sub(begin, first)));
-    const auto bits = hn::TableLookupBytes(from, hn::Min(columns, hn::Set(u8, kTile)));
-    const auto pixels =
-        hn::BitCast(Words(), hn::AndNot(hn::UpperHalf(half, bits), hn::LowerHalf(half, bits)));
-    hn::StoreU(pixels, Words(), out + tile);
+    const auto first = hn::BitCast(u8, hn::Load(words, kFirst + tile));
+    const auto bits_from = [&](hn::Vec<decltype(u8)> column) HWY_ATTR {
+      return hn::TableLookupBytes(from, hn::Min(hn::SaturatedSub(column, first), tile_width));
+    };
+    const auto pixels = hn::BitCast(words, hn::AndNot(bits_from(end), bits_from(begin)));
+    hn::StoreU(pixels, words, out + tile);
     add_held(pixels, tile, held);
   }
   return held;

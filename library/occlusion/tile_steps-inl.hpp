@@ -126,6 +126,7 @@ HWY_INLINE void take_step(DepthTiles& tiles, const Step& step, const Held& held,
     }
     shown |= shows << i;
   }
+  if (shown == 0) return;  // and the next step takes its place
   list.count += append_places(size, shown & 0xff, &list.listed[list.count]);
   list.count += append_places(size + 8, shown >> 8, &list.listed[list.count]);
   list.step[size / kStepTiles] = {step.tx, step.ty, static_cast<std::uint32_t>(list.shape_count - 1)};
