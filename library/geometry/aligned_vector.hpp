@@ -103,8 +103,26 @@ struct LargePages {
   }
 };
 
+/// The same, whose elements begin as what the memory happened to hold: what nobody writes takes no memory.
+template <class T>
+struct UnwrittenPages : LargePages<T> {
+  UnwrittenPages() = default;
+  template <class U>
+  UnwrittenPages(const UnwrittenPages<U>&) noexcept {}
+  template <class U>
+  void construct(U* place) noexcept {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U>
+  struct rebind {
+    using other = UnwrittenPages<U>;
+  };
+};
+
 /// Memory for SIMD loads that is walked in no order.
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
+template <class T>
+using UnwrittenVector = std::vector<T, UnwrittenPages<T>>;
 
 }  // namespace sightline::geometry

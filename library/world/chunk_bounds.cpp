@@ -96,8 +96,10 @@ void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
   if (c.group == kNone) return;
   Group& b = groups_[c.group];
   b.first_lane[c.index_in_group] = c.first_lane;
-  b.count_and_size[c.index_in_group] =
-      c.count | c.capacity << Group::kSize | (c.live < c.count || c.pool == kMovers ? Group::kLoose : 0);
+  const bool movers = c.pool == kMovers, in_order = movers && is_kept_page(c) && c.live == kCapacity;
+  b.count_and_size[c.index_in_group] = c.count | c.capacity << Group::kSize |
+                                       (c.live < c.count || movers ? Group::kLoose : 0) |
+                                       (in_order ? Group::kInOrder : 0);
 }
 
 void ChunkMap::BoxRows::set(std::size_t i, const Box& box) noexcept {

@@ -122,11 +122,19 @@ std::uint32_t ChunkMap::take_lanes(Pool& pool, std::uint32_t capacity) {
     free.pop_back();
     return first;
   }
+  return add_lanes(pool, capacity);
+}
+
+std::uint32_t ChunkMap::add_lanes(Pool& pool, std::uint32_t count) {
   const std::uint32_t first = pool.used;
-  pool.used += capacity;
+  pool.used += count;
   // Who copies a chunk's ids may read as many as fit in any.
   pool.ids.resize(std::size_t{pool.used} + kCapacity);
-  pool.lanes.resize(6 * std::size_t{pool.used});
+  if (pool.row == 0) {
+    pool.lanes.resize(6 * std::size_t{pool.used});
+  } else if (pool.used > pool.row) {
+    lengthen_rows(pool, 2 * pool.row);
+  }
   if (has_columns()) resize_columns(pool);
   return first;
 }
@@ -144,7 +152,7 @@ void ChunkMap::give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacit
 
 Box ChunkMap::box_at(const Chunk& c, std::uint32_t slot) const noexcept {
   const float* at = lanes(c, 0) + slot;
-  const std::size_t step = c.capacity;
+  const std::size_t step = this->step(c);
   return {{at[0], at[step], at[2 * step]}, {at[3 * step], at[4 * step], at[5 * step]}};
 }
 
@@ -160,7 +168,7 @@ void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, c
 void ChunkMap::write_box(const Chunk& c, std::uint32_t slot, const Box& box) noexcept {
   ++changes_[c.pool];
   float* at = lanes(c, 0) + slot;
-  const std::size_t step = c.capacity;
+  const std::size_t step = this->step(c);
   at[0] = box.min.x, at[step] = box.min.y, at[2 * step] = box.min.z;
   at[3 * step] = box.max.x, at[4 * step] = box.max.y, at[5 * step] = box.max.z;
 }
@@ -172,12 +180,14 @@ std::uint32_t ChunkMap::take_slot(Chunk& c) noexcept {
   return static_cast<std::uint32_t>(std::find(all, all + c.count, kNoObject) - all);
 }
 
-std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool) {
+// With lanes of its own where none are given.
+std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool,
+                                  std::uint32_t first_lane) {
   const std::uint32_t chunk = take_element(chunks_, free_chunks_);
   Chunk added;
   added.bounds = kEmptyBox, added.moved = {}, added.pool = pool;
   added.key = key, added.capacity = capacity, added.cell = cell;
-  added.first_lane = take_lanes(pools_[pool], capacity);
+  added.first_lane = first_lane == kNone ? take_lanes(pools_[pool], capacity) : first_lane;
   misplaced_ += pool == kStill;
   // Its number may still stand in these lists.
   const Chunk& old = chunks_[chunk];
@@ -190,7 +200,7 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 void ChunkMap::free_chunk(std::uint32_t chunk) {
   take_from_group(chunk);
   Chunk& c = chunks_[chunk];
-  give_lanes(pools_[c.pool], c.first_lane, c.capacity);
+  if (c.pool == kStill || !is_kept_page(c)) give_lanes(pools_[c.pool], c.first_lane, c.capacity);
   c.count = c.live = c.counted = 0;
   c.key = kNone;
   note_change(chunk);

@@ -10,7 +10,7 @@
 //
 // Where `movers` is asked for, move_loosely() lets what moves cost little: a chunk's bounds may be wider than
 // its boxes, an object that leaves them or moves frame after frame stands in chunks of movers, filed by when
-// it came and not by where it is, and rest() files those that no longer move. Once a third of all ids move
+// it came and not by where it is, and rest() files those that no longer move. Once a sixth of all ids move
 // in no order, movers stand in pages: chunks in which each id has its place.
 #pragma once
 
@@ -106,9 +106,10 @@ public:
     std::array<std::array<float, kGroupCapacity>, 6> bounds{};
     std::array<std::uint32_t, kGroupCapacity> chunks{};
     /// Of each chunk, what ChunkMap::chunk() would look up elsewhere: where its lanes begin, and how many
-    /// objects it holds, with its capacity in the bits from kSize on and kLoose set where it is loose.
+    /// objects it holds, with its capacity in the bits from kSize on, kLoose set where it is loose, and
+    /// kInOrder where it has no holes and each id is one more than the last.
     std::array<std::uint32_t, kGroupCapacity> first_lane{}, count_and_size{};
-    static constexpr std::uint32_t kCount = 0xff, kSize = 8, kLoose = 0x40000000u;
+    static constexpr std::uint32_t kCount = 0xff, kSize = 8, kLoose = 0x40000000u, kInOrder = 0x20000000u;
     Box box;                  ///< of all of them
     std::uint32_t count = 0;  ///< 0: the group is free
     std::uint32_t node = 0, index_in_node = 0;
@@ -222,7 +223,7 @@ public:
   [[nodiscard]] const float* distances_of(const Group& group, const ChunkView& chunk,
                                           std::size_t& step) const noexcept {
     const Pool& pool = pools_[group.pool];
-    step = static_cast<std::size_t>(chunk.min_y - chunk.min_x);
+    step = pool.row > 0 ? kCapacity : static_cast<std::size_t>(chunk.min_y - chunk.min_x);
     return pool.distances.data() + 2 * (chunk.objects - pool.ids.data());
   }
 
@@ -265,9 +266,9 @@ public:
   /// The chunk at place i of a group.
   [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
     const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
-    const std::size_t step = size >> Group::kSize & Group::kCount;
     const Pool& pool = pools_[group.pool];
-    const float* at = pool.lanes.data() + 6 * std::size_t{first};
+    const std::size_t step = pool.step(size >> Group::kSize & Group::kCount);
+    const float* at = pool.lanes.data() + pool.begin(first);
     return {at,
             at + step,
             at + 2 * step,
@@ -336,15 +337,22 @@ private:
     bool stale = false;  // stands in stale_
   };
   static constexpr std::uint8_t kStill = 0, kMovers = 1;
-  // Movers have lanes of their own, so that those who come all at once make nobody copy the others'.
+  // Movers have lanes of their own, so that those who come all at once make nobody copy the others'; and
+  // these are six long rows, which processors foresee, as they do those of a flat array.
   struct Pool {
-    geometry::LargeVector<float> lanes;
-    geometry::LargeVector<ObjectId> ids;  // and kCapacity more
-    std::uint32_t used = 0;               // lanes
+    geometry::UnwrittenVector<float> lanes;
+    geometry::UnwrittenVector<ObjectId> ids;  // and kCapacity more
+    std::uint32_t used = 0;                   // lanes
+    std::size_t row = 0;                      // from one side of a box to the next; 0: its chunk's capacity
     // Where there are such columns: one a lane, and two, a chunk's least before its greatest.
     geometry::LargeVector<std::uint32_t> layers;
     geometry::LargeVector<float> distances;
     std::array<std::vector<std::uint32_t>, kCapacity / kLanes> free;  // by capacity
+
+    [[nodiscard]] std::size_t step(std::size_t capacity) const noexcept { return row > 0 ? row : capacity; }
+    [[nodiscard]] std::size_t begin(std::size_t first_lane) const noexcept {
+      return row > 0 ? first_lane : 6 * first_lane;
+    }
   };
   struct Key {
     RegionSet regions;
@@ -364,10 +372,15 @@ private:
   };
 
   float* lanes(const Chunk& chunk, std::uint32_t side) noexcept {
-    return pools_[chunk.pool].lanes.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
+    Pool& pool = pools_[chunk.pool];
+    return pool.lanes.data() + pool.begin(chunk.first_lane) + side * pool.step(chunk.capacity);
   }
   const float* lanes(const Chunk& chunk, std::uint32_t side) const noexcept {
-    return pools_[chunk.pool].lanes.data() + 6 * std::size_t{chunk.first_lane} + side * chunk.capacity;
+    const Pool& pool = pools_[chunk.pool];
+    return pool.lanes.data() + pool.begin(chunk.first_lane) + side * pool.step(chunk.capacity);
+  }
+  [[nodiscard]] std::size_t step(const Chunk& chunk) const noexcept {
+    return pools_[chunk.pool].step(chunk.capacity);
   }
   ObjectId* ids(const Chunk& chunk) noexcept {
     return pools_[chunk.pool].ids.data() + chunk.first_lane;
@@ -383,7 +396,8 @@ private:
   void build_nodes();
   std::uint32_t find_key(RegionSet regions);
   std::uint32_t find_chunk(const Key& key, const Vec3& centre) const noexcept;
-  std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool = kStill);
+  std::uint32_t add_chunk(std::uint32_t key, std::uint32_t capacity, Box cell, std::uint8_t pool = kStill,
+                          std::uint32_t first_lane = kNone);
   void free_chunk(std::uint32_t chunk);
   std::uint32_t make_room(std::uint32_t chunk, const Vec3& centre);
   bool split(std::uint32_t chunk);
@@ -393,6 +407,7 @@ private:
   void replace_reference(std::uint32_t key, std::uint32_t parent, std::uint32_t from,
                          std::uint32_t to) noexcept;
   std::uint32_t take_lanes(Pool& pool, std::uint32_t capacity);
+  std::uint32_t add_lanes(Pool& pool, std::uint32_t count);
   static std::uint32_t free_capacity(const Pool& pool, std::uint32_t objects) noexcept;
   static void give_lanes(Pool& pool, std::uint32_t first, std::uint32_t capacity);
   void file(ObjectId object, const Box& box);
@@ -421,12 +436,16 @@ private:
   void make_dirty(std::uint32_t chunk);
   void note_grown(std::uint32_t chunk);
   void add_mover(ObjectId object, const Box& box);
-  std::uint32_t add_mover_chunk();
+  std::uint32_t add_mover_chunk(std::uint32_t first_lane = kNone);
+  static void lengthen_rows(Pool& pool, std::size_t lanes);
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
   void free_mover_chunk(std::uint32_t chunk);
   [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
     return chunk.previous != kNone;
+  }
+  [[nodiscard]] bool is_kept_page(const Chunk& mover) const noexcept {
+    return is_page(mover) && mover.previous < kept_pages_;
   }
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
@@ -483,10 +502,13 @@ private:
   std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
   std::vector<std::uint32_t> mover_chunks_;  // each chunk's `parent` is its place here
   std::uint32_t open_ = kNone;               // of these the one that takes the next mover
-  std::size_t scattered_ = 0, in_runs_ = 0;  // movers moved since expect_moves(), one by one and in runs
-  bool by_id_ = false;                       // which stands in its page instead
-  std::vector<std::uint32_t> pages_;         // the chunk of ids i * kCapacity … of each page i, or none
-  std::vector<std::uint32_t> stale_;         // chunks whose summaries wait for settle_columns()
+  // Since expect_moves(): movers moved one by one and in runs, and who became one.
+  std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;
+  bool by_id_ = false;                // which stands in its page instead
+  std::vector<std::uint32_t> pages_;  // the chunk of ids i * kCapacity … of each page i, or none
+  // The lanes of the first pages follow one another, in order, from here on, and are kept for them.
+  std::uint32_t page_lane_ = kNone, kept_pages_ = 0;
+  std::vector<std::uint32_t> stale_;  // chunks whose summaries wait for settle_columns()
   std::uint32_t mover_node_ = kNone, mover_group_ = kNone;
   std::size_t grown_hand_ = 0, mover_hand_ = 0;  // where rest() goes on
   Locations own_locations_;

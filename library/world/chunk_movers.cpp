@@ -66,6 +66,7 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   }
   leave(at.chunk, at.slot());
   add_mover(object, box);
+  ++joined_;
 }
 
 void ChunkMap::insert_moving(ObjectId object, const Box& box) {
@@ -126,7 +127,20 @@ void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   }
 }
 
-std::uint32_t ChunkMap::add_mover_chunk() {
+// Gives each row so many lanes or some more: where rows begin alike within a small page, they are in one
+// another's way in the cache.
+void ChunkMap::lengthen_rows(Pool& pool, std::size_t lanes) {
+  constexpr std::size_t kPage = 1024, kApart = 7 * kLanes;  // floats
+  const std::size_t old_row = pool.row;
+  pool.row = (lanes + kPage - 1) / kPage * kPage + kApart;
+  geometry::UnwrittenVector<float> longer(6 * pool.row);
+  for (std::size_t side = 0; side < 6; ++side)
+    std::copy_n(pool.lanes.begin() + static_cast<std::ptrdiff_t>(side * old_row), old_row,
+                longer.begin() + static_cast<std::ptrdiff_t>(side * pool.row));
+  pool.lanes = std::move(longer);
+}
+
+std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
   if (mover_node_ == kNone) {
     mover_node_ = static_cast<std::uint32_t>(nodes_.size());
     Node& node = nodes_.emplace_back();
@@ -137,9 +151,10 @@ std::uint32_t ChunkMap::add_mover_chunk() {
   if (pool.ids.empty()) {
     // For all at once, also while some have no page yet; memory that is never written costs nothing.
     const std::size_t room = (kHasPages ? 2 : 1) * size_ + size_ / 16 + 4 * kCapacity;
-    pool.ids.reserve(room), pool.lanes.reserve(6 * room);
+    pool.ids.reserve(room);
+    lengthen_rows(pool, room);
   }
-  const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers);
+  const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers, first_lane);
   chunks_[added].parent = static_cast<std::uint32_t>(mover_chunks_.size());
   mover_chunks_.push_back(added);
   return added;
@@ -158,8 +173,13 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
   const std::uint32_t page = object / kCapacity;
   if (page >= pages_.size())
     pages_.resize(std::max<std::size_t>(page, locations_->size() / kCapacity) + 1, kNone);
+  if (page_lane_ == kNone) {
+    kept_pages_ = static_cast<std::uint32_t>(pages_.size());
+    page_lane_ = add_lanes(pools_[kMovers], kept_pages_ * kCapacity);
+  }
   if (pages_[page] != kNone) return pages_[page];
-  const std::uint32_t added = pages_[page] = add_mover_chunk();
+  const std::uint32_t added = pages_[page] =
+      add_mover_chunk(page < kept_pages_ ? page_lane_ + page * kCapacity : kNone);
   Chunk& c = chunks_[added];
   c.previous = page, c.count = kCapacity;
   std::fill_n(ids(c), kCapacity, kNoObject);
@@ -168,11 +188,12 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
 
 void ChunkMap::expect_moves(bool many) noexcept {
   // Where few move, each cull would read all pages for them; where the same ones move again and again in the
-  // order in which they stand, they stand well. Not at once to and fro.
-  constexpr std::size_t kBegin = 3, kEnd = 6;
-  const std::size_t of_ids = locations_->size() / (by_id_ ? kEnd : kBegin);
-  by_id_ = kHasPages && keeps_movers() && movers() >= of_ids && (by_id_ || (many && scattered_ > in_runs_));
-  scattered_ = in_runs_ = 0;
+  // order in which they stand, they stand well. Others each time show as such when movers move again.
+  constexpr std::size_t kFewest = 6;  // of all ids
+  const bool again = scattered_ + in_runs_ > 0, others = 2 * (scattered_ + joined_) > in_runs_;
+  by_id_ = kHasPages && keeps_movers() && movers() >= locations_->size() / kFewest &&
+           (by_id_ || (many && again && others));
+  scattered_ = in_runs_ = joined_ = 0;
 }
 
 std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
@@ -181,28 +202,27 @@ std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const B
   std::uint32_t at = kNone;
   Chunk* c = nullptr;
   const ObjectId* stand = nullptr;
+  const std::size_t row = pools_[kMovers].row;
   float* to = nullptr;
+  bool full = false;
   Box bounds;
   for (std::uint32_t i = 0; i < objects.size(); ++i) {
     const std::uint32_t page = objects[i] / kCapacity, slot = objects[i] % kCapacity;
     if (page != at) {
       if (page >= pages_.size() || pages_[page] == kNone) return i;
       at = page, c = &chunks_[pages_[page]], bounds = intersected(c->bounds, within);
-      stand = ids(*c), to = lanes(*c, 0);
+      stand = ids(*c), to = lanes(*c, 0), full = c->live == kCapacity;
     }
     const Box box = boxes[i];
-    if (stand[slot] != objects[i] || !holds(bounds, box)) return i;
+    if ((!full && stand[slot] != objects[i]) || !holds(bounds, box)) return i;
     const std::array<float, 6> values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
-    for (std::uint32_t side = 0; side < 6; ++side) to[side * kCapacity + slot] = values[side];
+    for (std::uint32_t side = 0; side < 6; ++side) to[side * row + slot] = values[side];
     c->moved[slot / 64] |= std::uint64_t{1} << slot % 64;
   }
   return static_cast<std::uint32_t>(objects.size());
 }
 
 void ChunkMap::prefetch_pages(std::span<const ObjectId> objects) const noexcept {
-  constexpr std::size_t kDense = 4;  // ids an object: what lies closer is fetched by itself
-  const ObjectId first = objects.front(), last = objects.back();
-  if (first <= last && last - first < kDense * objects.size()) return;
   for (const ObjectId object : objects) {
     const std::uint32_t page = object / kCapacity, slot = object % kCapacity;
     if (page >= pages_.size() || pages_[page] == kNone) continue;

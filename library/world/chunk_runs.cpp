@@ -81,7 +81,7 @@ std::uint32_t write_run(const MoverRun& run, std::uint32_t& slot, const ObjectId
       const bool past_cache = run.past_cache && at % lanes == 0;
       for (std::size_t side = 0; side < 6; ++side) {
         const auto values = hn::LoadU(f, from[side] + i);
-        float* const to = run.boxes + side * ChunkMap::kCapacity + at;
+        float* const to = run.boxes + side * run.row + at;
         past_cache ? hn::Stream(values, f, to) : hn::StoreU(values, f, to);
       }
       moved[at / 64] |= whole << at % 64;
@@ -92,7 +92,7 @@ std::uint32_t write_run(const MoverRun& run, std::uint32_t& slot, const ObjectId
     const std::uint32_t next = at < run.count ? find_id(run.ids + at, objects[i], run.count - at) : kNowhere;
     if (next == kNowhere || !(held >> i & 1)) break;
     at += next;
-    for (std::size_t side = 0; side < 6; ++side) run.boxes[side * ChunkMap::kCapacity + at] = from[side][i];
+    for (std::size_t side = 0; side < 6; ++side) run.boxes[side * run.row + at] = from[side][i];
     moved[at / 64] |= std::uint64_t{1} << at % 64;
     ++i, ++at;
   }
@@ -184,7 +184,7 @@ std::uint32_t ChunkMap::move_run(std::uint32_t& chunk, std::uint32_t& slot, cons
   if (c.pool != kMovers || slot >= c.count) return 0;
   std::array<const float*, 6> from;
   for (std::size_t side = 0; side < 6; ++side) from[side] = boxes.values[side].data() + first;
-  const MoverRun run{c.bounds, ids(c), lanes(c, 0), c.count, c.moved.data(), past_cache};
+  const MoverRun run{c.bounds, ids(c), lanes(c, 0), step(c), c.count, c.moved.data(), past_cache};
   const std::uint32_t moved = HWY_DYNAMIC_DISPATCH(write_run)(run, slot, objects, from, count);
   in_runs_ += moved, ++changes_[kMovers];
   if (slot == kCapacity && c.next != kNone) chunk = c.next, slot = 0;

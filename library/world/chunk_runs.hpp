@@ -14,7 +14,8 @@ namespace sightline::world {
 struct MoverRun {
   const Box& bounds;
   const ObjectId* ids;
-  float* boxes;  ///< its minimum x; the other sides ChunkMap::kCapacity floats apart
+  float* boxes;  ///< its minimum x; the other sides `row` floats apart
+  std::size_t row;
   std::uint32_t count;
   std::uint64_t* moved;  ///< a bit a slot
   bool past_cache;       ///< whole vectors need not stay in the cache

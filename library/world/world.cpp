@@ -81,8 +81,9 @@ void WorldState::begin_generations() {
 
 void WorldState::note_generation(ObjectId id) {
   if (!ChunkMap::kHasPages || generations.empty()) return;
-  if (id >= generations.size()) generations.resize(objects.size(), kFree);
-  generations[id] = objects[id].sector == ChunkMap::kNone ? kFree : objects[id].generation;
+  if (id >= generations.size()) generations.resize(objects.size(), kUnknown);
+  const bool known = objects[id].sector != ChunkMap::kNone && objects[id].generation < kUnknown;
+  generations[id] = known ? static_cast<std::uint8_t>(objects[id].generation) : kUnknown;
 }
 
 Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept {
@@ -90,11 +91,11 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   const WorldState& state = WorldAccess::state(world);
   const std::span<const ChunkMap::Location> objects = state.objects;
-  const std::span<const std::uint32_t> generations = state.generations;
+  const std::span<const std::uint8_t> generations = state.generations;
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
-    if (ChunkMap::kHasPages && handle.index < generations.size() && handle.generation != WorldState::kFree &&
-        generations[handle.index] == handle.generation)
+    if (ChunkMap::kHasPages && handle.index < generations.size() &&
+        handle.generation < WorldState::kUnknown && generations[handle.index] == handle.generation)
       continue;
     if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
         objects[handle.index].generation != handle.generation)

@@ -43,13 +43,7 @@ void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> vi
   }
 }
 
-// All boxes of a full chunk: movers' are all looked at, and lie one chunk behind the other.
-HWY_INLINE void prefetch_boxes(const ChunkMap::ChunkView& chunk) {
-  for (std::size_t i = 0; i < 6 * ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.min_x + i);
-}
-
-// cull_chunk() of a chunk with holes or of movers, which nearly always cross all planes. By itself, as worlds
-// that stand still never come here.
+// cull_chunk() of a chunk with holes or of movers. By itself, as worlds that stand still never come here.
 HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, const Corner* corners,
                                           std::size_t planes, ObjectId* HWY_RESTRICT out) {
   if (planes == 0) return copy_chunk(chunk, out);
@@ -65,6 +59,82 @@ HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, cons
     test_planes<Frustum::sides>(corners, planes, chunk.count, take);
   } else {
     test_planes(corners, planes, chunk.count, take);
+  }
+  return kept;
+}
+
+// Holds a plane in registers, and which sides of a box lie farthest along its normal.
+struct WidePlane {
+  Points normal;
+  VF distance;
+  std::array<std::size_t, 3> sides;
+
+  HWY_INLINE WidePlane(const SectorView& view, std::size_t p, std::size_t row)
+      : normal{hn::Set(F(), view.planes[p].normal.x), hn::Set(F(), view.planes[p].normal.y),
+               hn::Set(F(), view.planes[p].normal.z)},
+        distance(hn::Set(F(), view.planes[p].distance)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) sides[axis] = row * view.near_side[p][axis];
+  }
+  HWY_INLINE hn::Mask<F> behind(const float* boxes) const {
+    const F f;
+    const Points at{hn::Load(f, boxes + sides[0]), hn::Load(f, boxes + sides[1]),
+                    hn::Load(f, boxes + sides[2])};
+    return hn::Lt(hn::Add(geometry::HWY_NAMESPACE::dot(normal, at), distance), hn::Zero(f));
+  }
+};
+
+// How many of a group's chunks, from i on, can be read as one: they cross planes, are full but for the last,
+// and lie one behind the other.
+HWY_INLINE std::uint32_t run_of(const ChunkMap::Group& group, const ChunkBits& bits, std::uint32_t i) {
+  using Group = ChunkMap::Group;
+  std::uint32_t run = 1;
+  for (; i + run < group.count && (bits.crossing >> (i + run) & 1); ++run) {
+    const std::uint32_t last = group.count_and_size[i + run - 1], next = group.count_and_size[i + run];
+    if (group.first_lane[i + run] != group.first_lane[i + run - 1] + ChunkMap::kCapacity ||
+        (last & Group::kCount) != ChunkMap::kCapacity || ((last ^ next) & Group::kInOrder) != 0)
+      break;
+  }
+  return run;
+}
+
+// The chunks of movers in a group, which nearly always cross all planes: all are asked, and stay in registers
+// from chunk to chunk.
+HWY_NOINLINE std::size_t cull_movers(const EntryGroup& at, const ChunkBits& bits, PassCounts& counts,
+                                     ObjectId* HWY_RESTRICT out) {
+  const U u;
+  const ChunkMap::ChunkView one = at.map.chunk(at.group, 0);
+  const auto row = static_cast<std::size_t>(one.min_y - one.min_x);
+  const SectorView& view = *at.views;
+  const WidePlane p0(view, 0, row), p1(view, 1, row), p2(view, 2, row), p3(view, 3, row), p4(view, 4, row),
+      p5(view, 5, row);
+  const auto from_zero = hn::Iota(u, 0);
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < at.group.count;) {
+    if ((bits.crossing >> i & 1) == 0) {
+      if (bits.kept >> i & 1) kept += copy_objects(at.map.chunk(at.group, i), out + kept);
+      ++i;
+      continue;
+    }
+    const ChunkMap::ChunkView first = at.map.chunk(at.group, i);
+    const bool in_order = at.group.count_and_size[i] & ChunkMap::Group::kInOrder;
+    i += run_of(at.group, bits, i);
+    const ChunkMap::ChunkView last = at.map.chunk(at.group, i - 1);
+    const std::size_t count = static_cast<std::size_t>(last.objects - first.objects) + last.count;
+    counts.tested += count;
+    for (std::size_t k = 0; k < count; k += hn::Lanes(u)) {
+      const float* const boxes = first.min_x + k;
+      const auto gone = hn::Or(
+          hn::Or(hn::Or(p0.behind(boxes), p1.behind(boxes)), hn::Or(p2.behind(boxes), p3.behind(boxes))),
+          hn::Or(p4.behind(boxes), p5.behind(boxes)));
+      auto keep = hn::Not(hn::RebindMask(u, gone));
+      auto ids = hn::Add(from_zero, hn::Set(u, first.objects[0] + static_cast<ObjectId>(k)));
+      if (!in_order) {
+        ids = hn::Load(u, first.objects + k);
+        keep = hn::And(keep, are_objects(ids));
+        if (k + hn::Lanes(u) > count) keep = hn::And(keep, hn::FirstN(u, count - k));
+      }
+      kept += store_kept(u, ids, keep, out + kept);
+    }
   }
   return kept;
 }
@@ -102,6 +172,10 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
       parted = ask_columns(input, at, *at.views, bits);
     }
     counts.chunks += at.group.count;
+    if (at.group.pool != 0 && parted == 0) {
+      end += cull_movers(at, bits, counts, end);
+      continue;
+    }
     find_chunks(at, bits.kept, chunks);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
@@ -111,8 +185,6 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
         counts.tested += chunk.count;
         end += cull_parted_chunk(input, at, chunk, planes, end);
       } else if (chunk.loose) {
-        if (const std::uint32_t later = rest & (rest - 1); at.group.pool != 0 && later != 0)
-          prefetch_boxes(chunks[static_cast<std::uint32_t>(std::countr_zero(later))]);
         Corner corners[Frustum::sides];
         if (planes != 0) counts.tested += chunk.count;
         end += cull_loose_chunk(chunk, corners, corners_of(chunk, *at.views, planes, corners), end);

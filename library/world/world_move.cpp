@@ -100,13 +100,17 @@ private:
     return {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}};
   }
 
-  // For the next block.
+  // For the next block. What lies closer is fetched by itself.
   void ask_for_pages() const {
-    std::array<ObjectId, kBlock> next;
-    std::size_t count = 0;
-    for (std::size_t i = first_ + kBlock; count < kBlock && i < handles_.size(); ++i)
-      next[count++] = handles_[i].index;
-    if (count > 0) map_->prefetch_pages({next.data(), count});
+    constexpr std::size_t kDense = 32;  // ids an object
+    const std::size_t next = first_ + kBlock;
+    if (next >= handles_.size()) return;
+    const std::size_t count = std::min(kBlock, handles_.size() - next);
+    const ObjectId first = handles_[next].index, last = handles_[next + count - 1].index;
+    if (first <= last && last - first < kDense * count) return;
+    std::array<ObjectId, kBlock> ids;
+    for (std::size_t i = 0; i < count; ++i) ids[i] = handles_[next + i].index;
+    map_->prefetch_pages({ids.data(), count});
   }
 
   // Returns whether all surely have their centres in the sector.

@@ -63,9 +63,9 @@ struct WorldState {
   std::vector<ObjectId> free_ids;
   /// One an id once so many move that what check_handles() reads must be little: a quarter of all at once, or
   /// a third that stand in pages.
-  /// The generation, but kFree of free ids; of an object of that very generation it says nothing.
-  geometry::LargeVector<std::uint32_t> generations;
-  static constexpr std::uint32_t kFree = 0xffffffffu;
+  /// The generation, but kUnknown of free ids and of greater generations: then `objects` is asked.
+  geometry::LargeVector<std::uint8_t> generations;
+  static constexpr std::uint8_t kUnknown = 0xff;
   Columns columns;
   const ColumnTests* column_tests = nullptr;  ///< null: no column says who is seen
   std::unique_ptr<WorldOccluders> occluders;  ///< null: never had any
