@@ -162,7 +162,8 @@ void ChunkMap::write(std::uint32_t chunk, std::uint32_t slot, ObjectId object, c
   ids(c)[slot] = object;
   if (has_columns()) load_columns(c, slot), note_stale(chunk);
   Location& at = (*locations_)[object];
-  at.chunk = chunk, at.slot_and_history = (at.slot_and_history & ~0xffu) | slot;
+  const std::uint32_t place = slot | (c.pool == kMovers ? Location::kMoves : 0);
+  at.chunk = chunk, at.slot_and_history = (at.slot_and_history & ~0xffu) | place;
 }
 
 void ChunkMap::write_box(const Chunk& c, std::uint32_t slot, const Box& box) noexcept {
@@ -256,6 +257,7 @@ void ChunkMap::insert(ObjectId object, const Box& box) {
 
 // Puts an object that is already counted where it belongs.
 void ChunkMap::file(ObjectId object, const Box& box) {
+  leave_now();
   const std::uint32_t key = find_key(regions(box));
   const Vec3 centre = centre_of(box);
   if (keys_[key].root == kNone) {
@@ -293,6 +295,7 @@ void ChunkMap::erase_slot(std::uint32_t chunk, std::uint32_t slot) noexcept {
 }
 
 void ChunkMap::remove(ObjectId object) {
+  leave_now();
   const Location at = (*locations_)[object];
   (*locations_)[object].chunk = kNone;
   --size_;
@@ -312,6 +315,7 @@ void ChunkMap::remove(ObjectId object) {
 }
 
 void ChunkMap::move(ObjectId object, const Box& box) {
+  leave_now();
   const Location& at = (*locations_)[object];
   Chunk& c = chunks_[at.chunk];
   if (c.pool == kStill && keys_[c.key].regions == regions(box) && holds_centre(c.cell, centre_of(box))) {

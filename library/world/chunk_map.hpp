@@ -78,13 +78,16 @@ public:
   /// Where an object stands, and what else is kept of it, so that all of it comes with one line of memory.
   struct alignas(16) Location {
     std::uint32_t chunk = kNone;
-    /// The slot in 8 bits; then 8 of history, bit k being whether it moved k frames before the frame that the
-    /// highest 16 count. One number, for a load that needs parts of what several stores just wrote must wait
-    /// until they, and all stores before them, have reached the cache.
+    /// The slot in 7 bits, and kMoves where the chunk is one of movers; then 8 of history, bit k being
+    /// whether it moved k frames before the frame that the highest 16 count. One number, for a load that
+    /// needs parts of what several stores just wrote must wait until they, and all stores before them, have
+    /// reached the cache.
     std::uint32_t slot_and_history = 0;
     std::uint32_t sector = kNone, generation = 0;  ///< the World's
 
-    [[nodiscard]] std::uint32_t slot() const noexcept { return slot_and_history & 0xff; }
+    static constexpr std::uint32_t kMoves = 0x80;
+    [[nodiscard]] std::uint32_t slot() const noexcept { return slot_and_history & (kMoves - 1); }
+    [[nodiscard]] bool moves() const noexcept { return slot_and_history & kMoves; }
   };
   /// The chunk of an object whose sector is not in memory.
   static constexpr std::uint32_t kOut = kNone - 1;
@@ -174,7 +177,7 @@ public:
   void prefetch_pages(std::span<const ObjectId> objects) const noexcept;
   /// Asks for the memory that moving an object will need; of an object that may have left, it asks in vain.
   void prefetch_chunk(ObjectId object) const noexcept;
-  void prefetch_lanes(ObjectId object, bool many) const noexcept;
+  void prefetch_lanes(ObjectId object) const noexcept;
   /// Brings the groups up to date.
   void flush();
   /// Files some of the movers that rested for two rounds or more, and tightens the bounds of some chunks that
@@ -194,7 +197,7 @@ public:
     return mover_node_;
   }
   [[nodiscard]] bool is_mover(ObjectId object) const noexcept {
-    return holds_movers((*locations_)[object].chunk);
+    return (*locations_)[object].moves();
   }
   [[nodiscard]] bool holds_movers(std::uint32_t chunk) const noexcept {
     return chunks_[chunk].pool == kMovers;
@@ -433,6 +436,7 @@ private:
   ChunkColumns columns_of(const Chunk& chunk) const noexcept;
   Status check_columns(std::uint32_t chunk) const;
 
+  void prefetch_group(const Chunk& chunk) const noexcept;
   void make_dirty(std::uint32_t chunk);
   void note_grown(std::uint32_t chunk);
   void add_mover(ObjectId object, const Box& box);
@@ -448,6 +452,11 @@ private:
     return is_page(mover) && mover.previous < kept_pages_;
   }
   void leave(std::uint32_t chunk, std::uint32_t slot);
+  void leave_soon(std::uint32_t chunk, std::uint32_t slot);
+  void leave_next();
+  void leave_now() {
+    while (left_ != asked_) leave_next();
+  }
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
   void tighten_grown(std::uint32_t chunk);
   bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
@@ -498,7 +507,14 @@ private:
 
   std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_;
   std::vector<std::uint32_t> changed_;
-  std::vector<std::uint32_t> dirty_;         // chunks that wait for flush()
+  std::vector<std::uint32_t> dirty_;  // chunks that wait for flush()
+  // Slots of still chunks whose objects are movers already: holes as soon as leave_now() is called.
+  struct Place {
+    std::uint32_t chunk, slot;
+  };
+  static constexpr std::uint32_t kLeaving = 32;
+  std::array<Place, kLeaving> leaving_;
+  std::uint32_t asked_ = 0, left_ = 0;       // how many, ever
   std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
   std::vector<std::uint32_t> mover_chunks_;  // each chunk's `parent` is its place here
   std::uint32_t open_ = kNone;               // of these the one that takes the next mover

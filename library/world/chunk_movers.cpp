@@ -2,6 +2,7 @@
 // moves frame after frame, stands in chunks of movers, in the order in which it came, until it rests.
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_math.hpp"
@@ -27,6 +28,14 @@ Box widened(const Box& b) {
   return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
 }
 
+// All lines of an element that begins on one.
+template <class T>
+void ask_for_all(const T& element) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof(T); at += kLine)
+    ask_ahead(reinterpret_cast<const char*>(&element) + at);
+}
+
 // Whether an object that moves now has done so in most of the last frames.
 bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
   constexpr int kOften = 4;  // of 8
@@ -42,6 +51,12 @@ bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
 void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   loosely_ = true;
   Location& at = (*locations_)[object];
+  if (moving.many && !at.moves() && keeps_movers()) {
+    leave_soon(at.chunk, at.slot());
+    add_mover(object, box);
+    ++joined_;
+    return;
+  }
   Chunk& c = chunks_[at.chunk];
   if (c.pool == kMovers && keeps_pages() && !is_page(c)) {
     leave(at.chunk, at.slot());
@@ -49,8 +64,8 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   }
   if (c.pool == kMovers) return move_mover(at.chunk, at.slot(), box);
   const bool for_movers = keeps_movers();
-  if (for_movers && (moving.many || (moves_often(at, moving.tick) && moving.allowance > 0))) {
-    moving.allowance -= !moving.many;
+  if (for_movers && moves_often(at, moving.tick) && moving.allowance > 0) {
+    --moving.allowance;
   } else if (holds(c.bounds, box)) {
     write_box(c, at.slot(), box);
     c.moved[0] = 1;
@@ -87,17 +102,24 @@ void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& bo
   c.moved[slot / 64] |= std::uint64_t{1} << slot % 64;
 }
 
+// What the group holds of a chunk.
+void ChunkMap::prefetch_group(const Chunk& c) const noexcept {
+  if (c.group == kNone) return;
+  const Group& group = groups_[c.group];
+  for (const auto& side : group.bounds) ask_ahead(&side[c.index_in_group]);
+  ask_ahead(&group.count_and_size[c.index_in_group]), ask_ahead(&group.box);
+}
+
 void ChunkMap::prefetch_chunk(ObjectId object) const noexcept {
   const std::uint32_t chunk = (*locations_)[object].chunk;
   if (chunk < chunks_.size()) ask_ahead(&chunks_[chunk]);
 }
 
-void ChunkMap::prefetch_lanes(ObjectId object, bool many) const noexcept {
+void ChunkMap::prefetch_lanes(ObjectId object) const noexcept {
   const Location& at = (*locations_)[object];
   if (at.chunk >= chunks_.size()) return;
   const Chunk& c = chunks_[at.chunk];
   if (at.slot() >= c.capacity) return;
-  if (many && c.pool == kStill) return ask_ahead(ids(c) + at.slot());  // it will leave
   for (std::uint32_t side = 0; side < 6; ++side) ask_ahead(lanes(c, side) + at.slot());
 }
 
@@ -118,7 +140,8 @@ void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   Chunk& c = chunks_[chunk];
   ids(c)[slot] = kNoObject;
   --c.live, ++changes_[c.pool];
-  make_dirty(chunk), note_stale(chunk);
+  make_dirty(chunk);
+  if (has_columns()) note_stale(chunk);
   if (c.pool == kMovers) {
     c.moved[slot / 64] &= ~(std::uint64_t{1} << slot % 64);
   } else {
@@ -138,6 +161,24 @@ void ChunkMap::lengthen_rows(Pool& pool, std::size_t lanes) {
     std::copy_n(pool.lanes.begin() + static_cast<std::ptrdiff_t>(side * old_row), old_row,
                 longer.begin() + static_cast<std::ptrdiff_t>(side * pool.row));
   pool.lanes = std::move(longer);
+}
+
+// Many leave chunks that lie far apart. What it takes is asked for in two steps, each when the one before has
+// arrived: memory answers few at a time, so that asking for many at once gains little.
+void ChunkMap::leave_soon(std::uint32_t chunk, std::uint32_t slot) {
+  constexpr std::uint32_t kHalf = kLeaving / 2;
+  ask_ahead(&chunks_[chunk]);
+  if (asked_ - left_ >= kHalf) {
+    const Place& next = leaving_[(asked_ - kHalf) % kLeaving];
+    ask_ahead(ids(chunks_[next.chunk]) + next.slot);
+  }
+  if (asked_ - left_ == kLeaving) leave_next();
+  leaving_[asked_++ % kLeaving] = {chunk, slot};
+}
+
+void ChunkMap::leave_next() {
+  const Place place = leaving_[left_++ % kLeaving];
+  leave(place.chunk, place.slot);
 }
 
 std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
@@ -255,7 +296,13 @@ void ChunkMap::add_mover(ObjectId object, const Box& box) {
 }
 
 void ChunkMap::flush() {
-  for (const std::uint32_t chunk : dirty_) {
+  leave_now();
+  // In three steps, each when the one before has arrived.
+  constexpr std::size_t kGroup = 8, kChunk = 16;
+  for (std::size_t i = 0; i < dirty_.size(); ++i) {
+    if (i + kChunk < dirty_.size()) ask_for_all(chunks_[dirty_[i + kChunk]]);
+    if (i + kGroup < dirty_.size()) prefetch_group(chunks_[dirty_[i + kGroup]]);
+    const std::uint32_t chunk = dirty_[i];
     Chunk& c = chunks_[chunk];
     c.dirty = false;
     if (c.key == kNone) continue;  // it was freed

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_runs.hpp"
 #include "library/world/free_list.hpp"
@@ -92,8 +93,11 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   const WorldState& state = WorldAccess::state(world);
   const std::span<const ChunkMap::Location> objects = state.objects;
   const std::span<const std::uint8_t> generations = state.generations;
+  constexpr std::size_t kAhead = 32;
+  const bool asks = !geometry::kAsksByReading && generations.empty();
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
+    if (asks && i + kAhead < handles.size()) geometry::ask_ahead(objects.data() + handles[i + kAhead].index);
     if (ChunkMap::kHasPages && handle.index < generations.size() &&
         handle.generation < WorldState::kUnknown && generations[handle.index] == handle.generation)
       continue;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_math.hpp"
@@ -74,11 +75,14 @@ private:
     const std::span<const ObjectId> ids(ids_.data(), count);
     const Box* const boxes = structs(count);
     ask_for_pages();
+    const bool asks = std::exchange(joined_, 0) > 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      i += map_->move_in_pages(ids.subspan(i), boxes + i, kInSector);
+      const std::uint32_t moved = map_->move_in_pages(ids.subspan(i), boxes + i, kInSector);
+      if (asks) ask_for_objects(i, std::min(count, i + moved + 1));
+      i += moved;
       if (i == count) break;
       if (i == 0 && s_.objects[ids[0]].sector != sector_) return false;
-      ask_ahead(first_ + i);
+      ++joined_;
       s_.objects[ids[i]].sector == sector_&& geometry::holds(kInSector, boxes[i])
           ? map_->move_loosely(ids[i], boxes[i], moving_)
           : move_anywhere(ids[i], world_box(i));
@@ -113,6 +117,13 @@ private:
     map_->prefetch_pages({ids.data(), count});
   }
 
+  // Of the objects behind those of the block, as where some had to be looked up there will be more.
+  void ask_for_objects(std::size_t i, std::size_t end) const {
+    constexpr std::size_t kAhead = 32;
+    end = std::min(first_ + end + kAhead, handles_.size());
+    for (i += first_ + kAhead; i < end; ++i) geometry::ask_ahead(&s_.objects[handles_[i].index]);
+  }
+
   // Returns whether all surely have their centres in the sector.
   bool read_boxes(std::uint32_t count) {
     const WorldPoint& origin = s_.sectors[sector_].origin;
@@ -142,8 +153,14 @@ private:
     for (const ObjectId id : ids) ask_for_chunk(id);
     for (const ObjectId id : ids) ask_for_lanes(id);
   }
-  void ask_for_chunk(ObjectId id) const { map_of(id).prefetch_chunk(id); }
-  void ask_for_lanes(ObjectId id) const { map_of(id).prefetch_lanes(id, moving_.many); }
+  void ask_for_chunk(ObjectId id) const {
+    if (stays(id)) map_of(id).prefetch_chunk(id);
+  }
+  void ask_for_lanes(ObjectId id) const {
+    if (stays(id)) map_of(id).prefetch_lanes(id);
+  }
+  // Of what is about to leave its chunk, the map asks by itself.
+  [[nodiscard]] bool stays(ObjectId id) const { return !moving_.many || s_.objects[id].moves(); }
   [[nodiscard]] ChunkMap& map_of(ObjectId id) const { return *s_.sectors[s_.objects[id].sector].map; }
 
   void move_one(std::uint32_t i, bool inside) {
@@ -200,6 +217,7 @@ private:
   std::uint32_t patience_ = 0;
   std::uint32_t sector_ = ChunkMap::kNone;
   ChunkMap* map_ = nullptr;
+  std::uint32_t joined_ = 0;  // of the last block, objects that did not stand in their pages
   // Where the next object stands if they are listed as they stand.
   std::uint32_t run_chunk_ = ChunkMap::kNone, run_slot_ = 0;
   std::array<ObjectId, kBlock> ids_;
