@@ -27,38 +27,10 @@
 
 #include "library/geometry/aligned_vector.hpp"
 #include "library/geometry/box_reader.hpp"
+#include "library/world/chunk_map_types.hpp"
 #include "library/world/columns.hpp"
 
 namespace sightline::world {
-
-/// Rows and columns of leaf regions, last ones included, that a box touches.
-struct RegionSet {
-  std::uint8_t first_x = 0, first_z = 0, last_x = 0, last_z = 0;
-  bool operator==(const RegionSet&) const = default;
-  /// Whether more than one region is touched.
-  [[nodiscard]] bool shared() const noexcept { return first_x != last_x || first_z != last_z; }
-};
-
-/// The one vertex that stands for an object in the culling pass. The half extent is rounded up, so that
-/// centre ± half_extent surely holds the box. Laid out as two vec4.
-struct ChunkVertex {
-  Vec3 centre;
-  ObjectId object = kNoObject;
-  Vec3 half_extent;
-  std::uint32_t chunk = 0;
-};
-
-struct ChunkMapOptions {
-  Box ground;               ///< its x-z rectangle is split; what stands outside belongs to the nearest region
-  std::uint32_t depth = 3;  ///< of the quadtree, 0 … 6; 4^depth leaf regions
-};
-
-/// What a call that moves objects loosely knows of its frame.
-struct Moving {
-  std::uint16_t tick = 0;       ///< counts frames
-  bool many = false;            ///< so many move that each becomes a mover at once
-  std::uint32_t allowance = 0;  ///< how many may become movers for moving often
-};
 
 class ChunkMap {
 public:
@@ -94,15 +66,7 @@ public:
   /// One a possible object id; maps that share no object may share the table.
   using Locations = geometry::LargeVector<Location>;
 
-  /// The objects of a chunk: arrays of `count` values, aligned to 64 bytes and readable up to the next
-  /// multiple of 16, ids up to kCapacity. Where it is loose, some objects may be kNoObject, and their boxes
-  /// mean nothing.
-  struct ChunkView {
-    const float *min_x, *min_y, *min_z, *max_x, *max_y, *max_z;
-    const ObjectId* objects;
-    std::uint32_t count;
-    bool loose;  ///< movers' or with holes
-  };
+  using ChunkView = world::ChunkView;
 
   /// Bounds of up to 32 chunks, one array a coordinate in the order of ChunkView.
   struct alignas(64) Group {
@@ -454,12 +418,12 @@ private:
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void leave_soon(std::uint32_t chunk, std::uint32_t slot);
   void leave_next();
-  void leave_now() {
-    while (left_ != asked_) leave_next();
-  }
+  void leave_now();
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
   void tighten_grown(std::uint32_t chunk);
   bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
+  bool file_rested(std::uint32_t chunk, std::uint32_t& budget);
+  void note_moved(Chunk& mover, std::uint32_t slot) noexcept;
   void rest_grown();
   [[nodiscard]] bool keeps_movers() const noexcept {
     return size_ >= kFewestForMovers;
@@ -508,18 +472,18 @@ private:
   std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_;
   std::vector<std::uint32_t> changed_;
   std::vector<std::uint32_t> dirty_;  // chunks that wait for flush()
-  // Slots of still chunks whose objects are movers already: holes as soon as leave_now() is called.
+  // Slots of still chunks whose objects are movers already: holes once leave_now() is called.
   struct Place {
     std::uint32_t chunk, slot;
   };
   static constexpr std::uint32_t kLeaving = 32;
   std::array<Place, kLeaving> leaving_;
-  std::uint32_t asked_ = 0, left_ = 0;       // how many, ever
-  std::vector<std::uint32_t> grown_;         // still chunks with wide bounds or holes
-  std::vector<std::uint32_t> mover_chunks_;  // each chunk's `parent` is its place here
-  std::uint32_t open_ = kNone;               // of these the one that takes the next mover
-  // Since expect_moves(): movers moved one by one and in runs, and who became one.
-  std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;
+  std::uint32_t asked_ = 0, left_ = 0;                    // how many, ever
+  std::vector<std::uint32_t> grown_;                      // still chunks with wide bounds or holes
+  std::vector<std::uint32_t> mover_chunks_;               // each chunk's `parent` is its place here
+  std::uint32_t open_ = kNone;                            // of these the one that takes the next mover
+  std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;  // since expect_moves(): one by one; who became one
+  std::size_t woken_ = 0;             // since rest(): who became a mover, or had not moved since it was there
   bool by_id_ = false;                // which stands in its page instead
   std::vector<std::uint32_t> pages_;  // the chunk of ids i * kCapacity … of each page i, or none
   // The lanes of the first pages follow one another, in order, from here on, and are kept for them.

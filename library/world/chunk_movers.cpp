@@ -54,7 +54,7 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   if (moving.many && !at.moves() && keeps_movers()) {
     leave_soon(at.chunk, at.slot());
     add_mover(object, box);
-    ++joined_;
+    ++joined_, ++woken_;
     return;
   }
   Chunk& c = chunks_[at.chunk];
@@ -81,7 +81,7 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   }
   leave(at.chunk, at.slot());
   add_mover(object, box);
-  ++joined_;
+  ++joined_, ++woken_;
 }
 
 void ChunkMap::insert_moving(ObjectId object, const Box& box) {
@@ -99,7 +99,13 @@ void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& bo
     make_dirty(chunk);
   }
   write_box(c, slot, box);
-  c.moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+  note_moved(c, slot);
+}
+
+void ChunkMap::note_moved(Chunk& c, std::uint32_t slot) noexcept {
+  std::uint64_t& word = c.moved[slot / 64];
+  woken_ += ~word >> slot % 64 & 1;
+  word |= std::uint64_t{1} << slot % 64;
 }
 
 // What the group holds of a chunk.
@@ -174,6 +180,10 @@ void ChunkMap::leave_soon(std::uint32_t chunk, std::uint32_t slot) {
   }
   if (asked_ - left_ == kLeaving) leave_next();
   leaving_[asked_++ % kLeaving] = {chunk, slot};
+}
+
+void ChunkMap::leave_now() {
+  while (left_ != asked_) leave_next();
 }
 
 void ChunkMap::leave_next() {
@@ -258,7 +268,7 @@ std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const B
     if ((!full && stand[slot] != objects[i]) || !holds(bounds, box)) return i;
     const std::array<float, 6> values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
     for (std::uint32_t side = 0; side < 6; ++side) to[side * row + slot] = values[side];
-    c->moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+    note_moved(*c, slot);
   }
   return static_cast<std::uint32_t>(objects.size());
 }
@@ -339,6 +349,7 @@ void ChunkMap::rest() {
     // Where it was given up another has come in its place.
     if (mover_hand_ < mover_chunks_.size() && mover_chunks_[mover_hand_] == chunk) ++mover_hand_;
   }
+  woken_ = 0;
   flush();
 }
 
@@ -373,9 +384,8 @@ void ChunkMap::tighten_grown(std::uint32_t chunk) {
 }
 
 // Files those of a chunk's movers that rested since the last visit, as far as the budget goes; false where it
-// ended. A chunk of few is given up, and its movers stand where new ones do.
-bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
-  const bool open = chunk == open_ && chunks_[chunk].count < kCapacity;
+// ended.
+bool ChunkMap::file_rested(std::uint32_t chunk, std::uint32_t& budget) {
   for (std::uint32_t slot = 0; slot < chunks_[chunk].count; ++slot) {
     const Chunk& c = chunks_[chunk];
     const ObjectId object = ids(c)[slot];
@@ -387,6 +397,16 @@ bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
     (*locations_)[object].slot_and_history = 0;
     file(object, box);
   }
+  return true;
+}
+
+// Visits a chunk of movers; false where the budget ended. A chunk of few is given up, and its movers stand
+// where new ones do.
+bool ChunkMap::rest_movers(std::uint32_t chunk, std::uint32_t& budget) {
+  // Where so many begin to move that who rests will soon move again, filing costs more than it saves.
+  constexpr std::size_t kSoon = 512;  // frames
+  const bool open = chunk == open_ && chunks_[chunk].count < kCapacity;
+  if (kSoon * woken_ < size_ && !file_rested(chunk, budget)) return false;
   chunks_[chunk].moved = {};
   if (open) return true;
   const bool due_here = is_page(chunks_[chunk]) && keeps_pages();

@@ -211,6 +211,42 @@ TEST(Movers, ThoseThatMoveInNoOrderStandInPages) {
   }
 }
 
+// Those who come later have pages, too, behind those that were there; and rows of boxes grow with them.
+TEST(Movers, PagesGrowWithTheWorld) {
+  Crowd crowd(37, kOneSector);
+  crowd.insert(3000);
+  for (int frame = 0; frame < 40; ++frame) {
+    crowd.shuffle();
+    crowd.move(0, crowd.size() / 2, 2);
+    if (frame % 4 == 3) crowd.insert(1000);
+    if (frame % 10 == 9) expect_sound(crowd.world()), crowd.expect_right();
+    crowd.cull();
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_TRUE(keeps_pages(crowd.world()));
+  EXPECT_GT(movers_of(crowd.world()), 9000u);
+}
+
+// Where others go anywhere each frame, who went is not filed, for he will go again soon. Once fewer go, all
+// are.
+TEST(Movers, WhoSoonMovesAgainIsNotFiled) {
+  Crowd crowd(38, kOneSector);
+  crowd.insert(10000);
+  for (int frame = 0; frame < 400; ++frame) {
+    crowd.shuffle();
+    crowd.move(0, 100, 0);
+    crowd.cull();
+  }
+  EXPECT_GT(movers_of(crowd.world()), 7000u);
+  expect_sound(crowd.world());
+  crowd.expect_right();
+  for (int frame = 0; frame < 1500 && movers_of(crowd.world()) > 0; ++frame)
+    crowd.move(0, 0, 1), crowd.cull();
+  EXPECT_EQ(movers_of(crowd.world()), 0u);
+  expect_sound(crowd.world());
+  crowd.expect_right();
+}
+
 // A handle of before is refused there, too, and one that nobody was ever given.
 TEST(Movers, StaleHandlesAreRefusedWherePagesAre) {
   World world;

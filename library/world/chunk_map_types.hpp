@@ -1,0 +1,49 @@
+// What a chunk map is told and tells.
+#pragma once
+
+#include <cstdint>
+
+#include <sightline/boxes.hpp>
+
+namespace sightline::world {
+
+/// Rows and columns of leaf regions, last ones included, that a box touches.
+struct RegionSet {
+  std::uint8_t first_x = 0, first_z = 0, last_x = 0, last_z = 0;
+  bool operator==(const RegionSet&) const = default;
+  /// Whether more than one region is touched.
+  [[nodiscard]] bool shared() const noexcept { return first_x != last_x || first_z != last_z; }
+};
+
+/// The one vertex that stands for an object in the culling pass. The half extent is rounded up, so that
+/// centre ± half_extent surely holds the box. Laid out as two vec4.
+struct ChunkVertex {
+  Vec3 centre;
+  ObjectId object = kNoObject;
+  Vec3 half_extent;
+  std::uint32_t chunk = 0;
+};
+
+struct ChunkMapOptions {
+  Box ground;               ///< its x-z rectangle is split; what stands outside belongs to the nearest region
+  std::uint32_t depth = 3;  ///< of the quadtree, 0 … 6; 4^depth leaf regions
+};
+
+/// What a call that moves objects loosely knows of its frame.
+struct Moving {
+  std::uint16_t tick = 0;       ///< counts frames
+  bool many = false;            ///< so many move that each becomes a mover at once
+  std::uint32_t allowance = 0;  ///< how many may become movers for moving often
+};
+
+/// The objects of a chunk: arrays of `count` values, aligned to 64 bytes and readable up to the next
+/// multiple of 16, ids up to ChunkMap::kCapacity. Where it is loose, some objects may be kNoObject, and their
+/// boxes mean nothing.
+struct ChunkView {
+  const float *min_x, *min_y, *min_z, *max_x, *max_y, *max_z;
+  const ObjectId* objects;
+  std::uint32_t count;
+  bool loose;  ///< movers' or with holes
+};
+
+}  // namespace sightline::world
