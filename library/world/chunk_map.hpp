@@ -234,17 +234,14 @@ public:
   [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
     const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
     const Pool& pool = pools_[group.pool];
-    const std::size_t step = pool.step(size >> Group::kSize & Group::kCount);
-    const float* at = pool.lanes.data() + pool.begin(first);
-    return {at,
-            at + step,
-            at + 2 * step,
-            at + 3 * step,
-            at + 4 * step,
-            at + 5 * step,
-            pool.ids.data() + first,
-            size & Group::kCount,
-            (size & Group::kLoose) != 0};
+    // Asked of the group, which is at hand: what stands still is found without a look at its pool's rows.
+    const bool still = group.pool == kStill;
+    const std::size_t step = still ? size >> Group::kSize & Group::kCount : pool.row;
+    const float* at = pool.lanes.data() + (still ? 6 * std::size_t{first} : first);
+    const ObjectId* its = pool.ids.data() + first;
+    const bool loose = size & Group::kLoose;
+    const auto side = [&](std::size_t k) { return at + k * step; };
+    return {side(0), side(1), side(2), side(3), side(4), side(5), its, size & Group::kCount, loose};
   }
   /// Tight union of the chunk's boxes; after move_loosely() it may be wider.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;
