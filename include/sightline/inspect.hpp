@@ -96,9 +96,9 @@ private:
 
 /// The corners of what a view sees, in metres: those of the near plane (bottom left, bottom right, top left,
 /// top right, as on the image), then those of the far plane, or of `farthest` metres along the view where
-/// that is nearer.
-/// Errors: bad_view; bad_argument where `farthest` is not beyond the near plane. Cost: constant. Threads:
-/// any. Allocates: nothing.
+/// that is nearer; infinity: those of the far plane.
+/// Errors: bad_view; bad_argument where `farthest` is not beyond the near plane, or infinite where the view
+/// has no far plane. Cost: constant. Threads: any. Allocates: nothing.
 Result<std::array<WorldPoint, 8>> view_corners(const WorldView& view, double farthest) noexcept;
 
 /// Writes a buffer's depth as a picture, row by row from the top, a byte a pixel of the view: from 255 for

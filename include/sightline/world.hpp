@@ -276,7 +276,7 @@ struct CullOutput {
   std::span<std::uint8_t> masks = {};   ///< bit v: view v may see the object
   std::span<std::uint8_t> levels = {};  ///< of detail: 0 is the finest
   /// Of 255, the share of the next coarser level, for who blends: an object of level i and fade f is drawn as
-  /// (255 - f) parts of level i and f of level i + 1. Only beside `levels`.
+  /// (255 - f) parts of level i and f of level i + 1. Refused without `levels`.
   std::span<std::uint8_t> fades = {};
 };
 

@@ -90,6 +90,12 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
   if (!output.masks.empty() && output.masks.size() < needed)
     return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() masks, or none"};
+  for (const std::span<std::uint8_t> bytes : {output.levels, output.fades})
+    if (!bytes.empty() && bytes.size() < needed)
+      return {StatusCode::buffer_too_small,
+              "cull: expected room for cull_capacity() levels and fades, or none"};
+  if (output.levels.empty() && !output.fades.empty())
+    return {StatusCode::bad_argument, "cull: fades without levels, expected both or no fades"};
   if (options.occlusion == Occlusion::none) return {};
   if (options.occlusion != Occlusion::automatic)
     return {StatusCode::bad_argument, "cull: the options' occlusion is neither none nor automatic"};
@@ -152,7 +158,7 @@ namespace {
 
 // Of a world without tables.
 void write_no_levels(std::span<std::uint8_t> bytes, std::size_t count) {
-  if (!bytes.empty()) std::memset(bytes.data(), 0, std::min(count, bytes.size()));
+  if (!bytes.empty()) std::memset(bytes.data(), 0, count);
 }
 
 }  // namespace

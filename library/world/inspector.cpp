@@ -157,12 +157,16 @@ Result<std::array<WorldPoint, 8>> view_corners(const WorldView& view, double far
     glm::dvec4 near = at(0), far = at(1);
     if (distance(far) < distance(near)) std::swap(near, far);
     const double begins = distance(near);
-    if (!(farthest > begins) || !std::isfinite(farthest))
+    if (!(farthest > begins))
       return Status(StatusCode::bad_argument, "view: its farthest distance is not beyond its near plane");
     const glm::dvec3 from = glm::dvec3(near) / near.w;
     // The point at infinity is a direction.
     const glm::dvec3 along = far.w > 0 ? glm::dvec3(far) / far.w - from : glm::dvec3(far);
-    const double ends = std::min(distance(far), farthest), length = (ends - begins) / -along.z;
+    const double ends = std::min(distance(far), farthest);
+    if (!std::isfinite(ends))
+      return Status(StatusCode::bad_argument,
+                    "view: it has no far plane, expected a farthest distance that is finite");
+    const double length = (ends - begins) / -along.z;
     const auto set = [&](std::size_t i, const glm::dvec3& eye) {
       const glm::dvec4 p = from_eye * glm::dvec4(eye, 1);
       corners[i] = {view.origin.x + p.x, view.origin.y + p.y, view.origin.z + p.z};

@@ -348,10 +348,6 @@ void WorldLevels::set(ObjectId object, LevelTableId table) {
 Status WorldLevels::begin(CullerState& state, std::span<const CullView> views,
                           const DifferentViews& different, const LevelOptions& options,
                           const CullOutput& output) {
-  for (const auto& bytes : {output.levels, output.fades})
-    if (!bytes.empty() && bytes.size() < state.world->size)
-      return {StatusCode::buffer_too_small,
-              "cull: expected room for cull_capacity() levels and fades, or none"};
   if (const Status sound = check_levels(options, views.size()); !sound) return sound;
   if (!state.levels) state.levels = std::make_unique<RememberedLevels>();
   std::size_t decider = 0;

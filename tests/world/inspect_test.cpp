@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -228,9 +230,29 @@ TEST(Inspector, CornersOfAViewProjectToTheImages) {
     ASSERT_FALSE(testing::Test::HasFailure()) << round;
   }
   EXPECT_EQ(view_corners({*make_view({}, 64, 64), {}}, 0.05).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(view_corners({*make_view({}, 64, 64), {}}, std::nan("")).error().code(),
+            StatusCode::bad_argument);
   WorldView of_no_size;
   of_no_size.view.width = 0;
   EXPECT_EQ(view_corners(of_no_size, 9).error().code(), StatusCode::bad_view);
+}
+
+TEST(Inspector, InfinitelyFarCornersAreThoseOfTheFarPlaneWhereThereIsOne) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const Depth depth : {Depth::standard, Depth::reversed}) {
+    for (int round = 1; round < 100; ++round) {
+      Camera camera{.vertical_fov = 0.03f * static_cast<float>(round), .far_plane = 50, .depth = depth};
+      const auto corners = view_corners({*make_view(camera, 64, 48), {}}, kInfinite);
+      ASSERT_TRUE(corners) << corners.error().message();
+      for (std::size_t c = 4; c < 8; ++c) EXPECT_NEAR((*corners)[c].z, -50, 0.01);
+      camera.far_plane = std::numeric_limits<float>::infinity();
+      const auto none = view_corners({*make_view(camera, 64, 48), {}}, kInfinite);
+      ASSERT_FALSE(none);
+      EXPECT_EQ(none.error().code(), StatusCode::bad_argument);
+      EXPECT_STREQ(none.error().message(),
+                   "view: it has no far plane, expected a farthest distance that is finite");
+    }
+  }
 }
 
 TEST(Inspector, RefusesWhatACullRefuses) {

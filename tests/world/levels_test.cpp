@@ -325,6 +325,15 @@ TEST(Levels, AreRefusedWhereTheyMeanNothing) {
   ASSERT_EQ(cull()->count, 1u);
   EXPECT_EQ(levels[0], 0);
   EXPECT_EQ(fades[0], 0);
+  // Nor is too little room taken then, or a fade that no level says the meaning of.
+  levels.clear();
+  EXPECT_EQ(cull().error().code(), StatusCode::bad_argument);
+  EXPECT_STREQ(cull().error().message(), "cull: fades without levels, expected both or no fades");
+  levels.resize(ids.size() - 1);
+  EXPECT_EQ(cull().error().code(), StatusCode::buffer_too_small);
+  levels.resize(ids.size()), fades.resize(ids.size() - 1);
+  EXPECT_EQ(cull().error().code(), StatusCode::buffer_too_small);
+  fades.resize(ids.size());
   EXPECT_EQ(code({5}), StatusCode::ok);
   ASSERT_TRUE(world.set_levels(handle, tables));
   EXPECT_EQ(world.set_levels(handle, tables.first(0)).code(), StatusCode::bad_argument);
@@ -348,6 +357,10 @@ TEST(Levels, AreRefusedWhereTheyMeanNothing) {
   EXPECT_EQ(cull().error().code(), StatusCode::buffer_too_small);
   levels.resize(ids.size()), fades.resize(1);
   EXPECT_EQ(cull().error().code(), StatusCode::buffer_too_small);
+  levels.clear();
+  EXPECT_EQ(cull().error().code(), StatusCode::buffer_too_small);
+  fades.resize(ids.size());
+  EXPECT_EQ(cull().error().code(), StatusCode::bad_argument);
 }
 
 }  // namespace

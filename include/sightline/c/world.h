@@ -301,7 +301,7 @@ typedef struct sightline_cull_output {
   uint8_t* masks;       /**< bit v: view v may see the object; NULL: not wanted */
   size_t capacity;      /**< elements of each */
   uint8_t* levels;      /**< of detail, 0 the finest; NULL: not wanted */
-  uint8_t* fades;       /**< of 255, the share of the next coarser level; NULL: not wanted */
+  uint8_t* fades;       /**< of 255, the share of the next coarser level, with levels; NULL: not wanted */
 } sightline_cull_output;
 
 /** Arrays of `capacity` elements; `masks` may be NULL. */
