@@ -1,6 +1,6 @@
 // Boxes as calls take them.
-import { refuse } from './errors.js';
-import { Block, expectOrigin, type Call, type Input } from './memory.js';
+import { refuse, said } from './errors.js';
+import { Block, fields, readOrigin, type Call, type Input } from './memory.js';
 
 /** Boxes in an array, in metres. Single precision may be about an `origin`. */
 export interface BoxArray {
@@ -24,17 +24,18 @@ export function readBoxes(what: string, boxes: Boxes): {
   count: number;
   args: (pointer: number) => [number, number, number, number, number, number, number];
 } {
-  const given: BoxArray = boxes instanceof Block || ArrayBuffer.isView(boxes) ? { data: boxes } : boxes;
-  const { data, layout = 'min-max', stride = 6, origin = [0, 0, 0] } = given ?? {};
-  const kind = data instanceof Block ? data.kind : data?.constructor;
+  const given: BoxArray = Block.is(boxes) || ArrayBuffer.isView(boxes) ? { data: boxes as Input<Float32Array> } : boxes;
+  const [array, layout = 'min-max', stride = 6, from = [0, 0, 0]] = fields(what, given, ['data', 'layout', 'stride', 'origin']);
+  const data = array!;
+  const kind = Block.is(data) ? data.kind : ArrayBuffer.isView(data) ? data.constructor : undefined;
   if (kind !== Float32Array && kind !== Float64Array)
     refuse(`${what}: expected boxes as a Float32Array, a Float64Array or a Block of one`);
   const form = layouts.indexOf(layout);
-  if (form < 0) refuse(`${what}: a layout of ${layout}, expected ${layouts.join(', ')}`);
+  if (form < 0) refuse(`${what}: a layout of ${said(layout)}, expected ${layouts.join(', ')}`);
   const double = kind === Float64Array;
   if (form === 2 && double) refuse(`${what}: columns of double precision, expected single`);
-  if (!Number.isInteger(stride) || stride < 6) refuse(`${what}: a stride of ${stride}, expected an integer of 6 or more`);
-  expectOrigin(what, origin);
+  if (!Number.isInteger(stride) || stride < 6) refuse(`${what}: a stride of ${said(stride)}, expected an integer of 6 or more`);
+  const origin = readOrigin(what, from);
   const step = form === 2 ? 6 : stride;
   const count = data.length && (data.length + step - 6) / step;
   if (!Number.isInteger(count)) refuse(`${what}: ${data.length} numbers, expected a multiple of ${step}`);

@@ -18,6 +18,13 @@ export class SightlineError extends Error {
   }
 }
 
+/** A value as a refusal names it: symbols and objects may have no words of their own, and 6n reads as 6. */
+export const said = (value: unknown): string =>
+  typeof value === 'number' || typeof value === 'string' || value == null ? `${value}` : `(${typeof value})`;
+
 export function refuse(message: string, code: Code = 'bad_argument'): never {
   throw new SightlineError(code, message);
 }
+
+/** Of what is called on something that has not what is private to it, as frameworks wrap what stands in a page's state. */
+export const refuseProxy = (what: unknown): never => refuse(`${said(what)}: called on a Proxy or a copy of it, expected the object itself`);

@@ -1,8 +1,9 @@
 // Typed arrays that lie in the module's memory, and how calls take these and all others.
-import { refuse, type Code } from './errors.js';
+import { refuse, refuseProxy, said, type Code } from './errors.js';
 import { buffer, wasm } from './runtime.js';
 
 export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
+const kinds: readonly unknown[] = [Float32Array, Float64Array, Uint32Array, Uint8Array];
 type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
 
 // 0 where there is no room; the module itself would take the size modulo 2^32.
@@ -17,26 +18,33 @@ export class Block<T extends Numbers> {
   #array: T | undefined;
 
   constructor(kind: Kind<T>, length: number) {
+    if (!kinds.includes(kind)) refuse('Block: expected Float32Array, Float64Array, Uint32Array or Uint8Array');
     if (!Number.isInteger(length) || length < 0 || length > 2 ** 31)
-      refuse(`Block: a length of ${length}, expected an integer from 0 to 2^31`);
+      refuse(`Block: a length of ${said(length)}, expected an integer from 0 to 2^31`);
     this.kind = kind;
     this.length = length;
     this.#pointer = allocate(length * kind.BYTES_PER_ELEMENT);
     if (this.#pointer === 0) refuse(`Block: no memory for ${length} numbers`, 'too_many');
   }
+  /** @internal Not what merely claims to be one, as a Proxy of one does. */
+  static is(given: unknown): given is Block<Numbers> {
+    return typeof given === 'object' && given !== null && #pointer in given;
+  }
   /** @internal */
   get pointer(): number {
+    if (!Block.is(this)) refuseProxy('Block');
     if (this.#pointer === 0) refuse('Block: used after dispose()', 'disposed');
     return this.#pointer;
   }
   /** The array. Fetch it anew each frame: one that was fetched before the memory grew is empty, and refused. */
   get array(): T {
-    if (this.#array?.buffer !== buffer() || this.#pointer === 0)
-      this.#array = new this.kind(buffer(), this.pointer, this.length);
+    const { pointer } = this;
+    if (this.#array?.buffer !== buffer()) this.#array = new this.kind(buffer(), pointer, this.length);
     return this.#array;
   }
   /** Gives the memory back. */
   dispose(): void {
+    if (!Block.is(this)) refuseProxy('Block');
     if (this.#pointer !== 0) wasm().release!(this.#pointer);
     this.#pointer = 0;
   }
@@ -94,7 +102,7 @@ export class Call {
 
 // Undefined where it has to be copied.
 function where(input: Input<Numbers>): number | undefined {
-  if (input instanceof Block) return input.pointer;
+  if (Block.is(input)) return input.pointer;
   if (input.buffer === buffer()) return input.byteOffset;
   if (detached(input))
     refuse('sightline: an array is detached; the memory has grown since it was fetched, fetch it from its Block anew', 'detached');
@@ -113,24 +121,56 @@ export function calling<R>(body: (call: Call) => R): R {
 
 /** Throws unless it is an array of that kind. */
 export function expectKind<T extends Numbers>(what: string, input: unknown, kind: Kind<T>): asserts input is Input<T> {
-  if (input instanceof kind || (input instanceof Block && (input.kind as unknown) === kind)) return;
+  if (Block.is(input) ? (input.kind as unknown) === kind : ArrayBuffer.isView(input) && input instanceof kind) return;
   refuse(`${what}: expected a ${(kind as unknown as { name: string }).name} or a Block of one`);
 }
 
 /** Throws unless it is a Block of that kind, for what a call writes. */
 export function expectBlock<T extends Numbers>(what: string, out: unknown, kind: Kind<T>): asserts out is Block<T> {
-  if (!(out instanceof Block && (out.kind as unknown) === kind))
+  if (!(Block.is(out) && (out.kind as unknown) === kind))
     refuse(`${what}: expected a Block of a ${(kind as unknown as { name: string }).name}`);
 }
 
-/** Throws unless they are three numbers. */
-export function expectOrigin(what: string, origin: ArrayLike<number>, code?: Code): void {
-  if (origin?.length !== 3) refuse(`${what}: an origin of ${origin?.length} numbers, expected 3`, code);
+/** Reads what a call was given; where that cannot be read, as with a Proxy of a typed array, it is refused. */
+export function reading<R>(what: string, read: () => R, code?: Code): R {
+  try {
+    return read();
+  } catch (error) {
+    if (!(error instanceof TypeError)) throw error;
+    return refuse(`${what}: cannot be read (${error.message}), expected plain objects and arrays`, code);
+  }
 }
+
+/** What stands under some names, each read once. */
+export const fields = <T extends object, K extends (keyof T)[]>(what: string, given: T | null | undefined, names: [...K], code?: Code) =>
+  reading(what, () => names.map((name) => given?.[name]), code) as { [I in keyof K]: T[K[I]] | undefined };
+
+/** instanceof, which throws for a Proxy that was revoked. */
+export function isA<T>(given: unknown, kind: abstract new (...all: never[]) => T): given is T {
+  try {
+    return given instanceof kind;
+  } catch {
+    return false;
+  }
+}
+
+/** A copy of so many numbers, `name` in refusals. Reading them may run code of the caller's, which may move the module's memory
+ * or dispose of what lies there: so they are read first, and written from the copy. */
+export function readNumbers(what: string, name: string, given: ArrayLike<number> | undefined, count: number, code?: Code): number[] {
+  return reading(what, () => {
+    if (given?.length !== count) refuse(`${what}: ${name} of ${said(given?.length)} numbers, expected ${count}`, code);
+    const read = Array.from({ length: count }, (_, i) => given[i]!);
+    for (const number of read)
+      if (typeof number !== 'number') refuse(`${what}: ${name} of ${said(number)}, expected ${count} numbers`, code);
+    return read;
+  }, code);
+}
+export const readOrigin = (what: string, origin: ArrayLike<number>, code?: Code): number[] =>
+  readNumbers(what, 'an origin', origin, 3, code);
 
 /** Throws unless it has so many elements. */
 export function expectLength(what: string, input: Input<Numbers>, length: number): void {
   if (input.length === length) return;
-  if (!(input instanceof Block) && length > 0 && detached(input)) where(input);
+  if (!Block.is(input) && length > 0 && detached(input)) where(input);
   refuse(`${what}: ${input.length} elements, expected ${length}`);
 }

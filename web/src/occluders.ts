@@ -1,6 +1,6 @@
 // What the whole module's World has beside that of `core`: occluders that its objects carry.
-import { refuse } from './errors.js';
-import { Block, calling, expectKind, expectLength, expectOrigin } from './memory.js';
+import { refuse, said } from './errors.js';
+import { Block, calling, expectKind, expectLength, fields, readOrigin } from './memory.js';
 import type { Call, Input, Numbers } from './memory.js';
 import { buffer, check, need } from './runtime.js';
 import { handleList, World as CoreWorld, type Handle, type Handles } from './world.js';
@@ -49,12 +49,13 @@ export class World extends CoreWorld {
   /** Keeps an occluder for objects to carry, as many as like. Some microseconds a triangle. */
   addOccluder(occluder: Occluder): OccluderId {
     return calling((call) => {
-      const { solidTriangles = 0 } = occluder ?? {};
+      const [positions, indices, sides, solidTriangles = 0, cubes, balls] =
+        fields('addOccluder', occluder, ['positions', 'indices', 'sides', 'solidTriangles', 'boxes', 'spheres']);
       if (!Number.isInteger(solidTriangles) || solidTriangles < 0 || solidTriangles > 2 ** 31)
-        refuse(`addOccluder: ${solidTriangles} solid triangles, expected as many as there are triangles or fewer`);
-      const mesh = placeMesh('addOccluder', call, occluder ?? {});
-      const boxes = column('addOccluder', call, 'boxes', occluder?.boxes, Float32Array, 6);
-      const spheres = column('addOccluder', call, 'spheres', occluder?.spheres, Float32Array, 4);
+        refuse(`addOccluder: ${said(solidTriangles)} solid triangles, expected as many as there are triangles or fewer`);
+      const mesh = placeMesh('addOccluder', call, { positions, indices, sides });
+      const boxes = column('addOccluder', call, 'boxes', cubes, Float32Array, 6);
+      const spheres = column('addOccluder', call, 'spheres', balls, Float32Array, 4);
       const out = call.room(8);
       check(need('world_add_occluder')(this.pointer, ...mesh, solidTriangles, ...boxes, ...spheres, out));
       return new Float64Array(buffer(), out, 1)[0]!;
@@ -101,24 +102,24 @@ export class World extends CoreWorld {
   setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0]): void {
     calling((call) => {
       this.expect('setTriangles', handle);
-      expectOrigin('setTriangles', origin);
+      const [x, y, z] = readOrigin('setTriangles', origin);
       const [at, count] = column('setTriangles', call, 'corners', corners, Float32Array, 3);
-      check(need('world_set_triangles')(this.pointer, handle, at, count, origin[0]!, origin[1]!, origin[2]!));
+      check(need('world_set_triangles')(this.pointer, handle, at, count, x!, y!, z!));
     });
   }
 }
 
 function named(what: string, occluder: OccluderId): OccluderId {
   if (Number.isInteger(occluder) && occluder >= 0 && occluder <= noOccluder) return occluder;
-  return refuse(`${what}: an occluder named ${occluder}, expected what addOccluder returned`);
+  return refuse(`${what}: an occluder named ${said(occluder)}, expected what addOccluder returned`);
 }
 
 function placeOrigins(origins: Input<Float64Array> | readonly [number, number, number], count: number): Input<Float64Array> {
-  if (origins instanceof Float64Array || origins instanceof Block) {
+  if (ArrayBuffer.isView(origins) || Block.is(origins)) {
     expectKind('setOccluders: origins', origins, Float64Array);
     expectLength('setOccluders: origins', origins, 3 * count);
     return origins;
   }
-  expectOrigin('setOccluders', origins);
-  return Float64Array.from({ length: 3 * count }, (_, i) => origins[i % 3]!);
+  const origin = readOrigin('setOccluders', origins);
+  return Float64Array.from({ length: 3 * count }, (_, i) => origin[i % 3]!);
 }

@@ -1,9 +1,9 @@
 // Occluders are drawn into a depth buffer on the CPU, then boxes are tested against it.
 import { placeBoxes, type Boxes } from './boxes.js';
-import { refuse } from './errors.js';
-import { calling, expectBlock, expectKind, expectLength, type Block, type Input } from './memory.js';
+import { refuse, said } from './errors.js';
+import { calling, expectBlock, expectKind, expectLength, fields, isA, readNumbers, type Block, type Input } from './memory.js';
 import { buffer, check, need, Owned, wasm } from './runtime.js';
-import { viewBytes, writeView, type View } from './views.js';
+import { readView, viewBytes, writeView, type View } from './views.js';
 
 /** Triangles that occlude. What can be looked through must not be among them. */
 export class OccluderMesh extends Owned {
@@ -13,7 +13,7 @@ export class OccluderMesh extends Owned {
     super('OccluderMesh', 'mesh_create', 'mesh_destroy', calling((call) => {
       expectKind('OccluderMesh: positions', positions, Float32Array);
       expectKind('OccluderMesh: indices', indices, Uint32Array);
-      if (sides !== 'both' && sides !== 'front') refuse(`OccluderMesh: sides of ${String(sides)}, expected both or front`);
+      if (sides !== 'both' && sides !== 'front') refuse(`OccluderMesh: sides of ${said(sides)}, expected both or front`);
       if (positions.length % 3 !== 0)
         refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
       const [at, index] = call.place(positions, indices);
@@ -48,12 +48,12 @@ export class OcclusionBuffer extends Owned {
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
   begin(view: View, options?: OcclusionOptions): void {
-    const { coverage = 'centres', scale = 1 } = options ?? {};
+    const [coverage = 'centres', scale = 1] = fields('begin', options, ['coverage', 'scale']);
     const places = coverages.indexOf(coverage);
-    if (places < 0) refuse(`begin: a coverage of ${coverage}, expected ${coverages.join(', ')}`);
+    if (places < 0) refuse(`begin: a coverage of ${said(coverage)}, expected ${coverages.join(', ')}`);
     calling((call) => {
-      const at = call.room(viewBytes);
-      writeView('begin', view, at);
+      const read = readView('begin', view), at = call.room(viewBytes);
+      writeView(read, at);
       check(wasm().occlusion_begin!(this.pointer, at, places, [1, 2, 4].includes(scale) ? scale : 0));
       this.#begun = true;
     });
@@ -76,16 +76,17 @@ export class OcclusionBuffer extends Owned {
   }
   /** Draws a mesh, moved by an affine matrix about the view's origin. */
   drawMesh(mesh: OccluderMesh, transform: ArrayLike<number>): void {
-    if (!(mesh instanceof OccluderMesh)) refuse('drawMesh: expected an OccluderMesh');
-    if (transform?.length !== 16) refuse(`drawMesh: a transform of ${transform?.length} numbers, expected 16`);
+    if (!isA(mesh, OccluderMesh)) refuse('drawMesh: expected an OccluderMesh');
+    const numbers = readNumbers('drawMesh', 'a transform', transform, 16);
     calling((call) => {
       const at = call.room(64);
-      new Float32Array(buffer(), at, 16).set(transform);
+      new Float32Array(buffer(), at, 16).set(numbers);
       check(wasm().occlusion_draw_mesh!(this.pointer, mesh.pointer, at));
     });
   }
   /** Whether some pixel centre, or place on the image, may see each box: 1 or 0, where 0 is certain. */
   maySee(boxes: Boxes, out: Block<Uint8Array>): void {
+    void this.pointer; // a Proxy of it has nothing that is private
     calling((call) => {
       if (!this.#begun) refuse('maySee: the buffer was never begun, expected begin() first', 'stale_buffer');
       const { count, args } = placeBoxes('maySee', call, boxes);

@@ -1,6 +1,7 @@
 // Visible sets that were baked for the cells of a grid, as arrays. (The library's files are packed with zstd, which
 // browsers do not unpack; whoever bakes writes the arrays, see docs/web.md.)
-import { refuse } from './errors.js';
+import { refuse, refuseProxy, said } from './errors.js';
+import { fields, readNumbers } from './memory.js';
 
 /** As CellPvs of <sightline/pvs.hpp>. Cells run x first, then y, then z. */
 export interface PvsArrays {
@@ -23,11 +24,12 @@ export class CellPvs {
   readonly #arrays: PvsArrays;
 
   constructor(arrays: PvsArrays) {
-    const { bounds, counts, objects, open, first, visible } = arrays ?? ({} as PvsArrays);
-    if (!(open instanceof Uint8Array && first instanceof Uint32Array && visible instanceof Uint32Array))
-      refuse('CellPvs: expected open as a Uint8Array, first and visible as Uint32Arrays');
-    if (bounds?.length !== 6 || counts?.length !== 3) refuse('CellPvs: expected 6 numbers of bounds and 3 counts');
-    if (!Number.isInteger(objects) || objects < 0) refuse(`CellPvs: ${String(objects)} objects, expected a whole number of them`);
+    const [box, along, objects, open, first, visible] =
+      fields('CellPvs', arrays, ['bounds', 'counts', 'objects', 'open', 'first', 'visible']);
+    if (!([open, first, visible].every(ArrayBuffer.isView) && open instanceof Uint8Array && first instanceof Uint32Array &&
+      visible instanceof Uint32Array)) refuse('CellPvs: expected open as a Uint8Array, first and visible as Uint32Arrays');
+    const bounds = readNumbers('CellPvs', 'bounds', box, 6), counts = readNumbers('CellPvs', 'counts', along, 3);
+    if (!Number.isInteger(objects) || objects! < 0) refuse(`CellPvs: ${said(objects)} objects, expected a whole number of them`);
     const cells = counts[0]! * counts[1]! * counts[2]!;
     for (let axis = 0; axis < 3; ++axis) {
       if (!(bounds[axis]! < bounds[3 + axis]!) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
@@ -40,19 +42,25 @@ export class CellPvs {
     for (let c = 0; c < cells; ++c) {
       if (first[c]! > first[c + 1]!) refuse(`CellPvs: first falls at cell ${c}, expected it to rise`);
       for (let i = first[c]!; i < first[c + 1]!; ++i) {
-        if (visible[i]! >= objects || (i > first[c]! && visible[i]! <= visible[i - 1]!))
+        if (visible[i]! >= objects! || (i > first[c]! && visible[i]! <= visible[i - 1]!))
           refuse(`CellPvs: the set of cell ${c} does not ascend below ${objects}`);
       }
     }
-    this.#arrays = arrays;
+    this.#arrays = { bounds, counts, objects: objects!, open, first, visible };
+  }
+
+  static #of(set: CellPvs): PvsArrays {
+    if (!(#arrays in set)) refuseProxy('CellPvs');
+    return set.#arrays;
   }
 
   /** The open cell that holds the point, or undefined. */
   cellAt(x: number, y: number, z: number): number | undefined {
-    const { bounds, counts, open } = this.#arrays;
+    const { bounds, counts, open } = CellPvs.#of(this);
     let cell = 0, step = 1;
     for (const [axis, at] of [x, y, z].entries()) {
       const low = Math.fround(bounds[axis]!), high = Math.fround(bounds[3 + axis]!), count = counts[axis]!;
+      if (typeof at !== 'number') refuse(`cellAt: a coordinate of ${said(at)}, expected a number`);
       const p = Math.fround(at);
       if (!(p >= low && p <= high)) return undefined;
       const along = Math.min(Math.floor(((p - low) / (high - low)) * count), count - 1);
@@ -63,9 +71,9 @@ export class CellPvs {
   }
   /** The objects of a cell, ascending. */
   seenFrom(cell: number): Uint32Array {
-    const { first, open, visible } = this.#arrays;
+    const { first, open, visible } = CellPvs.#of(this);
     if (!Number.isInteger(cell) || cell < 0 || cell >= open.length)
-      refuse(`seenFrom: cell ${cell}, expected an integer below ${open.length}`);
+      refuse(`seenFrom: cell ${said(cell)}, expected an integer below ${open.length}`);
     return visible.subarray(first[cell]!, first[cell + 1]!);
   }
 }

@@ -1,9 +1,9 @@
 // Boxes to cast rays at, and what they meet first.
-import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
-import { refuse } from './errors.js';
+import { readBoxes, type Boxes } from './boxes.js';
+import { refuse, said } from './errors.js';
 import { calling, expectBlock, expectKind, expectLength, type Block, type Input } from './memory.js';
 import { buffer, check, Owned, wasm } from './runtime.js';
-import { writeView, type View } from './views.js';
+import { readView, writeView, type View } from './views.js';
 
 /** The object of a ray that meets nothing. */
 export const noObject = 0xffffffff;
@@ -15,11 +15,11 @@ export class BoxBvh extends Owned {
   }
   /** Takes the boxes; rays and views count from their origin. */
   build(boxes: Boxes): void {
-    this.#take('bvh_build', 'build', boxes);
+    take(this, 'bvh_build', 'build', boxes);
   }
   /** Takes over moved boxes, as many as were built with. */
   refit(boxes: Boxes): void {
-    this.#take('bvh_refit', 'refit', boxes);
+    take(this, 'bvh_refit', 'refit', boxes);
   }
   /** Boxes. */
   get size(): number {
@@ -44,20 +44,23 @@ export class BoxBvh extends Owned {
    * of what is visible. */
   visibleSet(view: View, columns: number, rows: number): Uint32Array {
     return calling((call) => {
-      const viewAt = call.room(176), out = call.room(4 * this.size);
-      writeView('visibleSet', view, viewAt);
+      const read = readView('visibleSet', view), viewAt = call.room(176), out = call.room(4 * this.size);
+      writeView(read, viewAt);
       // The module would take them modulo 2^32.
       for (const side of [columns, rows])
         if (!Number.isInteger(side) || side < 1 || side > 2 ** 24)
-          refuse(`visibleSet: ${columns} x ${rows} rays, expected 1 to 2^24 of them`);
+          refuse(`visibleSet: ${said(columns)} x ${said(rows)} rays, expected 1 to 2^24 of them`);
       check(wasm().bvh_visible_set!(this.pointer, viewAt, columns, rows, out, viewAt + 168));
       return new Uint32Array(buffer(), out, new Float64Array(buffer(), viewAt + 168, 1)[0]!).slice();
     });
   }
+}
 
-  #take(name: string, what: string, boxes: Boxes): void {
-    const { count } = readBoxes(what, boxes);
-    if (name === 'bvh_refit' && count !== this.size) refuse(`refit: ${count} boxes, expected ${this.size}`);
-    calling((call) => check(wasm()[name]!(this.pointer, ...placeBoxes(what, call, boxes).args)));
-  }
+function take(bvh: BoxBvh, name: string, what: string, boxes: Boxes): void {
+  const { data, count, args } = readBoxes(what, boxes);
+  if (name === 'bvh_refit' && count !== bvh.size) refuse(`refit: ${count} boxes, expected ${bvh.size}`);
+  calling((call) => {
+    const [at] = call.place(data);
+    check(wasm()[name]!(bvh.pointer, ...args(at!)));
+  });
 }

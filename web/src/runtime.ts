@@ -1,5 +1,5 @@
 // The one WebAssembly instance of a program: where it comes from, and how it is called.
-import { codes, refuse, SightlineError } from './errors.js';
+import { codes, refuse, refuseProxy, said, SightlineError } from './errors.js';
 
 /** What the module exports; pointers and counts are numbers. */
 type Exports = Record<string, (...args: number[]) => number>;
@@ -30,15 +30,26 @@ async function compile(source: Source): Promise<WebAssembly.Module> {
     if (!given.ok) refuse(`sightline: ${given.url} could not be fetched (${given.status})`);
     return WebAssembly.compile(await given.arrayBuffer());
   }
+  if (!bytes) refuse(`initialise: ${said(given)}, expected bytes, a WebAssembly.Module or a Response`);
   return WebAssembly.compile(given as BufferSource);
+}
+
+async function instanceOf(source: Source): Promise<WebAssembly.Instance> {
+  try {
+    return await WebAssembly.instantiate(await compile(source), {});
+  } catch (error) {
+    if (error instanceof SightlineError) throw error;
+    return refuse(`sightline: the module could not be loaded (${(error as Error)?.message}); try again`);
+  }
 }
 
 async function start(source: Source): Promise<void> {
   if (!supported) refuse(unsupported, 'unsupported');
-  const instance = await WebAssembly.instantiate(await compile(source), {});
-  const { memory: own, _initialize, ...functions } = instance.exports as unknown as Exports & {
+  const { memory: own, _initialize, ...functions } = (await instanceOf(source)).exports as unknown as Exports & {
     memory: WebAssembly.Memory;
   };
+  if (!(own instanceof WebAssembly.Memory && functions.world_create))
+    refuse('initialise: another module, expected whole.wasm or core.wasm');
   _initialize?.();
   memory = own;
   exports = Object.fromEntries(Object.entries(functions).map(([name, call]) => [name, guarded(call)]));
@@ -59,25 +70,48 @@ function guarded(call: (...args: number[]) => number): (...args: number[]) => nu
   };
 }
 
-/** Starts the module from bytes of your own, instead of those that `sightline-culling` and `/core` bring along. Once. */
+/** Starts the module from bytes of your own, instead of those that `sightline-culling` and `/core` bring along. Once; where that
+ * failed, as a fetch may, call it again: `ready` is another promise then. */
 export function initialise(source: Source): Promise<void> {
   if (loading) refuse('initialise: the module is loaded already, expected one call');
-  loading = start(source);
-  settle(loading);
-  return ready;
+  renew();
+  return load(start(source));
 }
 
 let settle: (loaded: Promise<void>) => void;
-/** Resolves when everything can be called; rejects where it never can. */
-export const ready: Promise<void> = new Promise((resolve) => (settle = resolve));
-ready.catch(() => {}); // who does not ask is told by the first call
+let failed = false;
+function promise(): Promise<void> {
+  const made = new Promise<void>((resolve) => (settle = resolve));
+  made.catch(() => {}); // who does not ask is told by the first call
+  return made;
+}
+/** Resolves when everything can be called; rejects where the module could not be loaded. */
+export let ready: Promise<void> = promise();
+
+// For another try.
+function renew(): void {
+  if (failed) failed = false, (ready = promise());
+}
+
+function load(started: Promise<void>): Promise<void> {
+  // Before anybody is told: who is may try again at once.
+  settle((loading = started.catch((error) => {
+    loading = undefined, (failed = true);
+    throw error;
+  })));
+  return ready;
+}
+
+/** Whether everything can be called. */
+export const isLoaded = (): boolean => exports !== undefined;
 
 /** An entry's own bytes. Of several entries that a program imports, the one that can most is loaded. */
 export function offer(rank: number, inflate: () => Promise<BufferSource>): void {
+  renew();
   if (!offered || rank > offered.rank) offered = { rank, inflate };
   queueMicrotask(() =>
     setTimeout(() => {
-      if (!loading) settle((loading = start(supported ? offered!.inflate() : new ArrayBuffer(0))));
+      if (!loading && !failed) void load(start(supported ? offered!.inflate() : new ArrayBuffer(0)));
     }, 0),
   );
 }
@@ -136,18 +170,19 @@ export abstract class Owned {
     this.#pointer = pointer;
     this.#destroy = destroy;
   }
-  /** @internal */
+  /** @internal Whatever a call's arguments do when they are read has to be done by then. */
   get pointer(): number {
-    if (this.#pointer === 0) refuse(`${this.what}: used after dispose()`, 'disposed');
+    if (this.disposed) refuse(`${this.what}: used after dispose()`, 'disposed');
     return this.#pointer;
   }
   /** Whether dispose() was called. */
   get disposed(): boolean {
+    if (!(#pointer in this)) refuseProxy((this as Owned).what);
     return this.#pointer === 0;
   }
   /** Gives its memory back; using it afterwards throws. Doing so twice is nothing. */
   dispose(): void {
-    if (this.#pointer === 0) return;
+    if (this.disposed) return;
     need(this.#destroy)(this.#pointer);
     this.#pointer = 0;
   }

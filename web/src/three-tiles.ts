@@ -8,11 +8,11 @@
 // can see through it is masked, as a region of the renderer's own LoadRegionPlugin would mask it.
 import type { BufferGeometry, Camera, Material, Mesh, Object3D } from 'three';
 import { Box3, Matrix4, Vector3 } from 'three';
-import { refuse } from './errors.js';
+import { refuse, said } from './errors.js';
 import './index.js';
 import { bytes, type Block } from './memory.js';
 import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
-import { ready, supported } from './runtime.js';
+import { isLoaded, ready, supported } from './runtime.js';
 import { eyeOf, isRigid } from './three/eye.js';
 import { determinantOf, isSolid, type Eye } from './three/occluders.js';
 
@@ -55,14 +55,14 @@ export class SightlineTilesPlugin {
   #seen: Block<Uint8Array> | undefined;
   #tiles: Tiles | undefined;
   #sights: Sight[] = [];
-  #loaded = false;
   #told = false;
 
-  constructor({ mostTriangles = 60_000 }: SightlineTilesOptions = {}) {
+  constructor(options?: SightlineTilesOptions) {
+    const { mostTriangles = 60_000 } = options ?? {};
     if (!Number.isInteger(mostTriangles) || mostTriangles < 1)
-      refuse(`SightlineTilesPlugin: ${mostTriangles} triangles, expected an integer of 1 or more`);
+      refuse(`SightlineTilesPlugin: ${said(mostTriangles)} triangles, expected an integer of 1 or more`);
     this.#mostTriangles = mostTriangles;
-    ready.then(() => (this.#loaded = true), (error: Error) => this.#tell(error));
+    ready.catch((error: Error) => this.#tell(error));
   }
 
   /** Called by TilesRenderer.registerPlugin(). */
@@ -103,7 +103,7 @@ export class SightlineTilesPlugin {
     this.#sights = [];
     Object.assign(this.stats, { occluders: 0, triangles: 0, tested: 0, hidden: 0 });
     const tiles = this.#tiles;
-    if (!tiles || !this.enabled || !this.#loaded) return;
+    if (!tiles || !this.enabled || !isLoaded()) return;
     const sights: Sight[] = [];
     try {
       for (const camera of tiles.cameras) {

@@ -1,6 +1,6 @@
 // Views as the library lays them out: WorldView of 160 bytes, CullView of 184.
-import { refuse } from './errors.js';
-import { expectOrigin } from './memory.js';
+import { refuse, said } from './errors.js';
+import { fields, readNumbers, readOrigin } from './memory.js';
 import { buffer } from './runtime.js';
 
 /** A camera. Matrices are column-major and multiply columns, as in three.js and glTF. */
@@ -21,21 +21,30 @@ export const cullViewBytes = 184;
 
 /** A projection whose clip depth is -1 to 1, as WebGL has it, as one whose depth is 0 to 1. */
 export function clipZeroToOne(projection: ArrayLike<number>): number[] {
-  const made = Array.from(projection);
+  const made = readNumbers('clipZeroToOne', 'a projection', projection, 16);
   for (let column = 0; column < 4; ++column) made[4 * column + 2] = (made[4 * column + 2]! + made[4 * column + 3]!) / 2;
   return made;
 }
 
-/** Writes a view to the module's memory. */
-export function writeView(what: string, view: View, pointer: number): void {
-  const { worldToEye, eyeToClip, width, height, origin = [0, 0, 0] } = view ?? {};
-  if (worldToEye?.length !== 16 || eyeToClip?.length !== 16)
-    refuse(`${what}: a view needs worldToEye and eyeToClip, expected 16 numbers each`, 'bad_view');
-  expectOrigin(what, origin, 'bad_view');
-  for (const side of [width, height]) {
+/** A view that was read and is sound as far as is seen from here. */
+export interface ReadView { worldToEye: number[]; eyeToClip: number[]; width: number; height: number; origin: number[] }
+
+export function readView(what: string, view: View): ReadView {
+  const [worldToEye, eyeToClip, width, height, origin = [0, 0, 0]] =
+    fields(what, view, ['worldToEye', 'eyeToClip', 'width', 'height', 'origin'], 'bad_view');
+  const read = {
+    worldToEye: readNumbers(what, 'a view\'s worldToEye', worldToEye, 16, 'bad_view'),
+    eyeToClip: readNumbers(what, 'a view\'s eyeToClip', eyeToClip, 16, 'bad_view'),
+    width: width!, height: height!, origin: readOrigin(what, origin, 'bad_view') };
+  for (const side of [read.width, read.height]) {
     if (!Number.isInteger(side) || side < 1 || side > 16384)
-      refuse(`${what}: an image of ${width} x ${height}, expected 1 to 16384 pixels a side`, 'bad_view');
+      refuse(`${what}: an image of ${said(width)} x ${said(height)}, expected 1 to 16384 pixels a side`, 'bad_view');
   }
+  return read;
+}
+
+/** Writes a view to the module's memory. */
+export function writeView({ worldToEye, eyeToClip, width, height, origin }: ReadView, pointer: number): void {
   const floats = new Float32Array(buffer(), pointer, 32);
   floats.set(worldToEye), floats.set(eyeToClip, 16);
   const data = new DataView(buffer(), pointer, viewBytes);

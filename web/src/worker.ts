@@ -1,7 +1,7 @@
 // `sightline-culling/worker`: a world on another thread, which culls the next frame while this one is drawn. No shared
 // memory, so no special headers; what is seen is copied once a frame.
 import type { Boxes } from './boxes.js';
-import { SightlineError, type Code } from './errors.js';
+import { refuseProxy, SightlineError, type Code } from './errors.js';
 import type { View } from './views.js';
 import type { CullOptions } from './world.js';
 
@@ -63,30 +63,31 @@ export class WorkerWorld {
   /** Starts the thread, and waits until it can be called. */
   static async start(): Promise<WorkerWorld> {
     const made = new WorkerWorld(await thread());
-    await made.#post('ready');
+    await WorkerWorld.#post(made, 'ready');
     return made;
   }
 
   insert(boxes: PostedBoxes, columns: { layers?: Uint32Array; values?: Uint32Array } = {}): Promise<Float64Array> {
-    return this.#post('insert', boxes, columns);
+    return WorkerWorld.#post(this, 'insert', boxes, columns);
   }
   move(handles: Float64Array, boxes: PostedBoxes): Promise<void> {
-    return this.#post('move', handles, boxes);
+    return WorkerWorld.#post(this, 'move', handles, boxes);
   }
   remove(handles: Float64Array): Promise<void> {
-    return this.#post('remove', handles);
+    return WorkerWorld.#post(this, 'remove', handles);
   }
   setLayers(handles: Float64Array, layers: Uint32Array): Promise<void> {
-    return this.#post('setLayers', handles, layers);
+    return WorkerWorld.#post(this, 'setLayers', handles, layers);
   }
   setValues(handles: Float64Array, values: Uint32Array): Promise<void> {
-    return this.#post('setValues', handles, values);
+    return WorkerWorld.#post(this, 'setValues', handles, values);
   }
   cull(views: PostedView | readonly PostedView[], options: Pick<CullOptions, 'valuesForIds'> = {}): Promise<PostedCull> {
-    return this.#post('cull', views, options);
+    return WorkerWorld.#post(this, 'cull', views, options);
   }
   /** Ends the thread; calls that still wait are refused. */
   dispose(): void {
+    if (!(#ended in this)) refuseProxy('WorkerWorld');
     this.#end(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
     this.#ended = new SightlineError('disposed', 'WorkerWorld: used after dispose()');
   }
@@ -99,15 +100,16 @@ export class WorkerWorld {
     this.#waiting.clear();
   }
 
-  async #post<R>(name: string, ...args: unknown[]): Promise<R> {
-    if (this.#ended) throw this.#ended;
+  static async #post<R>(to: WorkerWorld, name: string, ...args: unknown[]): Promise<R> {
+    if (!(#ended in to)) refuseProxy('WorkerWorld');
+    if (to.#ended) throw to.#ended;
     return new Promise<R>((resolve, reject) => {
-      const id = this.#next++;
-      this.#waiting.set(id, { resolve: resolve as (value: never) => void, reject });
+      const id = to.#next++;
+      to.#waiting.set(id, { resolve: resolve as (value: never) => void, reject });
       try {
-        this.#thread.postMessage({ id, name, args } satisfies Request);
+        to.#thread.postMessage({ id, name, args } satisfies Request);
       } catch (error) { // Blocks and what is detached cannot go there
-        this.#waiting.delete(id);
+        to.#waiting.delete(id);
         reject(new SightlineError('bad_argument', `WorkerWorld: ${name} was given what cannot be posted, expected arrays of your own (${(error as Error).message})`));
       }
     });

@@ -1,14 +1,15 @@
 // Boxes that come, move and go, and their cull.
 import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
-import { refuse } from './errors.js';
-import { Block, bytes, calling, doubles, expectKind, expectLength, integers, type Input } from './memory.js';
+import { refuse, said } from './errors.js';
+import { Block, bytes, calling, doubles, expectKind, expectLength, fields, integers, isA, reading, type Input } from './memory.js';
 import { buffer, check, Owned, wasm } from './runtime.js';
-import { cullViewBytes, writeView, type View } from './views.js';
+import { cullViewBytes, readView, writeView, type ReadView, type View } from './views.js';
 
 /** Names an object for as long as it stands in its world: 31 bits of id and 22 of generation in one number. */
 export type Handle = number;
 /** The id of a handle: what cull() writes. */
-export const idOf = (handle: Handle): number => handle % 2 ** 31;
+export const idOf = (handle: Handle): number =>
+  typeof handle === 'number' ? handle % 2 ** 31 : refuse(`idOf: ${said(handle)}, expected a number`);
 /** In all layers. */
 export const allLayers = 0xffffffff;
 
@@ -43,10 +44,10 @@ export class World extends Owned {
   /** Puts objects in. Returns their handles. Linear: some 0.3 µs an object. */
   insert(boxes: Boxes, columns?: Columns): Float64Array {
     return calling((call) => {
-      const { data, count, args } = readBoxes('insert', boxes), given = columns ?? {};
-      for (const name of ['layers', 'values'] as const)
-        if (given[name] !== undefined) expectColumn(`insert: ${name}`, given[name], count);
-      const [at, layers, values] = call.place(data, given.layers, given.values);
+      const { data, count, args } = readBoxes('insert', boxes), names = ['layers', 'values'] as const;
+      const given = fields('insert', columns, [...names]);
+      given.forEach((column, i) => column !== undefined && expectColumn(`insert: ${names[i]}`, column, count));
+      const [at, layers, values] = call.place(data, ...given);
       const out = call.room(8 * count);
       check(wasm().world_insert!(this.pointer, ...args(at!), layers!, values!, out));
       return new Float64Array(buffer(), out, count).slice();
@@ -72,11 +73,11 @@ export class World extends Owned {
   }
   /** Gives each object new layers. */
   setLayers(handles: Handles, layers: Input<Uint32Array>): void {
-    this.#setColumn('world_set_layers', 'setLayers', handles, layers);
+    setColumn(this, 'world_set_layers', 'setLayers', handles, layers);
   }
   /** Gives each object a new value. */
   setValues(handles: Handles, values: Input<Uint32Array>): void {
-    this.#setColumn('world_set_values', 'setValues', handles, values);
+    setColumn(this, 'world_set_values', 'setValues', handles, values);
   }
 
   /** Objects. */
@@ -94,7 +95,7 @@ export class World extends Owned {
   /** The handle of the object that has this id now. */
   handle(id: number): Handle | undefined {
     // The module would take other numbers modulo 2^32.
-    const handle = id >>> 0 === id ? wasm().world_handle!(this.pointer, id) : -1;
+    const handle = typeof id === 'number' && id >>> 0 === id ? wasm().world_handle!(this.pointer, id) : -1;
     return handle < 0 ? undefined : handle;
   }
   /** The box as it is kept, minimum and maximum: it holds what was given. */
@@ -120,15 +121,15 @@ export class World extends Owned {
   expect(what: string, handle: Handle): void {
     if (!this.contains(handle)) refuse(`${what}: no object has this handle`, 'stale_handle');
   }
+}
 
-  #setColumn(name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
-    calling((call) => {
-      const named = handleList(handles);
-      expectColumn(what, column, named.length);
-      const [numbers, at] = call.place(named, column);
-      check(wasm()[name]!(this.pointer, numbers!, at!, named.length));
-    });
-  }
+function setColumn(world: World, name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
+  calling((call) => {
+    const named = handleList(handles);
+    expectColumn(what, column, named.length);
+    const [numbers, at] = call.place(named, column);
+    check(wasm()[name]!(world.pointer, numbers!, at!, named.length));
+  });
 }
 
 /** A camera, an eye, a shadow cascade: whatever sees the world. */
@@ -204,7 +205,8 @@ export class Culler extends Owned {
   /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
    * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
   cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
-    const count = this.#run(world, [views].flat() as CullView[], options);
+    void this.pointer; // a Proxy of it could call nothing that is private
+    const count = this.#run(world, reading('cull', () => [views].flat() as CullView[]), options);
     const [, tested, nodesVisited, culledOcclusion, cost, frustumCost] = this.#result.array;
     return {
       ids: this.#ids!.array.subarray(0, count),
@@ -223,6 +225,7 @@ export class Culler extends Owned {
   /** Teaches what an object costs, where `costs.object` is 0: how many nanoseconds the frame took that drew what the last cull
    * left. It is learned once frames differ in how many they draw. */
   reportFrameTime(nanoseconds: number): void {
+    if (typeof nanoseconds !== 'number') refuse(`reportFrameTime: ${said(nanoseconds)}, expected a number`);
     check(wasm().report_frame_time!(this.pointer, nanoseconds));
   }
 
@@ -233,45 +236,57 @@ export class Culler extends Owned {
   }
 
   #run(world: World, views: readonly CullView[], options?: CullOptions): number {
-    const { valuesForIds, occlusion, costs } = options ?? {}, pointer = this.pointer;
-    if (!(world instanceof World)) refuse('cull: expected a World');
+    if (!isA(world, World)) refuse('cull: expected a World');
     if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
+    const read = views.map(readCullView);
+    const [valuesForIds, occlusion, costs] = fields('cull', options, ['valuesForIds', 'occlusion', 'costs']);
+    const numbers = readCosts(occlusion, costs), { pointer } = this;
     const capacity = wasm().cull_capacity!(world.pointer);
     if (!this.#ids || this.#ids.length < capacity) {
       this.#ids?.dispose(), this.#masks?.dispose();
       this.#ids = integers(capacity + (capacity >> 2));
       this.#masks = bytes(this.#ids.length);
     }
-    views.forEach((view, v) => this.#write(view, this.#views.pointer + v * cullViewBytes));
+    read.forEach((view, v) => writeCullView(view, this.#views.pointer + v * cullViewBytes));
+    if (numbers) new Float32Array(buffer(), this.#costs.pointer, costBytes / 4).set(numbers);
     check(wasm().cull!(pointer, world.pointer, this.#views.pointer, views.length, valuesForIds ? 1 : 0,
-      this.#placeCosts(occlusion, costs), this.#ids.pointer, this.#masks!.pointer, this.#ids.length, this.#result.pointer));
+      numbers ? this.#costs.pointer : 0, this.#ids.pointer, this.#masks!.pointer, this.#ids.length, this.#result.pointer));
     return this.#result.array[0]!;
   }
+}
 
-  // 0 where occlusion is not automatic.
-  #placeCosts(occlusion: CullOptions['occlusion'] = 'none', costs: CullCosts = {}): number {
-    if (occlusion === 'none') return 0;
-    if (occlusion !== 'automatic') refuse(`cull: an occlusion of ${occlusion as string}, expected none or automatic`);
-    const all = { ...defaultCosts, ...costs }, names = Object.keys(all);
-    if (names.length > costBytes / 4) refuse(`cull: a cost named ${names[costBytes / 4]}, expected one of CullCosts`);
-    new Float32Array(buffer(), this.#costs.pointer, costBytes / 4).set(Object.values(all));
-    return this.#costs.pointer;
-  }
+// Undefined where occlusion is not automatic.
+function readCosts(occlusion: CullOptions['occlusion'] = 'none', costs?: CullCosts): number[] | undefined {
+  if (occlusion === 'none') return undefined;
+  if (occlusion !== 'automatic') refuse(`cull: an occlusion of ${said(occlusion)}, expected none or automatic`);
+  const all = reading('cull', () => Object.entries({ ...defaultCosts, ...costs }));
+  if (all.length > costBytes / 4) refuse(`cull: a cost named ${all[costBytes / 4]![0]}, expected one of CullCosts`);
+  for (const [name, cost] of all)
+    if (typeof cost !== 'number') refuse(`cull: a cost of ${said(cost)} for ${name}, expected a number`);
+  return all.map(([, cost]) => cost);
+}
 
-  #write(view: CullView, at: number): void {
-    writeView('cull', view, at);
-    const data = new DataView(buffer(), at, cullViewBytes);
-    const { occlusion, layers = allLayers } = view;
-    if (occlusion && !(occlusion instanceof Owned && occlusion.what === 'OcclusionBuffer'))
-      refuse('cull: expected an OcclusionBuffer as a view\'s occlusion');
-    if (!Number.isInteger(layers) || Math.abs(layers) >= 2 ** 32)
-      refuse(`cull: layers of ${layers}, expected an integer of 32 bits`);
-    data.setUint32(160, occlusion?.pointer ?? 0, true);
-    data.setUint32(164, layers, true);
-    data.setFloat32(168, view.minArea ?? 0, true);
-    data.setFloat32(172, 1, true), data.setUint32(176, allLayers, true);  // distances, which objects have none of here
-    data.setUint32(180, 0, true);  // casters: none
-  }
+interface ReadCullView { view: ReadView; layers: number; minArea: number; occlusion: CullView['occlusion'] }
+
+function readCullView(given: CullView): ReadCullView {
+  const view = readView('cull', given);
+  const [occlusion, layers = allLayers, area] = fields('cull', given, ['occlusion', 'layers', 'minArea']), minArea = area ?? 0;
+  if (occlusion && !(isA(occlusion, Owned) && occlusion.what === 'OcclusionBuffer'))
+    refuse('cull: expected an OcclusionBuffer as a view\'s occlusion');
+  if (!Number.isInteger(layers) || Math.abs(layers) >= 2 ** 32)
+    refuse(`cull: layers of ${said(layers)}, expected an integer of 32 bits`);
+  if (typeof minArea !== 'number') refuse(`cull: a minArea of ${said(minArea)}, expected a number`);
+  return { view, layers, minArea, occlusion };
+}
+
+function writeCullView({ view, layers, minArea, occlusion }: ReadCullView, at: number): void {
+  writeView(view, at);
+  const data = new DataView(buffer(), at, cullViewBytes);
+  data.setUint32(160, occlusion ? occlusion.pointer : 0, true);
+  data.setUint32(164, layers, true);
+  data.setFloat32(168, minArea, true);
+  data.setFloat32(172, 1, true), data.setUint32(176, allLayers, true);  // distances, which objects have none of here
+  data.setUint32(180, 0, true);  // casters: none
 }
 
 /** The indices of the boxes that a view overlaps, ascending, into `out`, which has room for 64 more than there are boxes;
@@ -295,10 +310,10 @@ export function cullSpheres(view: View, spheres: Input<Float32Array>, out: Block
 
 function flat(view: View, out: Block<Uint32Array>,
   run: (call: import('./memory.js').Call, view: number, result: number) => number): number {
-  if (!(out instanceof Block) || out.kind !== Uint32Array) refuse('cull: expected a Block from integers() to write to');
+  if (!Block.is(out) || (out.kind as unknown) !== Uint32Array) refuse('cull: expected a Block from integers() to write to');
   return calling((call) => {
-    const viewAt = call.room(176), result = viewAt + 168;
-    writeView('cull', view, viewAt);
+    const read = readView('cull', view), viewAt = call.room(176), result = viewAt + 168;
+    writeView(read, viewAt);
     check(run(call, viewAt, result));
     return new Float64Array(buffer(), result, 1)[0]!;
   });

@@ -8,11 +8,11 @@
 import { BatchedMesh, Layers } from 'three';
 import type { ArrayCamera, BufferGeometry, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
 import type { PerspectiveCamera } from 'three';
-import { refuse } from '../errors.js';
+import { refuse, said } from '../errors.js';
 import '../index.js';
-import { floats } from '../memory.js';
+import { floats, reading } from '../memory.js';
 import { OcclusionBuffer } from '../occlusion.js';
-import { buffer as memory, ready, supported } from '../runtime.js';
+import { buffer as memory, isLoaded, ready, supported } from '../runtime.js';
 import { Culler, type CullView } from '../world.js';
 import { forgetConvex } from './convex.js';
 import { eyeOf, isRigid } from './eye.js';
@@ -86,11 +86,11 @@ export class SightlineCuller {
   #left = new Uint32Array(0);
   #told = false;
 
-  constructor(scene: Scene, options: SightlineOptions = {}) {
-    if (!scene?.isScene) refuse('SightlineCuller: expected a Scene');
-    const { occlusion = true, bufferWidth = 512 } = options;
+  constructor(scene: Scene, options?: SightlineOptions) {
+    if (!reading('SightlineCuller', () => scene?.isScene)) refuse('SightlineCuller: expected a Scene');
+    const { occlusion = true, bufferWidth = 512 } = options ?? {};
     if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
-      refuse(`SightlineCuller: a bufferWidth of ${bufferWidth}, expected an integer from 16 to 4096`);
+      refuse(`SightlineCuller: a bufferWidth of ${said(bufferWidth)}, expected an integer from 16 to 4096`);
     if (taken.has(scene)) refuse('SightlineCuller: the scene has one already, expected dispose() of that first');
     taken.add(scene);
     this.#scene = scene;
@@ -101,7 +101,7 @@ export class SightlineCuller {
       after: () => this.#end(),
       whole: () => this.#frames.at(-1)?.children,
     });
-    ready.then(() => (this.#inside ??= this.#make()), (error: Error) => this.#tell(error));
+    ready.catch((error: Error) => this.#tell(error));
   }
 
   /** The occluders' depth that the last render() drew: 1 / distance along the view at each pixel, -Infinity for none, row by row
@@ -131,7 +131,6 @@ export class SightlineCuller {
   }
 
   #make() {
-    if (this.#hooks.disposed) return undefined; // meanwhile
     return { inventory: new Inventory(this.#scene), culler: new Culler(), buffer: new OcclusionBuffer() };
   }
 
@@ -141,6 +140,14 @@ export class SightlineCuller {
     this.#told = true;
   }
 
+  #try(does: () => void): void {
+    try {
+      does();
+    } catch (error) {
+      this.#tell(error as Error);
+    }
+  }
+
   #begin(renderer: Renderer, camera: Camera): void {
     const outer = this.#frames.at(-1);
     if (outer) this.#leave(outer); // of a render within a render
@@ -148,15 +155,12 @@ export class SightlineCuller {
     this.#frames.push(frame);
     // compileAsync() begins and never ends; nor does any render where somebody has put another onAfterRender over ours.
     if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
+    if (!this.#inside && isLoaded()) this.#try(() => (this.#inside = this.#make()));
     this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     if (isDisplaced(this.#scene.overrideMaterial as Material | null)) return; // then all of it may be elsewhere
     this.#layers = camera.layers;
-    try {
-      this.#cull(renderer, this.camera ?? camera, frame, outer !== undefined);
-    } catch (error) {
-      this.#tell(error as Error);
-    }
+    this.#try(() => this.#cull(renderer, this.camera ?? camera, frame, outer !== undefined));
     this.#scene.children = frame.list;
   }
 

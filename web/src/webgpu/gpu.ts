@@ -1,6 +1,7 @@
 // The device, its buffers and passes: what casts the rays of iwcpa, bvha and saa.
-import { refuse } from '../errors.js';
-import type { RayHits, RaySet } from './rays.js';
+import { refuse, said } from '../errors.js';
+import { isA } from '../memory.js';
+import { RaySet, type RayHits } from './rays.js';
 import * as shaders from './shaders.js';
 
 /** Every pair of ray and box, as printed and tuned; candidates from the CPU's tree; the tree laid flat. */
@@ -50,8 +51,10 @@ export class GpuRays {
 
   /** Asks the browser for a device, or takes a `GPUDevice` of yours, and compiles. Rejects with code `unsupported` where there is
    * no WebGPU, no adapter or no device. */
-  static async start(options: { device?: unknown } = {}): Promise<GpuRays> {
-    let device = options.device as GPUDevice | undefined, name = '';
+  static async start(options?: { device?: unknown }): Promise<GpuRays> {
+    const given = options?.device as GPUDevice | undefined;
+    let device = given, name = '';
+    if (given && typeof given.createShaderModule !== 'function') refuse('GpuRays.start: a device that is none, expected a GPUDevice');
     if (!device) {
       if (!hasWebGpu) refuse('sightline: this browser has no WebGPU, expected one that has; cast on the CPU', 'unsupported');
       const adapter = await navigator.gpu.requestAdapter().catch(() => null);
@@ -71,7 +74,7 @@ export class GpuRays {
         .catch((error: Error) => refuse(`sightline: the GPU's compiler refused ${key} (${error.message})`, 'unsupported'));
       made.push([key, pipeline]);
     }
-    return new GpuRays(device, !options.device, name, Object.fromEntries(made) as Pipelines);
+    return new GpuRays(device, !given, name, Object.fromEntries(made) as Pipelines);
   }
 
   /** Resolves with a sentence when the device is lost. */
@@ -82,7 +85,8 @@ export class GpuRays {
   /** Casts a set's rays. One cast at a time; others wait. Rejects with code `lost` where the device is lost meanwhile, and
    * `too_many` where it has not the memory. */
   async cast(set: RaySet, method: GpuMethod): Promise<GpuHits> {
-    if (!gpuMethods.includes(method)) refuse(`cast: a method of ${method}, expected ${gpuMethods.join(', ')}`);
+    if (!isA(set, RaySet)) refuse('cast: expected a RaySet');
+    if (!gpuMethods.includes(method)) refuse(`cast: a method of ${said(method)}, expected ${gpuMethods.join(', ')}`);
     const before = this.#busy;
     const cast = before.then(() => this.#cast(set, method));
     this.#busy = cast.catch(() => {});

@@ -1,8 +1,8 @@
 // Boxes and the rays of a view, and what of Ye et al. 2023 runs on the CPU.
-import { refuse } from '../errors.js';
-import { calling, expectKind, expectLength, type Input } from '../memory.js';
+import { refuse, said } from '../errors.js';
+import { calling, expectKind, expectLength, fields, type Input } from '../memory.js';
 import { buffer, check, Owned, wasm } from '../runtime.js';
-import { viewBytes, writeView, type View } from '../views.js';
+import { readView, viewBytes, writeView, type View } from '../views.js';
 
 /** What each ray meets first. */
 export interface RayHits {
@@ -46,14 +46,15 @@ export class RaySet extends Owned {
   /** columns × rows rays through the middles of as many equal parts of the view's image, row by row from the top. The view
    * has no origin of its own. */
   aim(view: View, columns: number, rows: number): void {
-    if (view?.origin && Array.from(view.origin).some((x) => x !== 0)) refuse('aim: expected a view without an origin', 'bad_view');
+    const read = readView('aim', view);
+    if (read.origin.some((x) => x !== 0)) refuse('aim: expected a view without an origin', 'bad_view');
     for (const count of [columns, rows]) {
       if (!Number.isInteger(count) || count < 1 || count > 4096)
-        refuse(`aim: ${columns} x ${rows} rays, expected 1 to 4096 a side`);
+        refuse(`aim: ${said(columns)} x ${said(rows)} rays, expected 1 to 4096 a side`);
     }
     calling((call) => {
       const at = call.room(viewBytes);
-      writeView('aim', view, at);
+      writeView(read, at);
       check(wasm().rays_aim!(this.pointer, at, columns, rows));
     });
   }
@@ -61,18 +62,22 @@ export class RaySet extends Owned {
    * casting every frame allocates nothing. */
   cast(method: CpuMethod, into?: RayHits): RayHits {
     const number = cpuMethods.indexOf(method);
-    if (number < 0) refuse(`cast: a method of ${method}, expected ${cpuMethods.join(', ')}`);
-    if (into) {
-      const { objects, distances } = into;
-      if (!(objects instanceof Uint32Array && distances instanceof Float32Array))
+    if (number < 0) refuse(`cast: a method of ${said(method)}, expected ${cpuMethods.join(', ')}`);
+    const given = into && fields('cast: into', into, ['objects', 'distances']);
+    const fits = () => {
+      if (!given) return;
+      if (!(given.every(ArrayBuffer.isView) && given[0] instanceof Uint32Array && given[1] instanceof Float32Array))
         refuse('cast: into, expected objects as a Uint32Array and distances as a Float32Array');
-      for (const column of [objects, distances]) expectLength('cast: into', column, this.rays);
-    }
+      for (const column of given) expectLength('cast: into', column!, this.rays);
+    };
+    fits();
     wasm().rays_cast!(this.pointer, number);
-    const objects = new Uint32Array(buffer(), this.#where('objects')[0], this.rays);
-    const distances = new Float32Array(buffer(), this.#where('distances')[0], this.rays);
-    if (!into) return { objects: objects.slice(), distances: distances.slice() };
-    into.objects.set(objects), into.distances.set(distances);
+    fits(); // the module's memory may have grown, and they may lie there
+    const { rays } = this;
+    const objects = new Uint32Array(buffer(), where(this, 'objects')[0], rays);
+    const distances = new Float32Array(buffer(), where(this, 'distances')[0], rays);
+    if (!into || !given) return { objects: objects.slice(), distances: distances.slice() };
+    given[0]!.set(objects), given[1]!.set(distances);
     return into;
   }
   /** The tree laid flat, depth first, 32 bytes a node: minimum, number of descendants (Arr_b), maximum, object or `noObject`.
@@ -95,30 +100,33 @@ export class RaySet extends Owned {
   }
   /** @internal */
   count(name: (typeof arrays)[number]): number {
-    return this.#where(name)[1];
+    return where(this, name)[1];
   }
   /** @internal As it lies in the module, until the next call. */
   bytes(name: (typeof arrays)[number]): Uint8Array<ArrayBuffer> {
-    const [at, count] = this.#where(name);
+    const [at, count] = where(this, name);
     return new Uint8Array(buffer(), at, count * sizes[name]);
   }
-  #where(name: (typeof arrays)[number]): [number, number] {
-    return calling((call) => {
-      const out = call.room(16 * arrays.length);
-      wasm().rays_arrays!(this.pointer, out);
-      const found = new Float64Array(buffer(), out + 16 * arrays.indexOf(name), 2);
-      return [found[0]!, found[1]!];
-    });
-  }
+}
+
+// Where an array begins, and how many elements it has.
+function where(set: RaySet, name: (typeof arrays)[number]): [number, number] {
+  return calling((call) => {
+    const out = call.room(16 * arrays.length);
+    wasm().rays_arrays!(set.pointer, out);
+    const found = new Float64Array(buffer(), out + 16 * arrays.indexOf(name), 2);
+    return [found[0]!, found[1]!];
+  });
 }
 
 /** The potentially visible set: every object that a ray met, ascending. */
 export function visibleSet(hits: RayHits, objects: number): Uint32Array {
-  if (!(hits?.objects instanceof Uint32Array)) refuse('visibleSet: hits, expected those of cast()');
+  const [met] = fields('visibleSet', hits, ['objects']);
+  if (!(ArrayBuffer.isView(met) && met instanceof Uint32Array)) refuse('visibleSet: hits, expected those of cast()');
   if (!Number.isInteger(objects) || objects < 0 || objects > 2 ** 31)
-    refuse(`visibleSet: ${String(objects)} objects, expected an integer from 0 to 2^31`);
+    refuse(`visibleSet: ${said(objects)} objects, expected an integer from 0 to 2^31`);
   const seen = new Uint8Array(objects);
-  for (const object of hits.objects) if (object < objects) seen[object] = 1;
+  for (const object of met) if (object < objects) seen[object] = 1;
   const visible = new Uint32Array(seen.reduce((sum, one) => sum + one, 0));
   let count = 0;
   for (let object = 0; object < objects; ++object) if (seen[object]) visible[count++] = object;

@@ -1,0 +1,182 @@
+// Arguments that no type allows and JavaScript does: each is refused with one sentence, and nothing has changed then.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import * as THREE from 'three';
+import {
+  Block, BoxBvh, bytes, CellPvs, clipZeroToOne, Culler, cullBoxes, cullSpheres, doubles, floats, idOf, integers, OccluderMesh,
+  OcclusionBuffer, ready, SightlineError, World } from 'sightline-culling';
+import { SightlineCuller } from 'sightline-culling/three';
+import { SightlineTilesPlugin } from 'sightline-culling/three-tiles';
+import { GpuRays, RaySet, visibleSet } from 'sightline-culling/webgpu';
+import { WorkerWorld } from 'sightline-culling/worker';
+
+await ready;
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const perspective = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.001, -1, 0, 0, -0.1001, 0];
+const view = { worldToEye: identity, eyeToClip: perspective, width: 64, height: 64 };
+const box = Float32Array.of(-1, -1, -6, 1, 1, -4), triangle = [new Float32Array(9), Uint32Array.of(0, 1, 2)];
+const cells = { bounds: [0, 0, 0, 1, 1, 1], counts: [1, 1, 1], objects: 0, open: Uint8Array.of(1), first: Uint32Array.of(0, 0), visible: new Uint32Array(0) };
+const world = new World(), culler = new Culler(), buffer = new OcclusionBuffer(), bvh = new BoxBvh(), rays = new RaySet(box);
+const handle = world.insert(box)[0], mesh = new OccluderMesh(...triangle), pvs = new CellPvs(cells);
+buffer.begin(view), bvh.build(box), rays.aim(view, 2, 2);
+
+// What it is to be told: what, and what was expected.
+const isRefusal = (error) => {
+  assert.ok(error instanceof SightlineError, error.stack);
+  assert.match(error.message, /^[A-Za-z]+(\.start)?: .*(expected|used after|no memory|has this handle|names no)/);
+  return true;
+};
+
+// Each takes a value where a number, an array or a choice is expected.
+const entrances = {
+  idOf: (x) => idOf(x),
+  'Block: length': (x) => floats(x),
+  'Block: kind': (x) => new Block(x, 4),
+  'clipZeroToOne: numbers': (x) => clipZeroToOne([...identity.slice(1), x]),
+  'clipZeroToOne: projection': (x) => clipZeroToOne(x),
+  'insert: boxes': (x) => world.insert(x),
+  'insert: data': (x) => world.insert({ data: x }),
+  'insert: layout': (x) => world.insert({ data: box, layout: x }),
+  'insert: stride': (x) => world.insert({ data: box, stride: x }),
+  'insert: origin': (x) => world.insert({ data: box, origin: [0, x, 0] }),
+  'insert: origins': (x) => world.insert({ data: box, origin: x }),
+  'insert: layers': (x) => world.insert(box, { layers: x }),
+  'move: handles': (x) => world.move(x, box),
+  'remove: handles': (x) => world.remove(x),
+  'setLayers: layers': (x) => world.setLayers(handle, x),
+  'cull: world': (x) => culler.cull(x, view),
+  'cull: view': (x) => culler.cull(world, x),
+  'cull: numbers': (x) => culler.cull(world, { ...view, worldToEye: [...identity.slice(1), x] }),
+  'cull: matrix': (x) => culler.cull(world, { ...view, eyeToClip: x }),
+  'cull: width': (x) => culler.cull(world, { ...view, width: x }),
+  'cull: origin': (x) => culler.cull(world, { ...view, origin: [x, 0, 0] }),
+  'cull: layers': (x) => culler.cull(world, { ...view, layers: x }),
+  'cull: minArea': (x) => culler.cull(world, { ...view, minArea: x }),
+  'cull: buffer': (x) => culler.cull(world, { ...view, occlusion: x }),
+  'cull: occlusion': (x) => culler.cull(world, view, { occlusion: x }),
+  'cull: cost': (x) => culler.cull(world, view, { occlusion: 'automatic', costs: { node: x } }),
+  reportFrameTime: (x) => culler.reportFrameTime(x),
+  'cullBoxes: out': (x) => cullBoxes(view, box, x),
+  'cullSpheres: spheres': (x) => cullSpheres(view, x, integers(68)),
+  'OccluderMesh: positions': (x) => new OccluderMesh(x, triangle[1]),
+  'OccluderMesh: sides': (x) => new OccluderMesh(...triangle, x),
+  'begin: coverage': (x) => buffer.begin(view, { coverage: x }),
+  'begin: scale': (x) => buffer.begin(view, { scale: x }),
+  'drawSpheres: spheres': (x) => buffer.drawSpheres(x),
+  'drawMesh: mesh': (x) => buffer.drawMesh(x, identity),
+  'drawMesh: numbers': (x) => buffer.drawMesh(mesh, [...identity.slice(1), x]),
+  'drawMesh: transform': (x) => buffer.drawMesh(mesh, x),
+  'maySee: out': (x) => buffer.maySee(box, x),
+  'readNearness: out': (x) => buffer.readNearness(x),
+  'addOccluder: boxes': (x) => world.addOccluder({ boxes: x }),
+  'addOccluder: solidTriangles': (x) => world.addOccluder({ positions: triangle[0], indices: triangle[1], solidTriangles: x }),
+  'setOccluders: occluder': (x) => world.setOccluders(handle, x),
+  'setOccluders: origin': (x) => world.setOccluders(handle, 0xffffffff, undefined, [x, 0, 0]),
+  'setOccluding: on': (x) => world.setOccluding(handle, x),
+  'removeOccluder: name': (x) => world.removeOccluder(x),
+  'setTriangles: handle': (x) => world.setTriangles(x, triangle[0]),
+  'setTriangles: corners': (x) => world.setTriangles(handle, x),
+  'setTriangles: origin': (x) => world.setTriangles(handle, triangle[0], [x, 0, 0]),
+  'BoxBvh: boxes': (x) => bvh.build(x),
+  'BoxBvh.cast: rays': (x) => bvh.cast(x, integers(1), floats(1)),
+  'BoxBvh.visibleSet: columns': (x) => bvh.visibleSet(view, x, 1),
+  'CellPvs: arrays': (x) => new CellPvs(x),
+  'CellPvs: bounds': (x) => new CellPvs({ ...cells, bounds: [x, 0, 0, 1, 1, 1] }),
+  'CellPvs: counts': (x) => new CellPvs({ ...cells, counts: [x, 1, 1] }),
+  'CellPvs: objects': (x) => new CellPvs({ ...cells, objects: x }),
+  cellAt: (x) => pvs.cellAt(0.5, x, 0.5),
+  seenFrom: (x) => pvs.seenFrom(x),
+  'RaySet: boxes': (x) => new RaySet(x),
+  'RaySet.aim: columns': (x) => rays.aim(view, x, 1),
+  'RaySet.aim: origin': (x) => rays.aim({ ...view, origin: [x, 0, 0] }, 1, 1),
+  'RaySet.cast: method': (x) => rays.cast(x),
+  'visibleSet: hits': (x) => visibleSet(x, 1),
+  'visibleSet: objects': (x) => visibleSet({ objects: new Uint32Array(1) }, x),
+  'SightlineCuller: scene': (x) => new SightlineCuller(x),
+  'SightlineCuller: bufferWidth': (x) => new SightlineCuller(new THREE.Scene(), { bufferWidth: x }),
+  'SightlineTilesPlugin: mostTriangles': (x) => new SightlineTilesPlugin({ mostTriangles: x }),
+};
+const revoked = () => {
+  const { proxy, revoke } = Proxy.revocable({}, {});
+  return revoke(), proxy;
+};
+const values = {
+  'a BigInt': () => 6n, 'a symbol': () => Symbol('six'), 'an object without words': () => Object.create(null), 'a function': () => () => 6,
+  'a text': () => '6', 'a Proxy of a typed array': () => new Proxy(new Float32Array(6), {}), 'a Proxy of a Block': () => new Proxy(floats(6), {}),
+  'what only claims to be one': () => Object.create(Float32Array.prototype), 'a revoked Proxy': revoked,
+};
+
+test('what is no number, array or choice is refused with a sentence at every entrance', () => {
+  for (const [entrance, call] of Object.entries(entrances)) {
+    for (const [name, make] of Object.entries(values)) {
+      const value = make();
+      try {
+        assert.throws(() => call(value), isRefusal);
+      } catch (error) {
+        assert.fail(`${entrance} given ${name}: ${error.message}`);
+      }
+    }
+  }
+  assert.equal(world.size, 1);
+  assert.equal(culler.cull(world, view).ids.length, 1);
+});
+
+test('null is no options of a culler for three.js and of its peers', async () => {
+  new SightlineCuller(new THREE.Scene(), null).dispose();
+  new SightlineTilesPlugin(null).dispose();
+  await assert.rejects(GpuRays.start(null), isRefusal); // without WebGPU
+  await assert.rejects(GpuRays.start({ device: {} }), isRefusal);
+});
+
+test('a Proxy of what the package makes is refused, as of a page\'s reactive state', async (given) => {
+  const block = floats(6), wrap = (it) => new Proxy(it, {}), worker = await WorkerWorld.start();
+  given.after(() => worker.dispose()); // or its thread would keep this process
+  const calls = [
+    () => wrap(world).insert(box), () => wrap(world).setLayers(handle, Uint32Array.of(1)), () => wrap(world).size, () => wrap(world).dispose(),
+    () => wrap(culler).cull(world, view), () => wrap(culler).dispose(), () => culler.cull(wrap(world), view),
+    () => culler.cull(world, { ...view, occlusion: wrap(buffer) }), () => wrap(buffer).begin(view), () => wrap(buffer).maySee(box, bytes(1)),
+    () => buffer.drawMesh(wrap(mesh), identity), () => wrap(bvh).build(box), () => wrap(bvh).refit(box), () => wrap(rays).cast('toca'),
+    () => wrap(pvs).cellAt(0.5, 0.5, 0.5), () => wrap(pvs).seenFrom(0), () => wrap(block).array, () => wrap(block).dispose(),
+    () => Object.create(World.prototype).size];
+  for (const call of calls)
+    assert.throws(call, (error) => isRefusal(error) && /a Proxy or a copy of it, expected the object itself/.test(error.message), String(call));
+  await assert.rejects(async () => wrap(worker).cull(view), isRefusal);
+  assert.throws(() => wrap(worker).dispose(), isRefusal);
+});
+
+// An object whose named property is read by way of a getter that does something first.
+const doing = (it, name, does) => Object.defineProperty({ ...it }, name, { enumerable: true, get: () => (does(), it[name]) });
+
+test('a getter that has the memory grow finds nothing half written', () => {
+  let grown = 0;
+  const kept = [], grow = () => {
+    const before = kept[0]?.array.buffer ?? bytes(1).array.buffer;
+    for (kept.push(bytes(1)); kept[0].array.buffer === before;) kept.push(doubles(2 ** 20));
+    for (const block of kept.splice(0)) block.dispose();
+    ++grown;
+  };
+  // From some place on every allocation grows the memory, as all that was free is taken.
+  const hoard = [];
+  for (let size = 2 ** 20; size >= 2 ** 12; size >>= 1) {
+    const { buffer: now } = bytes(1).array;
+    for (let block = bytes(size); hoard.push(block), block.array.buffer === now;) block = bytes(size);
+  }
+  const lately = Array.from({ length: 16 }, (_, i) => identity[i]);
+  Object.defineProperty(lately, 7, { enumerable: true, get: () => (grow(), 0) });
+  for (const name of ['eyeToClip', 'width', 'origin', 'layers', 'minArea'])
+    assert.deepEqual([...culler.cull(world, doing({ origin: [0, 0, 0], layers: 1, minArea: 0, ...view }, name, grow)).ids], [0], name);
+  assert.deepEqual([...culler.cull(world, { ...view, worldToEye: lately }).ids], [0]);
+  assert.deepEqual([...culler.cull(world, view, { occlusion: 'automatic', costs: doing({ node: 10 }, 'node', grow) }).ids], [0]);
+  assert.equal(cullBoxes({ ...view, worldToEye: lately }, doing({ data: box, origin: [0, 0, 0] }, 'origin', grow), integers(66)), 1);
+  buffer.begin({ ...view, worldToEye: lately }, doing({ scale: 1 }, 'scale', grow)), buffer.drawMesh(mesh, lately);
+  world.addOccluder(doing({ boxes: box }, 'boxes', grow));
+  rays.aim({ ...view, worldToEye: lately }, 2, 2);
+  assert.ok(grown > 8, `${grown} times`);
+  // What lies in the memory that was is refused; what was disposed of meanwhile, too.
+  const own = floats(6), other = new Culler();
+  own.array.set(box);
+  assert.throws(() => world.insert(doing({ data: own.array, stride: 6 }, 'stride', grow)), (error) => error.code === 'detached');
+  assert.throws(() => other.cull(world, doing(view, 'width', () => other.dispose())), (error) => error.code === 'disposed');
+  assert.throws(() => world.insert(doing({ data: own, origin: [0, 0, 0] }, 'origin', () => own.dispose())), (error) => error.code === 'disposed');
+  assert.equal(world.size, 1);
+});
