@@ -44,6 +44,27 @@ test('dispose() takes away what the culler has put there, once, and leaves what 
   assert.deepEqual(ownOf(scene), []);
 });
 
+test('the list of children is whole from the next microtask on after a callback has thrown', async () => {
+  await ready;
+  const scene = new THREE.Scene(), { children } = scene, culler = new SightlineCuller(scene, { occlusion: false });
+  const instanced = new THREE.InstancedMesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial(), 10), { instanceMatrix } = instanced;
+  for (let i = 0; i < 10; ++i) instanced.setMatrixAt(i, new THREE.Matrix4().makeTranslation(0, 0, i < 3 ? -5 : 50));
+  scene.add(instanced, new THREE.Mesh(new THREE.BoxGeometry())), (scene.children[1].position.z = 50);
+  camera.updateMatrixWorld(), scene.updateMatrixWorld();
+  const throws = () => {
+    scene.onBeforeRender(renderer, scene, camera, null);
+    assert.deepEqual([scene.children.length, instanced.count], [1, 3]);
+    throw new Error('of a callback');
+  };
+  for (let round = 0; round < 3; ++round) {
+    assert.throws(throws, /of a callback/);
+    await Promise.resolve();
+    assert.deepEqual([scene.children === children, scene.children.length, instanced.count], [true, 2, 10]);
+    assert.equal(instanced.instanceMatrix, instanceMatrix);
+  }
+  culler.dispose();
+});
+
 test('a scene has one culler', async () => {
   const scene = new THREE.Scene(), culler = new SightlineCuller(scene);
   assert.throws(() => new SightlineCuller(scene), (error) => error instanceof SightlineError && /has one already/.test(error.message));

@@ -22,7 +22,7 @@ import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
-import { isDisplaced, type Thing } from './things.js';
+import { isCalled, isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
 
 export { ready, supported };
@@ -268,6 +268,9 @@ export class SightlineCuller {
       if (thing.kind !== 'mesh') ranges.set(thing, { slots, from, to });
       list.push(thing.mesh);
     });
+    // Called as three calls them, which culls by spheres, that reach farther than boxes.
+    for (const thing of inventory.many)
+      if (!ranges.has(thing) && isCalled(thing.mesh) && inventory.nodes[thing.parent]!.shown) list.push(thing.mesh);
     return { ranges, list };
   }
 

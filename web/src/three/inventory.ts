@@ -40,6 +40,8 @@ export class Inventory {
   /** Whose slot it is. */
   readonly thingOf: (Thing | undefined)[] = [];
   readonly things = new Set<Thing>();
+  /** Instanced and batched ones. */
+  readonly many = new Set<Thing>();
   readonly left: Left[] = [];
   readonly nodes: Node[] = [];
   /** Nobody's; kept so that compilers do not leave out what it sums. */
@@ -47,7 +49,6 @@ export class Inventory {
 
   readonly #scene: Scene;
   readonly #thingOfMesh = new Map<Object3D, Thing>();
-  readonly #many = new Set<Thing>(); // instanced and batched ones
   readonly #resting = new Resting();
   readonly #free = new Map<number, number[]>();
   #freed = 0; // slots of what was removed
@@ -64,7 +65,7 @@ export class Inventory {
 
   /** To be called in every frame, before three draws, whether it is culled or not. */
   takeNote(): void {
-    for (const thing of this.#many) if (thing.ranges) takeNote(thing);
+    for (const thing of this.many) if (thing.ranges) takeNote(thing);
   }
 
   /** Takes over what has moved, come or gone since the last call. */
@@ -84,7 +85,7 @@ export class Inventory {
 
   /** Has things measured that three would measure now: it culls by the sphere that it made when it first looked. */
   measure(layers: Layers): void {
-    for (const thing of this.#many) {
+    for (const thing of this.many) {
       const mesh = thing.mesh as InstancedMesh | BatchedMesh;
       if (!mesh.visible || !mesh.layers.test(layers) || !this.nodes[thing.parent]!.shown) continue;
       if (mesh.boundingSphere === null) mesh.computeBoundingSphere();
@@ -115,7 +116,7 @@ export class Inventory {
     this.#look(some);
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
-    for (const thing of this.#many) if (isRestless(thing)) this.#leave(thing);
+    for (const thing of this.many) if (isRestless(thing)) this.#leave(thing);
     for (const left of this.#resting.calm()) {
       this.left.splice(this.left.indexOf(left), 1);
       this.#add(left.object, this.nodes[left.parent]!.object, 0);
@@ -151,7 +152,7 @@ export class Inventory {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
-    for (const all of [this.things, this.#many, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
+    for (const all of [this.things, this.many, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = this.size = this.#freed = 0;
     this.world.dispose(), (this.world = new World());
     this.nodes.push(nodeOf(this.#scene, -1));
@@ -177,7 +178,7 @@ export class Inventory {
     else this.#freed = Math.max(this.#freed - count, 0);
     const thing = makeThing(mesh, kind, first, count, parent);
     this.things.add(thing);
-    if (kind !== 'mesh') this.#many.add(thing);
+    if (kind !== 'mesh') this.many.add(thing);
     if (thing.ranges) takeNote(thing);
     this.#thingOfMesh.set(mesh, thing);
     for (let i = 0; i < count; ++i) this.thingOf[first + i] = thing;
@@ -246,7 +247,7 @@ export class Inventory {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
     this.size -= thing.count;
     disposeOf(thing);
-    this.things.delete(thing), this.#many.delete(thing), this.#thingOfMesh.delete(thing.mesh);
+    this.things.delete(thing), this.many.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;
     const free = this.#free.get(thing.count);
     if (free) free.push(thing.first);

@@ -1,6 +1,6 @@
 // What of a scene is culled: meshes, and the instances of instanced and batched ones, each with a range of slots.
-import type { BufferGeometry, InstancedMesh, Mesh, Object3D } from 'three';
-import { Box3 } from 'three';
+import type { BufferGeometry, InstancedMesh, Mesh } from 'three';
+import { BatchedMesh, Box3, Object3D } from 'three';
 import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
 import { boxOf, pointsOf, type Points } from './bounds.js';
 import { writeBox } from './boxes.js';
@@ -47,6 +47,13 @@ const isPlain = (mesh: Mesh): boolean =>
 export const isDisplaced = (material: Mesh['material'] | null | undefined): boolean =>
   Array.isArray(material) ? material.some(isDisplaced) : Boolean((material as { displacementMap?: unknown } | undefined)?.displacementMap);
 
+const own = Object3D.prototype, { onBeforeRender: listing } = BatchedMesh.prototype;
+/** Whether it has callbacks of its own or of its class. What they do besides, such as drawing a picture that others show, has to
+ * be done as often as without a culler. */
+export const isCalled = (mesh: Mesh): boolean => mesh.onAfterRender !== own.onAfterRender ||
+  mesh.onBeforeRender !== ((mesh as { isBatchedMesh?: boolean }).isBatchedMesh ? listing : own.onBeforeRender) ||
+  mesh.onBeforeShadow !== own.onBeforeShadow || mesh.onAfterShadow !== own.onAfterShadow;
+
 // Instances without attributes of their own, and which no shader counts: shorter copies of their matrices and colours are all that is made.
 function isSimple(mesh: InstancedMesh): boolean {
   if (mesh.morphTexture || mesh.instanceMatrix.count === 0) return false;
@@ -67,7 +74,7 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
     const instanced = object as InstancedMesh;
     return isSimple(instanced) ? { kind: 'instanced', count: instanced.instanceMatrix.count } : undefined;
   }
-  if (!mesh.isBatchedMesh) return { kind: 'mesh', count: 1 };
+  if (!mesh.isBatchedMesh) return isCalled(mesh) ? undefined : { kind: 'mesh', count: 1 };
   const batch = object as Batch;
   return isKnownInside(batch) && batch.perObjectFrustumCulled ? { kind: 'batched', count: batch.maxInstanceCount } : undefined;
 }
@@ -98,7 +105,7 @@ export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
 export function isOther(thing: Thing): boolean {
   const { mesh, kind, count } = thing;
   if (!isPlain(mesh)) return true;
-  if (kind === 'mesh') return false;
+  if (kind === 'mesh') return isCalled(mesh);
   if (kind === 'instanced') return (mesh as InstancedMesh).instanceMatrix.count !== count || !isSimple(mesh as InstancedMesh);
   return (mesh as Batch).maxInstanceCount !== count || !(mesh as Batch).perObjectFrustumCulled;
 }

@@ -118,6 +118,19 @@ const cases = {
     camera.rotation.y = 1, frame();
     return seen;
   },
+  'callbacks of what three alone takes to be in view'({ scene, camera, frame }) {
+    // Its sphere reaches into view, its box does not; a screen in view shows what its callback has drawn.
+    const long = new THREE.BoxGeometry(0.2, 30, 0.2), calls = [], shown = box(0, 0, -8, 0xff0000, 3);
+    const many = new THREE.InstancedMesh(long, basic(0xffffff), 1), batch = new THREE.BatchedMesh(1, 100, 200, basic(0xffffff));
+    batch.setMatrixAt(batch.addInstance(batch.addGeometry(long)), matrix.makeTranslation(0, 0, 0)), many.setMatrixAt(0, matrix);
+    for (const [i, mesh] of [new THREE.Mesh(long, basic(0xffffff)), many, batch].entries()) {
+      mesh.onBeforeRender = () => (calls.push(i), shown.material.color.offsetHSL(0.11, 0, 0));
+      mesh.position.set(i === 1 ? -8.6 : 8.6, 0, -6), mesh.renderOrder = -1, scene.add(mesh);
+    }
+    scatter(scene), scene.add(shown);
+    for (let view = 0; view < 8; ++view) camera.rotation.y = 0.02 * (view - 4), frame();
+    return calls;
+  },
 };
 
 // Round shapes, whose seams meet to within a rounding.
