@@ -15,15 +15,22 @@ says() {
   grep -q "$text" <<<"$said" || { echo "$*: did not say '$text': $said"; exit 1; }
 }
 
+# build_example ROOT EXAMPLE: by find_package.
+build_example() {
+  local build=$scratch/build/$2 log=$scratch/$2.log
+  { cmake -S "examples/$2" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$1" && cmake --build "$build"; } \
+    >"$log" 2>&1 || { cat "$log"; echo "examples/$2 does not build by find_package"; return 1; }
+}
+export scratch
+export -f build_example
+
 # consume ROOT PYTHON: builds and runs the examples against the installed prefix and the folder of its Python module.
 consume() {
   local root=$1 python=$2 example pc
   rm -rf "$scratch/build"
-  for example in frustum world my_structs lod instances snapshot ranges shadows shadows_and_stereo own_jobs c c_occluder c_automatic method; do
-    { cmake -S examples/$example -B "$scratch/build/$example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-        -DCMAKE_PREFIX_PATH="$root" && cmake --build "$scratch/build/$example"; } >"$scratch/log" 2>&1 ||
-      { cat "$scratch/log"; echo "examples/$example does not build by find_package"; exit 1; }
-  done
+  # One file each: as many at once as there are cores.
+  printf '%s\n' frustum world my_structs lod instances snapshot ranges shadows shadows_and_stereo own_jobs c c_occluder c_automatic method |
+    xargs -P "$(nproc)" -I '{}' bash -c 'build_example "$@"' build_example "$root" '{}'
   says "of 30000 trees" "$scratch/build/frustum/frustum"
   says "frame 2: draw [0-9]* of 100000 boxes" "$scratch/build/world/world"
   says "frame 2: draw [0-9]* of 100000 things" "$scratch/build/my_structs/my_structs"

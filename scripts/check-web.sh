@@ -9,18 +9,23 @@ cd "$(dirname "$0")/.."
 mkdir -p build/web
 
 bring_node
-build_web
 quietly cmake --build "$build" --target sightline_web_worlds sightline_web_rays sightline_web_scenes
-"$build/web/sightline_web_worlds" 1000 build/web/worlds.bin
 # Of as many meshes as the paper's models, with few triangles and rays; in --full a hundredth of the paper's and all its rays.
 views=1 side=50
 export SIGHTLINE_RAY_TRIANGLES=60000
 [ -z "${SIGHTLINE_FULL:-}" ] || { views=8 side=100; SIGHTLINE_RAY_TRIANGLES=0; }
-"$build/web/sightline_web_rays" $views $side $SIGHTLINE_RAY_TRIANGLES build/web/rays.bin
 # Small worlds, and in --full larger ones and more views.
 worlds=("regular?columns=40&rows=40" "forest?trees=2000&size=150" "city?objects=1500" foliage) world_views=60
 [ -z "${SIGHTLINE_FULL:-}" ] || { worlds=(regular irregular forest city foliage) world_views=300; }
-"$build/web/sightline_web_scenes" $world_views build/web/scenes.bin "${worlds[@]}"
+answer() {
+  "$build/web/sightline_web_worlds" 1000 build/web/worlds.bin
+  "$build/web/sightline_web_rays" $views $side $SIGHTLINE_RAY_TRIANGLES build/web/rays.bin
+  "$build/web/sightline_web_scenes" $world_views build/web/scenes.bin "${worlds[@]}"
+}
+answer & # on one core, as most of what follows
+answers=$!
+build_web
+wait $answers
 cd web
 # Two files at a time: browsers wait a good deal.
 node --test --test-concurrency=2 --test-reporter=spec test/*.test.mjs
