@@ -83,10 +83,11 @@ ctest --preset asan -j"$(nproc)" -L mutants-in-gate
 
 stage "threads"
 cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target world_tests snapshots_tests occlusion_tests
+cmake --build --preset tsan --target world_tests threads_tests
+build/tsan/tests/threads_tests --gtest_brief=1 &
+others=$!
 build/tsan/tests/world_tests --gtest_brief=1
-build/tsan/tests/snapshots_tests --gtest_brief=1 --gtest_filter='WorldStream.*'
-build/tsan/tests/occlusion_tests --gtest_brief=1 --gtest_filter='OcclusionJobs.*'
+wait $others
 
 stage "fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-6}" build/asan
