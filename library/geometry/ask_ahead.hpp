@@ -17,7 +17,7 @@ inline constexpr bool kAsksByReading = false;
 inline void ask_ahead(const void* place) noexcept {
   hwy::Prefetch(static_cast<const char*>(place));
 #ifdef __GNUC__
-  asm volatile("" : : "r"(place));  // or a loop that does nothing else is taken for one that does nothing
+  __asm__ volatile("" : : "r"(place));  // or a loop that does nothing else is taken for one that does nothing
 #endif
 }
 #endif
