@@ -130,7 +130,7 @@ std::uint32_t ChunkMap::add_lanes(Pool& pool, std::uint32_t count) {
   pool.used += count;
   // Who copies a chunk's ids may read as many as fit in any.
   pool.ids.resize(std::size_t{pool.used} + kCapacity);
-  if (pool.row == 0) {
+  if (!kHasPages || pool.row == 0) {
     pool.lanes.resize(6 * std::size_t{pool.used});
   } else if (pool.used > pool.row) {
     lengthen_rows(pool, 2 * pool.row);
@@ -201,7 +201,8 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 void ChunkMap::free_chunk(std::uint32_t chunk) {
   take_from_group(chunk);
   Chunk& c = chunks_[chunk];
-  if (c.pool == kStill || !is_kept_page(c)) give_lanes(pools_[c.pool], c.first_lane, c.capacity);
+  if (!kHasPages || c.pool == kStill || !is_kept_page(c))
+    give_lanes(pools_[c.pool], c.first_lane, c.capacity);
   c.count = c.live = c.counted = 0;
   c.key = kNone;
   note_change(chunk);

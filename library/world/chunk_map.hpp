@@ -40,7 +40,8 @@ public:
   static constexpr std::uint32_t kLanes = 16;          ///< capacities are multiples of it
   static constexpr std::uint32_t kGroupCapacity = 32;  ///< chunks a group
   static constexpr std::uint32_t kMaxDepth = 6;
-  /// Whether movers may stand in pages; not where each byte of code is loaded by whoever opens a web page.
+  /// Whether movers may stand in pages, lie in long rows and leave their chunks some at a time; not where
+  /// each byte of code is loaded by whoever opens a web page.
 #ifdef __wasm__
   static constexpr bool kHasPages = false;
 #else
@@ -235,7 +236,7 @@ public:
     const std::uint32_t first = group.first_lane[i], size = group.count_and_size[i];
     const Pool& pool = pools_[group.pool];
     // Asked of the group, which is at hand: what stands still is found without a look at its pool's rows.
-    const bool still = group.pool == kStill;
+    const bool still = !kHasPages || group.pool == kStill;
     const std::size_t step = still ? size >> Group::kSize & Group::kCount : pool.row;
     const float* at = pool.lanes.data() + (still ? 6 * std::size_t{first} : first);
     const ObjectId* its = pool.ids.data() + first;
@@ -313,9 +314,11 @@ private:
     geometry::LargeVector<float> distances;
     std::array<std::vector<std::uint32_t>, kCapacity / kLanes> free;  // by capacity
 
-    [[nodiscard]] std::size_t step(std::size_t capacity) const noexcept { return row > 0 ? row : capacity; }
+    [[nodiscard]] std::size_t step(std::size_t capacity) const noexcept {
+      return kHasPages && row > 0 ? row : capacity;
+    }
     [[nodiscard]] std::size_t begin(std::size_t first_lane) const noexcept {
-      return row > 0 ? first_lane : 6 * first_lane;
+      return kHasPages && row > 0 ? first_lane : 6 * first_lane;
     }
   };
   struct Key {

@@ -51,7 +51,8 @@ bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
 void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   loosely_ = true;
   Location& at = (*locations_)[object];
-  if (moving.many && !at.moves() && keeps_movers()) {
+  const bool for_movers = keeps_movers(), at_once = for_movers && moving.many && !at.moves();
+  if (kHasPages && at_once) {
     leave_soon(at.chunk, at.slot());
     add_mover(object, box);
     ++joined_, ++woken_;
@@ -63,9 +64,8 @@ void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
     return add_mover(object, box);
   }
   if (c.pool == kMovers) return move_mover(at.chunk, at.slot(), box);
-  const bool for_movers = keeps_movers();
-  if (for_movers && moves_often(at, moving.tick) && moving.allowance > 0) {
-    --moving.allowance;
+  if (at_once || (for_movers && moves_often(at, moving.tick) && moving.allowance > 0)) {
+    moving.allowance -= !at_once;
   } else if (holds(c.bounds, box)) {
     write_box(c, at.slot(), box);
     c.moved[0] = 1;
@@ -183,7 +183,7 @@ void ChunkMap::leave_soon(std::uint32_t chunk, std::uint32_t slot) {
 }
 
 void ChunkMap::leave_now() {
-  while (left_ != asked_) leave_next();
+  while (kHasPages && left_ != asked_) leave_next();
 }
 
 void ChunkMap::leave_next() {
@@ -203,7 +203,10 @@ std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
     // For all at once, also while some have no page yet; memory that is never written costs nothing.
     const std::size_t room = (kHasPages ? 2 : 1) * size_ + size_ / 16 + 4 * kCapacity;
     pool.ids.reserve(room);
-    lengthen_rows(pool, room);
+    if (kHasPages)
+      lengthen_rows(pool, room);
+    else
+      pool.lanes.reserve(6 * room);
   }
   const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers, first_lane);
   chunks_[added].parent = static_cast<std::uint32_t>(mover_chunks_.size());
@@ -310,8 +313,8 @@ void ChunkMap::flush() {
   // In three steps, each when the one before has arrived.
   constexpr std::size_t kGroup = 8, kChunk = 16;
   for (std::size_t i = 0; i < dirty_.size(); ++i) {
-    if (i + kChunk < dirty_.size()) ask_for_all(chunks_[dirty_[i + kChunk]]);
-    if (i + kGroup < dirty_.size()) prefetch_group(chunks_[dirty_[i + kGroup]]);
+    if (kHasPages && i + kChunk < dirty_.size()) ask_for_all(chunks_[dirty_[i + kChunk]]);
+    if (kHasPages && i + kGroup < dirty_.size()) prefetch_group(chunks_[dirty_[i + kGroup]]);
     const std::uint32_t chunk = dirty_[i];
     Chunk& c = chunks_[chunk];
     c.dirty = false;

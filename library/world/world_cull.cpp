@@ -172,7 +172,7 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
       parted = ask_columns(input, at, *at.views, bits);
     }
     counts.chunks += at.group.count;
-    if (at.group.pool != 0 && parted == 0) {
+    if (ChunkMap::kHasPages && at.group.pool != 0 && parted == 0) {
       end += cull_movers(at, bits, counts, end);
       continue;
     }

@@ -160,7 +160,9 @@ private:
     if (stays(id)) map_of(id).prefetch_lanes(id);
   }
   // Of what is about to leave its chunk, the map asks by itself.
-  [[nodiscard]] bool stays(ObjectId id) const { return !moving_.many || s_.objects[id].moves(); }
+  [[nodiscard]] bool stays(ObjectId id) const {
+    return !ChunkMap::kHasPages || !moving_.many || s_.objects[id].moves();
+  }
   [[nodiscard]] ChunkMap& map_of(ObjectId id) const { return *s_.sectors[s_.objects[id].sector].map; }
 
   void move_one(std::uint32_t i, bool inside) {
