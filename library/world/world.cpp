@@ -97,7 +97,10 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   const bool asks = !geometry::kAsksByReading && generations.empty();
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
-    if (asks && i + kAhead < handles.size()) geometry::ask_ahead(objects.data() + handles[i + kAhead].index);
+    if (asks && i + kAhead < handles.size()) {
+      const std::uint32_t next = handles[i + kAhead].index;
+      if (next < objects.size()) geometry::ask_ahead(&objects[next]);
+    }
     if (ChunkMap::kHasPages && handle.index < generations.size() &&
         handle.generation < WorldState::kUnknown && generations[handle.index] == handle.generation)
       continue;

@@ -35,6 +35,20 @@ TEST(WorldRefusals, FindsStaleHandlesOut) {
   EXPECT_TRUE(world.remove(second));
 }
 
+// Memory is asked for ahead of the check, but not by an index that nobody has looked at.
+TEST(WorldRefusals, FindsHandlesOutThatNameNothingFarBehindTheFirst) {
+  World world;
+  std::array<Handle, 100> handles;
+  const std::vector<WorldBox> boxes(handles.size(), WorldBox{{0, 0, 0}, {1, 1, 1}});
+  ASSERT_TRUE(world.insert(boxes, handles));
+  handles[70] = {0x2f2f2f2f, 0x2f2f2f2f};
+  const Status moved = world.move(handles, boxes);
+  EXPECT_EQ(moved.code(), StatusCode::stale_handle);
+  EXPECT_EQ(moved.index(), 70u);
+  World empty;  // where no index is one
+  EXPECT_EQ(empty.move(std::vector<Handle>(100, handles[70]), boxes).code(), StatusCode::stale_handle);
+}
+
 TEST(WorldRefusals, RefusesBadBoxesAndChangesNothing) {
   World world;
   std::array<Handle, 2> handles;
