@@ -133,7 +133,7 @@ std::uint32_t ChunkMap::add_lanes(Pool& pool, std::uint32_t count) {
   if (!kHasPages || pool.row == 0) {
     pool.lanes.resize(6 * std::size_t{pool.used});
   } else if (pool.used > pool.row) {
-    lengthen_rows(pool, 2 * pool.row);
+    lengthen_rows(pool, std::max<std::size_t>(2 * pool.row, pool.used));
   }
   if (has_columns()) resize_columns(pool);
   return first;

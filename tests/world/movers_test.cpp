@@ -23,10 +23,15 @@ std::size_t movers_of(const World& world) {
   return count;
 }
 
-bool keeps_pages(const World& world) {
+std::size_t sectors_with_pages(const World& world) {
+  std::size_t count = 0;
   for (const world::Sector& sector : WorldAccess::state(world).sectors)
-    if (sector.map && sector.map->keeps_pages()) return true;
-  return false;
+    count += sector.map && sector.map->keeps_pages();
+  return count;
+}
+
+bool keeps_pages(const World& world) {
+  return sectors_with_pages(world) > 0;
 }
 
 void expect_sound(const World& world) {
@@ -225,6 +230,22 @@ TEST(Movers, PagesGrowWithTheWorld) {
   }
   EXPECT_TRUE(keeps_pages(crowd.world()));
   EXPECT_GT(movers_of(crowd.world()), 9000u);
+}
+
+// Pages have room for all ids of the world, of which each of five sectors holds few.
+TEST(Movers, PagesOfManySectorsHaveRoom) {
+  Crowd crowd(39, {{-1600, -50, -1000}, {14400, 50, 1000}});
+  crowd.insert(10000);
+  std::size_t with_pages = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    crowd.shuffle();
+    crowd.move(0, crowd.size(), 2);
+    if (frame % 4 == 3) expect_sound(crowd.world()), crowd.expect_right();
+    crowd.cull();
+    if (testing::Test::HasFatalFailure()) return;
+    with_pages = std::max(with_pages, sectors_with_pages(crowd.world()));
+  }
+  EXPECT_GE(with_pages, 4u);
 }
 
 // Where others go anywhere each frame, who went is not filed, for he will go again soon. Once fewer go, all
