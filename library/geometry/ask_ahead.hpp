@@ -3,6 +3,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <cstddef>
+
 namespace sightline::geometry {
 
 #ifdef __wasm__
@@ -21,5 +23,14 @@ inline void ask_ahead(const void* place) noexcept {
 #endif
 }
 #endif
+
+/// Asks for all lines of memory that an object fills, which begins on one; for none where asking is reading.
+template <class T>
+void prefetch_lines(const T& object) noexcept {
+  constexpr std::size_t kLine = 64;
+  if (kAsksByReading) return;
+  for (std::size_t at = 0; at < sizeof(T); at += kLine)
+    ask_ahead(reinterpret_cast<const char*>(&object) + at);
+}
 
 }  // namespace sightline::geometry

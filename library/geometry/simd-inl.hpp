@@ -8,7 +8,6 @@
 #define SIGHTLINE_GEOMETRY_SIMD_INL
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -102,14 +101,6 @@ HWY_INLINE void repeat_last(D d, std::size_t count, std::array<const float*, kAr
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) room[a][i] = from[a][std::min(i, count - 1)];
     from[a] = room[a].data();
   }
-}
-
-// Asks for all lines of memory that an object fills, which begins on one.
-template <class T>
-HWY_INLINE void prefetch_lines(const T& object) {
-  constexpr std::size_t kLine = 64;
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&object);
-  for (std::size_t at = 0; at < sizeof(T); at += kLine) hwy::Prefetch(bytes + at);
 }
 
 // A vector of points, or of directions.

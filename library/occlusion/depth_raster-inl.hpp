@@ -89,7 +89,7 @@ HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, bo
 // Lists what `spans_from` says of sixteen lines from a pixel centre on, but what is left out.
 template <std::size_t kPlanes, class SpansFrom, class LeftOut>
 HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
-                           const SpansFrom& spans_from, LeftOut left_out, TileList<kPlanes>& list) {
+                           const SpansFrom& spans_from, LeftOut& left_out, TileList<kPlanes>& list) {
   if (list.shape_count == list.kMostShapes) draw_listed(tiles, list);
   list.shapes[list.shape_count++] = tile_of(planes);
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
@@ -117,12 +117,13 @@ HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
 template <std::size_t kPlanes, class SpansFrom>
 HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, const TileRange& range,
                            const SpansFrom& spans_from, TileList<kPlanes>& list) {
-  list_spans(tiles, planes, range, spans_from, NothingLeftOut(), list);
+  NothingLeftOut nothing;
+  list_spans(tiles, planes, range, spans_from, nothing, list);
 }
 
 template <class LeftOut>
-HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                             const LeftOut& left_out, TileList<1>& list) {
+HWY_INLINE void list_polygon_without(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                     LeftOut left_out, TileList<1>& list) {
   if (!polygon.has_left || !polygon.has_right) return;
   list_spans(
       tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range,
@@ -132,14 +133,14 @@ HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const Til
 
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                                       TileList<1>& list) {
-  list_polygon(tiles, polygon, range, NothingLeftOut(), list);
+  list_polygon_without(tiles, polygon, range, NothingLeftOut(), list);
 }
 
 // The same without the pixels of some bands.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                                       const Bands& without, TileList<1>& list) {
   if (without.count == 0) return list_polygon(tiles, polygon, range, list);
-  list_polygon(tiles, polygon, range, BandsLeftOut(tiles, without), list);
+  list_polygon_without(tiles, polygon, range, BandsLeftOut(tiles, without), list);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

@@ -53,9 +53,10 @@ HWY_INLINE WideBoxes moved_boxes(const OccluderTopology& mesh, const RowTransfor
   const float* box = &mesh.box[first / 16 * 96 + first % 16];
   const VPoints c{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
       h{hn::Load(f, box + 48), hn::Load(f, box + 64), hn::Load(f, box + 80)};
-  if (transform.in_place) return {c, h};
+  const VPoints middle = moved(transform, c);
+  if (transform.in_place) return {middle, h};
   const auto& rows = transform.rows;
-  return {moved(transform, c), {size_along(rows[0], h), size_along(rows[1], h), size_along(rows[2], h)}};
+  return {middle, {size_along(rows[0], h), size_along(rows[1], h), size_along(rows[2], h)}};
 }
 
 // Appends those of groups first … whose bits are set.

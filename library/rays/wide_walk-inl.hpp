@@ -13,6 +13,7 @@
 
 #include <sightline/rays.hpp>
 
+#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/mutant.h"
 #include "library/geometry/simd-inl.hpp"
 #include "library/rays/wide_bvh.hpp"
@@ -21,8 +22,8 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::rays::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using geometry::prefetch_lines;
 using geometry::HWY_NAMESPACE::bits_of;
-using geometry::HWY_NAMESPACE::prefetch_lines;
 using F = hn::CappedTag<float, kWide>;
 using VF = hn::Vec<F>;
 

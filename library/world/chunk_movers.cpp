@@ -28,14 +28,6 @@ Box widened(const Box& b) {
   return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
 }
 
-// All lines of an element that begins on one.
-template <class T>
-void ask_for_all(const T& element) {
-  constexpr std::size_t kLine = 64;
-  for (std::size_t at = 0; at < sizeof(T); at += kLine)
-    ask_ahead(reinterpret_cast<const char*>(&element) + at);
-}
-
 // Whether an object that moves now has done so in most of the last frames.
 bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
   constexpr int kOften = 4;  // of 8
@@ -313,7 +305,7 @@ void ChunkMap::flush() {
   // In three steps, each when the one before has arrived.
   constexpr std::size_t kGroup = 8, kChunk = 16;
   for (std::size_t i = 0; i < dirty_.size(); ++i) {
-    if (kHasPages && i + kChunk < dirty_.size()) ask_for_all(chunks_[dirty_[i + kChunk]]);
+    if (kHasPages && i + kChunk < dirty_.size()) prefetch_lines(chunks_[dirty_[i + kChunk]]);
     if (kHasPages && i + kGroup < dirty_.size()) prefetch_group(chunks_[dirty_[i + kGroup]]);
     const std::uint32_t chunk = dirty_[i];
     Chunk& c = chunks_[chunk];

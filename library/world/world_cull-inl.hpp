@@ -15,6 +15,7 @@
 
 #include <sightline/frustum.hpp>
 
+#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/mutant.h"
 #include "library/geometry/simd-inl.hpp"
 #include "library/world/world_cull.hpp"
@@ -27,10 +28,10 @@ using world::ChunkMap;
 using F = hn::CappedTag<float, 16>;
 using U = hn::RebindToUnsigned<F>;
 using VF = hn::Vec<F>;
+using geometry::prefetch_lines;
 using geometry::HWY_NAMESPACE::bits_of;
 using geometry::HWY_NAMESPACE::distance;
 using geometry::HWY_NAMESPACE::mask_of;
-using geometry::HWY_NAMESPACE::prefetch_lines;
 using geometry::HWY_NAMESPACE::store_kept;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
 

@@ -63,26 +63,6 @@ HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, cons
   return kept;
 }
 
-// Holds a plane in registers, and which sides of a box lie farthest along its normal.
-struct WidePlane {
-  Points normal;
-  VF distance;
-  std::array<std::size_t, 3> sides;
-
-  HWY_INLINE WidePlane(const SectorView& view, std::size_t p, std::size_t row)
-      : normal{hn::Set(F(), view.planes[p].normal.x), hn::Set(F(), view.planes[p].normal.y),
-               hn::Set(F(), view.planes[p].normal.z)},
-        distance(hn::Set(F(), view.planes[p].distance)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) sides[axis] = row * view.near_side[p][axis];
-  }
-  HWY_INLINE hn::Mask<F> behind(const float* boxes) const {
-    const F f;
-    const Points at{hn::Load(f, boxes + sides[0]), hn::Load(f, boxes + sides[1]),
-                    hn::Load(f, boxes + sides[2])};
-    return hn::Lt(hn::Add(geometry::HWY_NAMESPACE::dot(normal, at), distance), hn::Zero(f));
-  }
-};
-
 // How many of a group's chunks, from i on, can be read as one: they cross planes, are full but for the last,
 // and lie one behind the other.
 HWY_INLINE std::uint32_t run_of(const ChunkMap::Group& group, const ChunkBits& bits, std::uint32_t i) {
@@ -97,44 +77,40 @@ HWY_INLINE std::uint32_t run_of(const ChunkMap::Group& group, const ChunkBits& b
   return run;
 }
 
-// The chunks of movers in a group, which nearly always cross all planes: all are asked, and stay in registers
-// from chunk to chunk.
-HWY_NOINLINE std::size_t cull_movers(const EntryGroup& at, const ChunkBits& bits, PassCounts& counts,
+// The same where each id is one more than the last, so that none need be read.
+HWY_INLINE std::size_t cull_in_order(const ChunkMap::ChunkView& chunk, const Corner* corners,
                                      ObjectId* HWY_RESTRICT out) {
   const U u;
-  const ChunkMap::ChunkView one = at.map.chunk(at.group, 0);
-  const auto row = static_cast<std::size_t>(one.min_y - one.min_x);
-  const SectorView& view = *at.views;
-  const WidePlane p0(view, 0, row), p1(view, 1, row), p2(view, 2, row), p3(view, 3, row), p4(view, 4, row),
-      p5(view, 5, row);
-  const auto from_zero = hn::Iota(u, 0);
+  const auto first = hn::Iota(u, chunk.objects[0]);
+  std::size_t kept = 0;
+  test_planes<Frustum::sides>(corners, Frustum::sides, chunk.count,
+                              [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+                                const auto ids = hn::Add(first, hn::Set(u, static_cast<std::uint32_t>(i)));
+                                kept += store_kept(u, ids, hn::RebindMask(u, mask), out + kept);
+                              });
+  return kept;
+}
+
+// The chunks of movers in a group, run by run. They nearly always cross all planes: all are asked.
+HWY_NOINLINE std::size_t cull_movers(const EntryGroup& at, const ChunkBits& bits, PassCounts& counts,
+                                     ObjectId* HWY_RESTRICT out) {
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < at.group.count;) {
+    ChunkMap::ChunkView run = at.map.chunk(at.group, i);
     if ((bits.crossing >> i & 1) == 0) {
-      if (bits.kept >> i & 1) kept += copy_objects(at.map.chunk(at.group, i), out + kept);
+      if (bits.kept >> i & 1) kept += copy_objects(run, out + kept);
       ++i;
       continue;
     }
-    const ChunkMap::ChunkView first = at.map.chunk(at.group, i);
     const bool in_order = at.group.count_and_size[i] & ChunkMap::Group::kInOrder;
     i += run_of(at.group, bits, i);
     const ChunkMap::ChunkView last = at.map.chunk(at.group, i - 1);
-    const std::size_t count = static_cast<std::size_t>(last.objects - first.objects) + last.count;
-    counts.tested += count;
-    for (std::size_t k = 0; k < count; k += hn::Lanes(u)) {
-      const float* const boxes = first.min_x + k;
-      const auto gone = hn::Or(
-          hn::Or(hn::Or(p0.behind(boxes), p1.behind(boxes)), hn::Or(p2.behind(boxes), p3.behind(boxes))),
-          hn::Or(p4.behind(boxes), p5.behind(boxes)));
-      auto keep = hn::Not(hn::RebindMask(u, gone));
-      auto ids = hn::Add(from_zero, hn::Set(u, first.objects[0] + static_cast<ObjectId>(k)));
-      if (!in_order) {
-        ids = hn::Load(u, first.objects + k);
-        keep = hn::And(keep, are_objects(ids));
-        if (k + hn::Lanes(u) > count) keep = hn::And(keep, hn::FirstN(u, count - k));
-      }
-      kept += store_kept(u, ids, keep, out + kept);
-    }
+    run.count = static_cast<std::uint32_t>(last.objects - run.objects) + last.count;
+    counts.tested += run.count;
+    Corner corners[Frustum::sides];
+    corners_of(run, *at.views, kAllPlanes, corners);
+    kept += in_order ? cull_in_order(run, corners, out + kept)
+                     : cull_loose_chunk(run, corners, Frustum::sides, out + kept);
   }
   return kept;
 }
