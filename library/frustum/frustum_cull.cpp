@@ -41,49 +41,85 @@ HWY_INLINE VF distance(const WidePlane& plane, const Points& p) {
   return hn::Add(geometry::HWY_NAMESPACE::dot(plane.normal, p), plane.distance);
 }
 
+// Less than `than` where some plane's distance to its point is: a distance that is no number takes no part.
+// One comparison at the end then does for all planes, and minima go where products do not.
+template <class... Distances>
+HWY_INLINE VF lowest(VF than, Distances... distances) {
+  ((than = geometry::HWY_NAMESPACE::lower_or(distances, than)), ...);
+  return than;
+}
+
 // What is looked at together: a cache line of each array.
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kVectors = (kGroup + hn::MaxLanes(F()) - 1) / hn::MaxLanes(F());
 
-// Writes the indices of what no plane has behind it. sides(i) and others(i) tell of the vector from i on what
-// lies behind one of some planes; `keep` of one element, where they fill no group. A group that the first
-// planes reject is done with: next to none where ids lie anyhow, most where neighbours have neighbouring ids,
-// so that the branch is foreseen.
-template <class Sides, class Others, class Keep>
+// The vector from element i on of an array.
+struct Whole {
+  std::size_t i;
+  HWY_INLINE VF operator()(const float* array) const { return hn::LoadU(F(), array + i); }
+};
+// The same of fewer elements than a vector's, beyond which nothing is read.
+struct Part {
+  std::size_t i, count;
+  HWY_INLINE VF operator()(const float* array) const {
+    const F f;
+    if constexpr (hn::MaxLanes(F()) > 4) {
+      return hn::MaskedLoad(hn::FirstN(f, count), f, array + i);
+    } else {
+      HWY_ALIGN float room[hn::MaxLanes(F())] = {};
+      std::copy_n(array + i, count, room);
+      return hn::Load(f, room);
+    }
+  }
+};
+
+// Writes the indices of what no plane has behind it, lying as deep as deepest(at) tells of the vector that
+// `at` reads. sides(at, than) and others(at, than) are the lowest() of some planes' distances. A group that
+// the first planes reject is done with: next to none where ids lie anyhow, most where neighbours have
+// neighbouring ids, so that the branch is foreseen.
+template <class Deepest, class Sides, class Others>
 HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY_RESTRICT out,
-                            const Sides& sides, const Others& others, const Keep& keep) {
+                            const Deepest& deepest, const Sides& sides, const Others& others) {
   const F f;
   const U u;
   const std::size_t lanes = hn::Lanes(f);
   // By value, so that neither count lives in memory through the loop below.
-  const auto one_by_one = [&keep, out](std::size_t first, std::size_t end, std::size_t kept) {
-    for (std::size_t i = first; i < end; ++i) {
-      out[kept] = static_cast<ObjectId>(i);
-      kept += keep(i) ? 1 : 0;
+  const auto some = [=](std::size_t first, std::size_t end, std::size_t kept) HWY_ATTR {
+    for (; first < end; first += lanes) {
+      const Part at{first, std::min(lanes, end - first)};
+      const VF deep = deepest(at);
+      const auto gone = hn::Lt(others(at, sides(at, deep)), deep);
+      const auto left = hn::And(hn::Not(hn::RebindMask(u, gone)), hn::FirstN(u, at.count));
+      const auto ids = hn::Iota(u, static_cast<std::uint32_t>(first));
+      kept += geometry::HWY_NAMESPACE::store_kept(u, ids, left, out + kept);
     }
     return kept;
   };
   // Large arrays start alike within a cache line: from the next line on no load crosses two.
   const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
   std::size_t i = std::min(count, (lanes - behind_line) % lanes);
-  std::size_t kept = one_by_one(0, i, 0);
+  std::size_t kept = some(0, i, 0);
   auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
   const auto step = hn::Set(u, static_cast<std::uint32_t>(kGroup));
   for (; i + kGroup <= count; i += kGroup) {
     const auto group_ids = first_ids;
     first_ids = hn::Add(first_ids, step);
-    hn::Mask<F> gone[kVectors];
-    for (std::size_t v = 0; v < kVectors; ++v) gone[v] = sides(i + v * lanes);
-    auto all = gone[0];
-    for (std::size_t v = 1; v < kVectors; ++v) all = hn::And(all, gone[v]);
-    if (hn::AllTrue(f, all)) continue;
+    VF low[kVectors], deep[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const auto left = hn::Not(hn::Or(gone[v], others(i + v * lanes)));
+      const Whole at{i + v * lanes};
+      deep[v] = deepest(at);
+      low[v] = sides(at, deep[v]);
+    }
+    auto gone = hn::Lt(low[0], deep[0]);
+    for (std::size_t v = 1; v < kVectors; ++v) gone = hn::And(gone, hn::Lt(low[v], deep[v]));
+    if (hn::AllTrue(f, gone)) continue;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const auto left = hn::Not(hn::Lt(others(Whole{i + v * lanes}, low[v]), deep[v]));
       const auto ids = hn::Add(group_ids, hn::Set(u, static_cast<std::uint32_t>(v * lanes)));
       kept += geometry::HWY_NAMESPACE::store_kept(u, ids, hn::RebindMask(u, left), out + kept);
     }
   }
-  return one_by_one(i, count, kept);
+  return some(i, count, kept);
 }
 
 // The corner of each box that lies farthest along a plane's normal: one choice for all boxes.
@@ -97,56 +133,39 @@ struct Nearest {
 };
 
 std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
-  const F f;
   const auto& p = frustum.planes;
   const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
                   p4 = spread(p[4]), p5 = spread(p[5]);
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
-  const auto behind = [f](const WidePlane& plane, const Nearest& n, std::size_t i) HWY_ATTR {
-    const Points corner{hn::LoadU(f, n.x + i), hn::LoadU(f, n.y + i), hn::LoadU(f, n.z + i)};
-    return hn::Lt(distance(plane, corner), hn::Zero(f));
+  const auto from = [](const auto& at, const WidePlane& plane, const Nearest& n) HWY_ATTR {
+    return distance(plane, {at(n.x), at(n.y), at(n.z)});
   };
   return pack(
-      boxes.count, boxes.min_x, out,
+      boxes.count, boxes.min_x, out, [](const auto&) HWY_ATTR { return hn::Zero(F()); },
       // Left and right reject what lies behind the eye, too.
-      [&](std::size_t i) HWY_ATTR { return hn::Or(behind(p0, n0, i), behind(p1, n1, i)); },
-      [&](std::size_t i) HWY_ATTR {
-        return hn::Or(hn::Or(behind(p2, n2, i), behind(p3, n3, i)),
-                      hn::Or(behind(p4, n4, i), behind(p5, n5, i)));
-      },
-      [&](std::size_t i) {
-        return overlaps(frustum, Box{{boxes.min_x[i], boxes.min_y[i], boxes.min_z[i]},
-                                     {boxes.max_x[i], boxes.max_y[i], boxes.max_z[i]}});
+      [&](const auto& at, VF than) HWY_ATTR { return lowest(than, from(at, p0, n0), from(at, p1, n1)); },
+      [&](const auto& at, VF than) HWY_ATTR {
+        return lowest(than, from(at, p2, n2), from(at, p3, n3), from(at, p4, n4), from(at, p5, n5));
       });
 }
 
 std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* out) {
-  const F f;
   const auto& p = frustum.planes;
   const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
                   p4 = spread(p[4]), p5 = spread(p[5]);
-  const auto at = [&](std::size_t i) HWY_ATTR {
-    return Points{hn::LoadU(f, s.x + i), hn::LoadU(f, s.y + i), hn::LoadU(f, s.z + i)};
-  };
-  const auto deepest = [&](std::size_t i) HWY_ATTR {
-    return hn::Neg(hn::Mul(hn::LoadU(f, s.radius + i), hn::Set(f, geometry::kRadiusGrowth)));
-  };
+  const auto centre = [&](const auto& at) HWY_ATTR { return Points{at(s.x), at(s.y), at(s.z)}; };
   return pack(
       s.count, s.x, out,
-      [&](std::size_t i) HWY_ATTR {
-        const Points c = at(i);
-        const VF d = deepest(i);
-        return hn::Or(hn::Lt(distance(p0, c), d), hn::Lt(distance(p1, c), d));
+      [&](const auto& at)
+          HWY_ATTR { return hn::Neg(hn::Mul(at(s.radius), hn::Set(F(), geometry::kRadiusGrowth))); },
+      [&](const auto& at, VF than) HWY_ATTR {
+        const Points c = centre(at);
+        return lowest(than, distance(p0, c), distance(p1, c));
       },
-      [&](std::size_t i) HWY_ATTR {
-        const Points c = at(i);
-        const VF d = deepest(i);
-        return hn::Or(hn::Or(hn::Lt(distance(p2, c), d), hn::Lt(distance(p3, c), d)),
-                      hn::Or(hn::Lt(distance(p4, c), d), hn::Lt(distance(p5, c), d)));
-      },
-      [&](std::size_t i) {
-        return overlaps(frustum, Sphere{{s.x[i], s.y[i], s.z[i]}, s.radius[i]});
+      [&](const auto& at, VF than) HWY_ATTR {
+        const Points c = centre(at);
+        return lowest(than, distance(p2, c), distance(p3, c), distance(p4, c), distance(p5, c));
       });
 }
 

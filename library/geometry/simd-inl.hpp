@@ -141,6 +141,17 @@ template <class V>
 HWY_INLINE V largest(const Points<V>& p) {
   return larger_of(larger_of(p.x, p.y), p.z);
 }
+// a where it is less than b; b otherwise, so also where one of them is no number.
+template <class V>
+HWY_INLINE V lower_or(const V& a, const V& b) {
+#if HWY_ARCH_X86
+  return hn::Min(a, b);  // which is just that there, and one operation
+#elif HWY_TARGET == HWY_WASM
+  return V(wasm_f32x4_pmin(b.raw, a.raw));
+#else
+  return hn::IfThenElse(hn::Lt(a, b), a, b);
+#endif
+}
 
 // A row of a matrix times (point, 1).
 template <class V>
