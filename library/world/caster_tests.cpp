@@ -53,7 +53,7 @@ ColumnBits caster_chunks(const ChunkMap::Group& group, const CasterView& casters
 
 void caster_objects(const ChunkMap::ChunkView& chunk, const CasterView& casters, ObjectBits& seen) {
   const F f;
-  const Sides sides{chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z};
+  const Sides sides{chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5)};
   for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f)) {
     auto outside = hn::Not(hn::FirstN(f, hn::Lanes(f)));
     for (std::size_t p = 0; p < casters.count; ++p)
@@ -105,7 +105,7 @@ ObjectBits objects_that_cast(const ChunkMap& map, const ChunkMap::Group& group,
   std::array<std::uint8_t, ChunkMap::kCapacity> cast;
   occlusion::query_boxes(
       *casters.mask, casters.projection,
-      {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
+      {chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5), chunk.count},
       cast.data());
   for (std::uint32_t i = 0; i < chunk.count; ++i)
     if (cast[i] == 0) seen.drop(i);

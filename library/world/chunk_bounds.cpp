@@ -304,12 +304,12 @@ std::uint32_t ChunkMap::write_vertices(std::uint32_t chunk, std::span<ChunkVerte
     return std::max(high - middle, middle - low) + kRounding * (std::fabs(low) + std::fabs(high));
   };
   for (std::uint32_t i = 0; i < c.count; ++i) {
-    const Vec3 centre{0.5f * c.min_x[i] + 0.5f * c.max_x[i], 0.5f * c.min_y[i] + 0.5f * c.max_y[i],
-                      0.5f * c.min_z[i] + 0.5f * c.max_z[i]};
+    const auto [low, high] = c.box(i);
+    const Vec3 centre{0.5f * low.x + 0.5f * high.x, 0.5f * low.y + 0.5f * high.y,
+                      0.5f * low.z + 0.5f * high.z};
     out[i] = {centre,
               c.objects[i],
-              {half(c.min_x[i], c.max_x[i], centre.x), half(c.min_y[i], c.max_y[i], centre.y),
-               half(c.min_z[i], c.max_z[i], centre.z)},
+              {half(low.x, high.x, centre.x), half(low.y, high.y, centre.y), half(low.z, high.z, centre.z)},
               chunk};
   }
   return c.count;

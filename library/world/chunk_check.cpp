@@ -98,7 +98,7 @@ Status ChunkMap::check_group(std::uint32_t group) const {
     held += chunks_[g.chunks[k]].live;
     const ChunkView here = chunk(g, k), there = chunk(g.chunks[k]);
     if (here.objects != there.objects || here.count != there.count || here.loose != there.loose ||
-        here.min_y != there.min_y || here.max_z != there.max_z)
+        here.sides != there.sides || here.step != there.step)
       return bad("chunk map: wrong lanes in the group of chunk", g.chunks[k]);
   }
   if (held != g.objects) return bad("chunk map: wrong number of objects in group", group);

@@ -69,7 +69,7 @@ public:
 
   using ChunkView = world::ChunkView;
 
-  /// Bounds of up to 32 chunks, one array a coordinate in the order of ChunkView.
+  /// Bounds of up to 32 chunks, one array a side in the order of ChunkView.
   struct alignas(64) Group {
     std::array<std::array<float, kGroupCapacity>, 6> bounds{};
     std::array<std::uint32_t, kGroupCapacity> chunks{};
@@ -191,7 +191,7 @@ public:
   [[nodiscard]] const float* distances_of(const Group& group, const ChunkView& chunk,
                                           std::size_t& step) const noexcept {
     const Pool& pool = pools_[group.pool];
-    step = pool.row > 0 ? kCapacity : static_cast<std::size_t>(chunk.min_y - chunk.min_x);
+    step = pool.row > 0 ? kCapacity : chunk.step;
     return pool.distances.data() + 2 * (chunk.objects - pool.ids.data());
   }
 
@@ -227,9 +227,8 @@ public:
   }
   [[nodiscard]] ChunkView chunk(std::uint32_t chunk) const noexcept {
     const Chunk& c = chunks_[chunk];
-    return {lanes(c, 0), lanes(c, 1), lanes(c, 2),
-            lanes(c, 3), lanes(c, 4), lanes(c, 5),
-            ids(c),      c.count,     c.count != c.live || c.pool != kStill};
+    return {lanes(c, 0), ids(c), static_cast<std::uint32_t>(pools_[c.pool].step(c.capacity)), c.count,
+            c.count != c.live || c.pool != kStill};
   }
   /// The chunk at place i of a group.
   [[nodiscard]] ChunkView chunk(const Group& group, std::uint32_t i) const noexcept {
@@ -237,12 +236,10 @@ public:
     const Pool& pool = pools_[group.pool];
     // Asked of the group, which is at hand: what stands still is found without a look at its pool's rows.
     const bool still = !kHasPages || group.pool == kStill;
-    const std::size_t step = still ? size >> Group::kSize & Group::kCount : pool.row;
+    const std::uint32_t step =
+        still ? size >> Group::kSize & Group::kCount : static_cast<std::uint32_t>(pool.row);
     const float* at = pool.lanes.data() + (still ? 6 * std::size_t{first} : first);
-    const ObjectId* its = pool.ids.data() + first;
-    const bool loose = size & Group::kLoose;
-    const auto side = [&](std::size_t k) { return at + k * step; };
-    return {side(0), side(1), side(2), side(3), side(4), side(5), its, size & Group::kCount, loose};
+    return {at, pool.ids.data() + first, step, size & Group::kCount, (size & Group::kLoose) != 0};
   }
   /// Tight union of the chunk's boxes; after move_loosely() it may be wider.
   [[nodiscard]] Box chunk_bounds(std::uint32_t chunk) const noexcept;

@@ -40,10 +40,16 @@ struct Moving {
 /// multiple of 16, ids up to ChunkMap::kCapacity. Where it is loose, some objects may be kNoObject, and their
 /// boxes mean nothing.
 struct ChunkView {
-  const float *min_x, *min_y, *min_z, *max_x, *max_y, *max_z;
+  const float* sides;  ///< six rows: min x, y, z, max x, y, z
   const ObjectId* objects;
+  std::uint32_t step;  ///< from one row to the next
   std::uint32_t count;
   bool loose;  ///< movers' or with holes
+
+  [[nodiscard]] const float* side(std::size_t k) const noexcept { return sides + std::size_t{step} * k; }
+  [[nodiscard]] Box box(std::size_t i) const noexcept {
+    return {{side(0)[i], side(1)[i], side(2)[i]}, {side(3)[i], side(4)[i], side(5)[i]}};
+  }
 };
 
 }  // namespace sightline::world

@@ -110,9 +110,9 @@ ObjectBits distance_objects(const ChunkMap& map, const ChunkMap::Group& group,
       const VF centre = hn::Add(hn::Mul(half, hn::Load(f, low + i)), hn::Mul(half, hn::Load(f, high + i)));
       distance = hn::Add(distance, square(hn::Sub(centre, hn::Set(f, eye))));
     };
-    add(chunk.min_x, chunk.max_x, view.distance_eye.x);
-    add(chunk.min_y, chunk.max_y, view.distance_eye.y);
-    add(chunk.min_z, chunk.max_z, view.distance_eye.z);
+    add(chunk.side(0), chunk.side(3), view.distance_eye.x);
+    add(chunk.side(1), chunk.side(4), view.distance_eye.y);
+    add(chunk.side(2), chunk.side(5), view.distance_eye.z);
     return hn::And(hn::Ge(distance, reach(metres + i, view)),
                    hn::Lt(distance, reach(metres + step + i, view)));
   });

@@ -18,36 +18,29 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::world::HWY_NAMESPACE {
 
-// The objects of a chunk that a view sees, by frustum and contribution.
-HWY_INLINE void view_objects(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
-                             ObjectBits& out) {
+// The objects of a chunk whose bounding spheres are large enough on a view's image; bits from its count on
+// mean nothing.
+HWY_INLINE ObjectBits large_objects(const ChunkMap::ChunkView& chunk, const SectorView& view) {
   const F f;
-  const std::size_t lanes = hn::Lanes(f);
-  Corner corners[Frustum::sides];
-  const std::size_t count = corners_of(chunk, view, planes, corners);
-  out = test_objects(chunk, corners, count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-    if (view.area_scale > 0) {
-      // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
-      const VF half = hn::Set(f, 0.5f);
-      const auto square = [&](const float* low, const float* high, float eye, VF& radius,
-                              VF& distance) HWY_ATTR {
-        const VF a = hn::Mul(half, hn::Load(f, low + i)), b = hn::Mul(half, hn::Load(f, high + i));
-        const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, eye));
-        radius = hn::Add(radius, hn::Mul(extent, extent));
-        distance = hn::Add(distance, hn::Mul(offset, offset));
-      };
-      VF radius = hn::Zero(f), distance = hn::Zero(f);
-      square(chunk.min_x, chunk.max_x, view.eye.x, radius, distance);
-      square(chunk.min_y, chunk.max_y, view.eye.y, radius, distance);
-      square(chunk.min_z, chunk.max_z, view.eye.z, radius, distance);
-      const VF limit = view.orthographic ? hn::Set(f, 1.0f) : distance;
-      const auto large = hn::Ge(hn::Mul(radius, hn::Set(f, view.area_scale)), limit);
-      mask = hn::And(mask, hn::Or(large, hn::Le(distance, radius)));
-    }
-    if (i + lanes > chunk.count) mask = hn::And(mask, hn::FirstN(f, chunk.count - i));
-    if (chunk.loose) mask = hn::And(mask, hn::RebindMask(f, are_objects(hn::Load(U(), chunk.objects + i))));
-    return mask;
-  });
+  ObjectBits out;
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f)) {
+    // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
+    const VF half = hn::Set(f, 0.5f);
+    VF radius = hn::Zero(f), distance = hn::Zero(f);
+    const auto square = [&](const float* low, const float* high, float eye) HWY_ATTR {
+      const VF a = hn::Mul(half, hn::Load(f, low + i)), b = hn::Mul(half, hn::Load(f, high + i));
+      const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, eye));
+      radius = hn::Add(radius, hn::Mul(extent, extent));
+      distance = hn::Add(distance, hn::Mul(offset, offset));
+    };
+    square(chunk.side(0), chunk.side(3), view.eye.x);
+    square(chunk.side(1), chunk.side(4), view.eye.y);
+    square(chunk.side(2), chunk.side(5), view.eye.z);
+    const VF limit = view.orthographic ? hn::Set(f, 1.0f) : distance;
+    const auto large = hn::Ge(hn::Mul(radius, hn::Set(f, view.area_scale)), limit);
+    out.words[i / 64] |= std::uint64_t{bits_of(f, hn::Or(large, hn::Le(distance, radius)))} << i % 64;
+  }
+  return out;
 }
 
 // Which of a group's chunks the occluders do not hide, a byte each.
@@ -99,7 +92,7 @@ inline std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
   view.occluders->ask->boxes(
       *view.occluders, view.projection,
-      {chunk.min_x, chunk.min_y, chunk.min_z, chunk.max_x, chunk.max_y, chunk.max_z, chunk.count},
+      {chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5), chunk.count},
       visible.data());
   for (std::uint32_t i = 0; i < chunk.count; ++i) {
     if (visible[i] || !seen.at(i)) continue;
@@ -123,6 +116,19 @@ HWY_INLINE ChunkBits filter_chunks(const PassInput& input, const EntryGroup& at,
     dropped += drop_hidden_chunks(input, at, view, parted, bits);
   }
   return bits;
+}
+
+// What a view sees of a chunk of which something is to be tested; `left` by its planes, where it crosses
+// some.
+HWY_INLINE ObjectBits view_objects(const PassInput& input, const EntryGroup& at, const SectorView& view,
+                                   const ChunkMap::ChunkView& chunk, const ObjectBits* left, bool parted,
+                                   std::uint64_t& occluded) {
+  ObjectBits seen = live_objects(chunk);
+  if (left) seen.keep(*left);
+  if (view.area_scale > 0) seen.keep(large_objects(chunk, view));
+  if (parted) seen.keep(input.columns->objects(at.map, at.group, chunk, view));
+  if (view.occluders) occluded += drop_hidden_objects(chunk, view, seen);
+  return seen;
 }
 
 // Who sees a chunk, and how: bits of a mask where nothing is left to test, views where something is.
@@ -165,6 +171,7 @@ HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const Grou
   std::array<std::uint32_t, kMaxViews> parted;
   ChunkViews parts;
   std::array<ChunkMap::ChunkView, kGroup> chunks;
+  std::array<CrossedBits, kMaxViews> left;
   // What occlusion drops counts once for each of the caller's views that are the same.
   const auto count_occluded = [&](std::size_t v, std::uint64_t objects) {
     counts.occluded += static_cast<std::uint64_t>(std::popcount(input.bits[v])) * objects;
@@ -185,6 +192,9 @@ HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const Grou
     }
     counts.chunks += at.group.count;
     find_chunks(at, any, chunks);
+    const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
+    for (std::size_t v = 0; v < input.view_count; ++v)
+      test_crossed(at.views[v], entry.planes[v], bits[v], bits[v].kept, chunk_at, left[v]);
     notes.begin(entry, at, any);
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
@@ -201,12 +211,13 @@ HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const Grou
         parts.count = 0;
         for (std::uint32_t rest = viewers.part; rest != 0; rest &= rest - 1) {
           const auto v = static_cast<std::size_t>(std::countr_zero(rest));
-          ObjectBits& seen = parts.seen[parts.count];
-          parts.bits[parts.count++] = input.bits[v];
+          const ObjectBits* by_planes = bits[v].crossing >> i & 1 ? &left[v][i] : nullptr;
+          std::uint64_t occluded = 0;
+          parts.bits[parts.count] = input.bits[v];
+          parts.seen[parts.count++] =
+              view_objects(input, at, at.views[v], chunk, by_planes, parted[v] >> i & 1, occluded);
           counts.tested += chunk.count;
-          view_objects(chunk, at.views[v], planes_of(bits[v], i), seen);
-          if (parted[v] >> i & 1) seen.keep(input.columns->objects(at.map, at.group, chunk, at.views[v]));
-          if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
+          count_occluded(v, occluded);
         }
         counts.written += write_parts(chunk, viewers.whole, parts, counts.written, ids, masks);
       }

@@ -31,15 +31,16 @@ public:
         columns_(columns),
         at_(group_of(input, entry)),
         view_(at_.views[view]),
-        plain_(view_),
         planes_(entry.planes[view]),
-        stats_(stats) {
-    plain_.area_scale = 0;
-  }
+        stats_(stats) {}
 
   ChunkSight run() {
     ChunkBits bits = classify_chunks(at_.group, view_, planes_);
-    const std::uint32_t inside = bits.kept;
+    const std::uint32_t inside = bits.kept, crossing = bits.crossing;
+    CrossedBits by_planes;
+    test_crossed(
+        view_, planes_, bits, crossing, [&](std::uint32_t i) { return at_.map.chunk(at_.group, i); },
+        by_planes);
     parted_ = input_.columns ? ask_columns(input_, at_, view_, bits) : 0;
     const std::uint32_t left = bits.kept;
     ChunkAnswers visible;
@@ -58,18 +59,17 @@ public:
     for (std::uint32_t i = 0; i < at_.group.count; ++i) {
       const ChunkMap::ChunkView chunk = at_.map.chunk(at_.group, i);
       if ((seen & ~whole) >> i & 1) stats_.objects_tested += chunk.count;
-      count_objects(chunk, inside >> i & 1 ? planes_of(bits, i) : kOutside, seen >> i & 1);
+      ObjectBits in_view;
+      if (inside >> i & 1) in_view = crossing >> i & 1 ? by_planes[i] : first_objects(chunk.count);
+      count_objects(chunk, in_view, seen >> i & 1);
     }
     return {seen, whole};
   }
 
 private:
-  void count_objects(const ChunkMap::ChunkView& chunk, PlaneSet planes, bool chunk_seen) {
-    ObjectBits left;
-    view_objects(chunk, plain_, 0, left);
+  void count_objects(const ChunkMap::ChunkView& chunk, const ObjectBits& in_view, bool chunk_seen) {
+    ObjectBits left = live_objects(chunk);
     stats_.objects += bits_in(left);
-    ObjectBits in_view;
-    if (planes != kOutside) view_objects(chunk, plain_, planes, in_view);
     drop(left, in_view, stats_.outside);
     if (bits_in(left) == 0) return;
     if (columns_.has_layers)
@@ -78,11 +78,7 @@ private:
       drop(left, kDistanceTests.objects(at_.map, at_.group, chunk, view_), stats_.by_distances);
     if (input_.columns)
       drop(left, input_.columns->objects(at_.map, at_.group, chunk, view_), stats_.by_casters);
-    if (view_.area_scale > 0) {
-      ObjectBits large;
-      view_objects(chunk, view_, planes, large);
-      drop(left, large, stats_.by_area);
-    }
+    if (view_.area_scale > 0) drop(left, large_objects(chunk, view_), stats_.by_area);
     if (!chunk_seen) {
       drop(left, ObjectBits(), stats_.hidden);
     } else if (view_.occluders) {
@@ -102,7 +98,6 @@ private:
   const Columns& columns_;
   EntryGroup at_;
   const SectorView& view_;
-  SectorView plain_;  // the same without min_area
   PlaneSet planes_;
   std::uint32_t parted_ = 0;
   ViewStats& stats_;

@@ -95,9 +95,9 @@ HWY_INLINE Seen look_at(const ChunkMap::ChunkView& chunk, const Vec3& eye, const
     radius = hn::Add(radius, hn::Mul(extent, extent));
     distance = hn::Add(distance, hn::Mul(offset, offset));
   };
-  add(chunk.min_x, chunk.max_x, eye.x);
-  add(chunk.min_y, chunk.max_y, eye.y);
-  add(chunk.min_z, chunk.max_z, eye.z);
+  add(chunk.side(0), chunk.side(3), eye.x);
+  add(chunk.side(1), chunk.side(4), eye.y);
+  add(chunk.side(2), chunk.side(5), eye.z);
   // Around the eye nothing is too small.
   const VF infinite = hn::Set(f, std::numeric_limits<float>::infinity());
   const VF reach = hn::Mul(hn::Set(f, scale.squared), radius);
@@ -351,8 +351,7 @@ void choose_levels(const LaneChoice& choice, const NotedChunk& noted, const Vec3
 
 // Rows are too short for processors to find them out by themselves.
 void expect_sizes(const ChunkMap::ChunkView& chunk, std::size_t first) noexcept {
-  const auto step = static_cast<std::size_t>(chunk.min_y - chunk.min_x);
-  for (std::size_t side = 0; side < 6; ++side) geometry::ask_ahead(chunk.min_x + side * step + first);
+  for (std::size_t side = 0; side < 6; ++side) geometry::ask_ahead(chunk.side(side) + first);
 }
 
 PassCounts cull_noted(LevelNotes& notes, const PassInput& input, std::span<const GroupEntry> entries,

@@ -87,18 +87,6 @@ private:
   std::uint64_t objects_ = 0;
 };
 
-// A bit an object of the chunk; none for holes.
-HWY_INLINE ObjectBits live_objects(const ChunkMap::ChunkView& chunk) {
-  const U u;
-  ObjectBits out;
-  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(u)) {
-    auto live = are_objects(hn::Load(u, chunk.objects + i));
-    if (i + hn::Lanes(u) > chunk.count) live = hn::And(live, hn::FirstN(u, chunk.count - i));
-    out.words[i / 64] |= std::uint64_t{bits_of(u, live)} << i % 64;
-  }
-  return out;
-}
-
 // All of a chunk with holes.
 HWY_INLINE void RangeWriter::add_loose(const ChunkMap::ChunkView& chunk, std::uint32_t first,
                                        std::uint8_t mask) {
@@ -169,7 +157,7 @@ public:
     const std::uint32_t* slots = input_.first_slots[entry.sector];
     look(entry, at);
     counts_.chunks += at.group.count;
-    ask_for_crossed(at);
+    if (!input_.whole_chunks) test_crossed_by(entry, at);
     std::uint32_t rest = sight_.any;
     if (pass_.view_count == 1) {
       // Those that nothing is to be asked of, at once.
@@ -219,13 +207,15 @@ private:
     }
   }
 
-  // What is written whole needs nothing of memory but movers' ids.
-  HWY_INLINE void ask_for_crossed(const EntryGroup& at) {
+  // What is written whole needs nothing of memory but movers' ids. By itself, as it may be left out.
+  HWY_NOINLINE void test_crossed_by(const GroupEntry& entry, const EntryGroup& at) {
     std::uint32_t crossed = 0;
     for (std::size_t v = 0; v < pass_.view_count; ++v) crossed |= sight_.bits[v].crossing | sight_.parted[v];
-    if (input_.whole_chunks) crossed = 0;
+    const auto chunk_at = [&](std::uint32_t i) HWY_ATTR { return at.map.chunk(at.group, i); };
     for (std::uint32_t rest = crossed & sight_.any; rest != 0; rest &= rest - 1)
-      hwy::Prefetch(at.map.chunk(at.group, static_cast<std::uint32_t>(std::countr_zero(rest))).min_x);
+      hwy::Prefetch(chunk_at(static_cast<std::uint32_t>(std::countr_zero(rest))).sides);
+    for (std::size_t v = 0; v < pass_.view_count; ++v)
+      test_crossed(at.views[v], entry.planes[v], sight_.bits[v], sight_.bits[v].kept, chunk_at, left_[v]);
   }
 
   HWY_INLINE void test(const EntryGroup& at, std::uint32_t i, const ChunkMap::ChunkView& chunk,
@@ -233,12 +223,13 @@ private:
     parts_.count = 0;
     for (std::uint32_t rest = by; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<std::size_t>(std::countr_zero(rest));
-      ObjectBits& seen = parts_.seen[parts_.count];
-      parts_.bits[parts_.count++] = pass_.bits[v];
+      const ObjectBits* by_planes = sight_.bits[v].crossing >> i & 1 ? &left_[v][i] : nullptr;
+      std::uint64_t occluded = 0;
+      parts_.bits[parts_.count] = pass_.bits[v];
+      parts_.seen[parts_.count++] =
+          view_objects(pass_, at, at.views[v], chunk, by_planes, sight_.parted[v] >> i & 1, occluded);
       counts_.tested += chunk.count;
-      view_objects(chunk, at.views[v], planes_of(sight_.bits[v], i), seen);
-      if (sight_.parted[v] >> i & 1) seen.keep(pass_.columns->objects(at.map, at.group, chunk, at.views[v]));
-      if (at.views[v].occluders) count_occluded(v, drop_hidden_objects(chunk, at.views[v], seen));
+      count_occluded(v, occluded);
     }
   }
 
@@ -247,6 +238,7 @@ private:
   RangeWriter out_;
   bool masks_;
   GroupSight sight_;
+  std::array<CrossedBits, kMaxViews> left_;
   ChunkViews parts_;
   RangeCounts counts_;
 };

@@ -57,7 +57,7 @@ std::unique_ptr<ChunkMap> still_copy(const ChunkMap& map, std::vector<ObjectId>&
       const ChunkMap::ChunkView c = map.chunk(group, i);
       for (std::uint32_t k = 0; k < c.count; ++k) {
         if (c.objects[k] == kNoObject) continue;
-        boxes.push_back({{c.min_x[k], c.min_y[k], c.min_z[k]}, {c.max_x[k], c.max_y[k], c.max_z[k]}});
+        boxes.push_back(c.box(k));
         ids.push_back(c.objects[k]);
       }
     }
@@ -117,8 +117,9 @@ private:
   }
 
   void write_objects(const ChunkMap::ChunkView& c) {
-    for (const float* side : {c.min_x, c.min_y, c.min_z, c.max_x, c.max_y, c.max_z})
-      for (std::uint32_t i = 0; i < c.count; ++i) words_.push_back(std::bit_cast<std::uint32_t>(side[i]));
+    for (std::size_t k = 0; k < 6; ++k)
+      for (std::uint32_t i = 0; i < c.count; ++i)
+        words_.push_back(std::bit_cast<std::uint32_t>(c.side(k)[i]));
     const auto row = [&](const auto& value_of) {
       for (const ObjectId id : chunk_ids_) words_.push_back(std::bit_cast<std::uint32_t>(value_of(id)));
     };

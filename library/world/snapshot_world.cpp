@@ -111,8 +111,7 @@ void SnapshotWorld::file_each(const ChunkMap& map, std::uint32_t into) {
   ChunkMapParts::for_each_chunk(map, [&](std::uint32_t, const ChunkMap::ChunkView& c) {
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const ObjectId id = c.objects[i];
-      s.sectors[into].map->insert(
-          id, {{c.min_x[i], c.min_y[i], c.min_z[i]}, {c.max_x[i], c.max_y[i], c.max_z[i]}});
+      s.sectors[into].map->insert(id, c.box(i));
       s.objects[id].sector = into;
     }
   });

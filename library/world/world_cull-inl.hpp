@@ -136,54 +136,6 @@ HWY_INLINE std::size_t copy_chunk(const ChunkMap::ChunkView& chunk, ObjectId* HW
   return chunk.count;
 }
 
-// The sides of boxes that lie farthest along a plane's normal, and the plane.
-struct Corner {
-  const float *x, *y, *z;
-  const Plane* plane;
-};
-
-HWY_INLINE std::size_t corners_of(const ChunkMap::ChunkView& chunk, const SectorView& view, PlaneSet planes,
-                                  Corner* out) {
-  const auto step = static_cast<std::size_t>(chunk.min_y - chunk.min_x);
-  std::size_t count = 0;
-  for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
-    const int p = std::countr_zero(rest);
-    const auto& near = view.near_side[p];
-    out[count++] = {chunk.min_x + step * near[0], chunk.min_x + step * near[1], chunk.min_x + step * near[2],
-                    &view.planes[p]};
-  }
-  return count;
-}
-
-// Calls take(first, mask) for each vector of `count` objects: which of them the planes leave. The planes are
-// held in registers where they are few, as they nearly always are.
-template <std::size_t kPlanes, class TakeMask>
-HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count,
-                            const TakeMask& take) {
-  const F f;
-  std::array<Plane, kPlanes> plane;
-  for (std::size_t c = 0; c < kPlanes; ++c) plane[c] = *corners[c].plane;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
-    const auto at = [&](std::size_t c, const Plane& p) HWY_ATTR {
-      return distance(p, Points{hn::Load(f, corners[c].x + i), hn::Load(f, corners[c].y + i),
-                                hn::Load(f, corners[c].z + i)});
-    };
-    VF worst = hn::Zero(f);
-    for (std::size_t c = 0; c < kPlanes; ++c) worst = hn::Min(worst, at(c, plane[c]));
-    for (std::size_t c = kPlanes; c < planes; ++c) worst = hn::Min(worst, at(c, *corners[c].plane));
-    take(i, SIGHTLINE_MUTANT(boxes_on_a_plane_dropped) ? hn::Gt(at(0, *corners[0].plane), hn::Zero(f))
-                                                       : hn::Ge(worst, hn::Zero(f)));
-  }
-}
-
-template <class TakeMask>
-HWY_INLINE void test_planes(const Corner* corners, std::size_t planes, std::size_t count,
-                            const TakeMask& take) {
-  if (planes == 1) return test_planes<1>(corners, 1, count, take);
-  if (planes == 2) return test_planes<2>(corners, 2, count, take);
-  test_planes<0>(corners, planes, count, take);
-}
-
 // Those of objects i … that a vector of D holds.
 template <class D>
 HWY_INLINE hn::Mask<D> mask_at(D d, const ObjectBits& bits, std::size_t i) {
@@ -200,35 +152,71 @@ HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
   for (std::uint32_t i = 64; i < ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.objects + i);
 }
 
-// Which objects the planes and then `filter(i, mask)` leave; bits from count on mean nothing.
-template <class Filter>
-HWY_INLINE ObjectBits test_objects(const ChunkMap::ChunkView& chunk, const Corner* corners,
-                                   std::size_t planes, const Filter& filter) {
+// A bit each for as many objects.
+HWY_INLINE ObjectBits first_objects(std::uint32_t count) {
+  const auto below = [](std::uint32_t end) {
+    return end >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << end) - 1;
+  };
+  return {{below(count), count > 64 ? below(count - 64) : 0}};
+}
+
+// A bit an object of the chunk; none for holes.
+HWY_INLINE ObjectBits live_objects(const ChunkMap::ChunkView& chunk) {
+  if (!chunk.loose) return first_objects(chunk.count);
+  const U u;
   ObjectBits out;
-  std::uint64_t low = 0, high = 0;
-  test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-    const std::uint64_t bits = bits_of(F(), filter(i, mask));
-    if (i < 64) {
-      low |= bits << i;
-    } else {
-      high |= bits << (i - 64);
-    }
-  });
-  out.words = {low, high};
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(u)) {
+    auto live = are_objects(hn::Load(u, chunk.objects + i));
+    if (i + hn::Lanes(u) > chunk.count) live = hn::And(live, hn::FirstN(u, chunk.count - i));
+    out.words[i / 64] |= std::uint64_t{bits_of(u, live)} << i % 64;
+  }
   return out;
 }
 
-// One view, frustum only: ids straight into `out`.
-HWY_INLINE std::size_t cull_chunk(const ChunkMap::ChunkView& chunk, const Corner* corners, std::size_t planes,
-                                  ObjectId* HWY_RESTRICT out) {
-  const U u;
-  std::size_t kept = 0;
-  test_planes(corners, planes, chunk.count, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-    auto keep = hn::RebindMask(u, mask);
-    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
-    kept += store_kept(u, hn::Load(u, chunk.objects + i), keep, out + kept);
-  });
-  return kept;
+// --- objects against planes ---
+
+HWY_INLINE hn::Mask<F> not_behind(VF distance) {
+  const VF zero = hn::Zero(F());
+  return SIGHTLINE_MUTANT(boxes_on_a_plane_dropped) ? hn::Gt(distance, zero) : hn::Ge(distance, zero);
+}
+
+// Takes out of `left` the objects of a chunk that lie behind a plane.
+HWY_INLINE void drop_behind(const ChunkMap::ChunkView& chunk, const Plane& plane,
+                            const std::array<std::uint8_t, 3>& near, ObjectBits& left) {
+  const F f;
+  const float *x = chunk.side(near[0]), *y = chunk.side(near[1]), *z = chunk.side(near[2]);
+  const auto test = [&](std::size_t i) HWY_ATTR {
+    const Points corner{hn::Load(f, x + i), hn::Load(f, y + i), hn::Load(f, z + i)};
+    return std::uint64_t{bits_of(f, not_behind(distance(plane, corner)))};
+  };
+  std::uint64_t low = 0, high = 0;
+  const std::size_t first = std::min<std::size_t>(chunk.count, 64);
+  for (std::size_t i = 0; i < first; i += hn::Lanes(f)) low |= test(i) << i;
+  for (std::size_t i = 64; i < chunk.count; i += hn::Lanes(f)) high |= test(i) << (i - 64);
+  left.keep({{low, high}});
+}
+
+// Which objects a view's planes leave of the chunks that cross some, holes among them; of others nothing.
+using CrossedBits = std::array<ObjectBits, kGroup>;
+
+// Of those of the group's chunks that are `asked`. Plane by plane rather than chunk by chunk: what is to be
+// known of a plane is found once a group, and hardly a branch depends on the chunk. chunk_at(i) is the i-th.
+template <class ChunkAt>
+HWY_INLINE void test_crossed(const SectorView& view, PlaneSet among, const ChunkBits& bits,
+                             std::uint32_t asked, const ChunkAt& chunk_at, CrossedBits& left) {
+  asked &= bits.crossing;
+  if (asked == 0) return;
+  const auto for_each = [](std::uint32_t chunks, const auto& visit) HWY_ATTR {
+    for (; chunks != 0; chunks &= chunks - 1) visit(static_cast<std::uint32_t>(std::countr_zero(chunks)));
+  };
+  for_each(asked, [&](std::uint32_t i) HWY_ATTR { left[i] = first_objects(chunk_at(i).count); });
+  for (std::uint32_t planes = among; planes != 0; planes &= planes - 1) {
+    const int p = std::countr_zero(planes);
+    const Plane plane = view.planes[p];
+    const std::array<std::uint8_t, 3> near = view.near_side[p];
+    for_each(bits.planes[p] & asked,
+             [&](std::uint32_t i) HWY_ATTR { drop_behind(chunk_at(i), plane, near, left[i]); });
+  }
 }
 
 // --- what several views see of a chunk ---

@@ -43,26 +43,6 @@ void find_node_groups(const ChunkMap::Node& node, std::span<const SectorView> vi
   }
 }
 
-// cull_chunk() of a chunk with holes or of movers. By itself, as worlds that stand still never come here.
-HWY_NOINLINE std::size_t cull_loose_chunk(const ChunkMap::ChunkView& chunk, const Corner* corners,
-                                          std::size_t planes, ObjectId* HWY_RESTRICT out) {
-  if (planes == 0) return copy_chunk(chunk, out);
-  const U u;
-  std::size_t kept = 0;
-  const auto take = [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-    const auto ids = hn::Load(u, chunk.objects + i);
-    auto keep = hn::And(hn::RebindMask(u, mask), are_objects(ids));
-    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
-    kept += store_kept(u, ids, keep, out + kept);
-  };
-  if (planes == Frustum::sides) {
-    test_planes<Frustum::sides>(corners, planes, chunk.count, take);
-  } else {
-    test_planes(corners, planes, chunk.count, take);
-  }
-  return kept;
-}
-
 // How many of a group's chunks, from i on, can be read as one: they cross planes, are full but for the last,
 // and lie one behind the other.
 HWY_INLINE std::uint32_t run_of(const ChunkMap::Group& group, const ChunkBits& bits, std::uint32_t i) {
@@ -77,17 +57,53 @@ HWY_INLINE std::uint32_t run_of(const ChunkMap::Group& group, const ChunkBits& b
   return run;
 }
 
+// Calls take(first, mask) for each vector of a run's objects: which of them all planes leave.
+template <class TakeMask>
+HWY_INLINE void test_run(const ChunkMap::ChunkView& run, const SectorView& view, const TakeMask& take) {
+  const F f;
+  struct Corner {
+    const float *x, *y, *z;
+    Plane plane;
+  };
+  std::array<Corner, Frustum::sides> corners;
+  for (std::size_t p = 0; p < corners.size(); ++p) {
+    const auto& near = view.near_side[p];
+    corners[p] = {run.side(near[0]), run.side(near[1]), run.side(near[2]), view.planes[p]};
+  }
+  for (std::size_t i = 0; i < run.count; i += hn::Lanes(f)) {
+    VF worst = hn::Zero(f);
+    for (const auto& [x, y, z, plane] : corners) {
+      const Points corner{hn::Load(f, x + i), hn::Load(f, y + i), hn::Load(f, z + i)};
+      worst = hn::Min(worst, distance(plane, corner));
+    }
+    take(i, not_behind(worst));
+  }
+}
+
+// Of a run with holes those that are left.
+HWY_INLINE std::size_t cull_run(const ChunkMap::ChunkView& run, const SectorView& view,
+                                ObjectId* HWY_RESTRICT out) {
+  const U u;
+  std::size_t kept = 0;
+  test_run(run, view, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const auto ids = hn::Load(u, run.objects + i);
+    auto keep = hn::And(hn::RebindMask(u, mask), are_objects(ids));
+    if (i + hn::Lanes(u) > run.count) keep = hn::And(keep, hn::FirstN(u, run.count - i));
+    kept += store_kept(u, ids, keep, out + kept);
+  });
+  return kept;
+}
+
 // The same where each id is one more than the last, so that none need be read.
-HWY_INLINE std::size_t cull_in_order(const ChunkMap::ChunkView& chunk, const Corner* corners,
+HWY_INLINE std::size_t cull_in_order(const ChunkMap::ChunkView& run, const SectorView& view,
                                      ObjectId* HWY_RESTRICT out) {
   const U u;
-  const auto first = hn::Iota(u, chunk.objects[0]);
+  const auto first = hn::Iota(u, run.objects[0]);
   std::size_t kept = 0;
-  test_planes<Frustum::sides>(corners, Frustum::sides, chunk.count,
-                              [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
-                                const auto ids = hn::Add(first, hn::Set(u, static_cast<std::uint32_t>(i)));
-                                kept += store_kept(u, ids, hn::RebindMask(u, mask), out + kept);
-                              });
+  test_run(run, view, [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+    const auto ids = hn::Add(first, hn::Set(u, static_cast<std::uint32_t>(i)));
+    kept += store_kept(u, ids, hn::RebindMask(u, mask), out + kept);
+  });
   return kept;
 }
 
@@ -107,29 +123,22 @@ HWY_NOINLINE std::size_t cull_movers(const EntryGroup& at, const ChunkBits& bits
     const ChunkMap::ChunkView last = at.map.chunk(at.group, i - 1);
     run.count = static_cast<std::uint32_t>(last.objects - run.objects) + last.count;
     counts.tested += run.count;
-    Corner corners[Frustum::sides];
-    corners_of(run, *at.views, kAllPlanes, corners);
-    kept += in_order ? cull_in_order(run, corners, out + kept)
-                     : cull_loose_chunk(run, corners, Frustum::sides, out + kept);
+    kept += in_order ? cull_in_order(run, *at.views, out + kept) : cull_run(run, *at.views, out + kept);
   }
   return kept;
 }
 
-// cull_chunk() of a chunk of which the columns leave a part.
-HWY_NOINLINE std::size_t cull_parted_chunk(const PassInput& input, const EntryGroup& at,
-                                           const ChunkMap::ChunkView& chunk, PlaneSet planes,
-                                           ObjectId* HWY_RESTRICT out) {
+// The objects of a chunk that one view sees; writes up to a vector more. Returns how many there are.
+HWY_INLINE std::size_t write_left(const ChunkMap::ChunkView& chunk, const ObjectBits& left,
+                                  ObjectId* HWY_RESTRICT to) {
   const U u;
-  Corner corners[Frustum::sides];
-  const ObjectBits seen = input.columns->objects(at.map, at.group, chunk, *at.views);
   std::size_t kept = 0;
-  const auto take = [&](std::size_t i, hn::Mask<F> mask) HWY_ATTR {
+  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(u)) {
     const auto ids = hn::Load(u, chunk.objects + i);
-    auto keep = hn::And(hn::And(hn::RebindMask(u, mask), mask_at(u, seen, i)), are_objects(ids));
-    if (i + hn::Lanes(u) > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
-    kept += store_kept(u, ids, keep, out + kept);
-  };
-  test_planes<0>(corners, corners_of(chunk, *at.views, planes, corners), chunk.count, take);
+    auto keep = mask_at(u, left, i);
+    if (chunk.loose) keep = hn::And(keep, are_objects(ids));
+    kept += store_kept(u, ids, keep, to + kept);
+  }
   return kept;
 }
 
@@ -137,6 +146,7 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
   PassCounts counts;
   ObjectId* end = out;
   std::array<ChunkMap::ChunkView, kGroup> chunks;
+  CrossedBits left;
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const GroupEntry& entry = entries[e];
     prefetch_group(input, entries, e);
@@ -153,25 +163,20 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
       continue;
     }
     find_chunks(at, bits.kept, chunks);
+    const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
+    test_crossed(*at.views, entry.planes[0], bits, bits.kept, chunk_at, left);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       const ChunkMap::ChunkView& chunk = chunks[i];
-      const PlaneSet planes = planes_of(bits, i, entry.planes[0]);
-      if (parted >> i & 1) {
-        counts.tested += chunk.count;
-        end += cull_parted_chunk(input, at, chunk, planes, end);
-      } else if (chunk.loose) {
-        Corner corners[Frustum::sides];
-        if (planes != 0) counts.tested += chunk.count;
-        end += cull_loose_chunk(chunk, corners, corners_of(chunk, *at.views, planes, corners), end);
-      } else if (planes == 0) {
-        copy_ids(chunk.objects, chunk.count, end);
-        end += chunk.count;
-      } else {
-        counts.tested += chunk.count;
-        Corner corners[Frustum::sides];
-        end += cull_chunk(chunk, corners, corners_of(chunk, *at.views, planes, corners), end);
+      const bool crossing = bits.crossing >> i & 1;
+      if (!crossing && (parted >> i & 1) == 0) {
+        end += copy_chunk(chunk, end);
+        continue;
       }
+      counts.tested += chunk.count;
+      if (!crossing) left[i] = first_objects(chunk.count);
+      if (parted >> i & 1) left[i].keep(input.columns->objects(at.map, at.group, chunk, *at.views));
+      end += write_left(chunk, left[i], end);
     }
   }
   counts.written = static_cast<std::size_t>(end - out);
@@ -225,42 +230,32 @@ HWY_INLINE std::uint32_t classify_group(const PassInput& input, const GroupEntry
   return any;
 }
 
-// Tests chunk i of a group object by object, for views that it crosses.
-struct CrossedChunk {
-  const PassInput& input;
-  const GroupEntry& entry;
-  const SectorView* views;
-  const GroupBits& bits;
-  const ChunkMap::ChunkView& chunk;
-  std::uint32_t i;  // the chunk's place in the group
+using CrossedByView = std::array<CrossedBits, kMaxViews>;
 
-  HWY_INLINE std::size_t corners(int v, Corner* out) const {
-    return corners_of(chunk, views[v], planes_of(bits.bits[v], i, entry.planes[v]), out);
+// What each view leaves of the chunks that it crosses. Without masks, who is seen whole by one view need not
+// be asked for others.
+HWY_INLINE void test_views(const PassInput& input, const GroupEntry& entry, const EntryGroup& at,
+                           const GroupBits& bits, bool masks,
+                           const std::array<ChunkMap::ChunkView, kGroup>& chunks, CrossedByView& left) {
+  std::uint32_t asked = ~0u;
+  for (std::size_t v = 0; v < input.view_count && !masks; ++v) asked &= ~bits.whole[v];
+  const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
+  for (std::size_t v = 0; v < input.view_count; ++v) {
+    if (bits.crossing[v] != 0)
+      test_crossed(at.views[v], entry.planes[v], bits.bits[v], asked, chunk_at, left[v]);
   }
+}
 
-  // One view alone: its mask is the same for all.
-  HWY_INLINE std::size_t write_one(int v, std::size_t kept, ObjectId* HWY_RESTRICT ids,
-                                   std::uint8_t* HWY_RESTRICT masks) const {
-    Corner planes[Frustum::sides];
-    const std::size_t crossed = corners(v, planes);
-    const std::size_t count = chunk.loose ? cull_loose_chunk(chunk, planes, crossed, ids + kept)
-                                          : cull_chunk(chunk, planes, crossed, ids + kept);
-    if (masks) fill_masks(input.bits[v], count, masks + kept);
-    return count;
+// Of chunk i, for the views that cross it.
+HWY_INLINE void gather(const PassInput& input, std::uint32_t views, std::uint32_t i,
+                       const CrossedByView& left, ChunkViews& out) {
+  out.count = 0;
+  for (; views != 0; views &= views - 1) {
+    const int v = std::countr_zero(views);
+    out.bits[out.count] = input.bits[v];
+    out.seen[out.count++] = left[v][i];
   }
-
-  HWY_INLINE void test(std::uint32_t crossed_by, ChunkViews& out) const {
-    out.count = 0;
-    for (; crossed_by != 0; crossed_by &= crossed_by - 1) {
-      const int v = std::countr_zero(crossed_by);
-      Corner planes[Frustum::sides];
-      const std::size_t count = corners(v, planes);
-      out.bits[out.count] = input.bits[v];
-      out.seen[out.count++] =
-          test_objects(chunk, planes, count, [](std::size_t, hn::Mask<F> m) HWY_ATTR { return m; });
-    }
-  }
-};
+}
 
 // Several views, frustum only.
 PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> entries,
@@ -270,6 +265,7 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
   GroupBits bits;
   std::array<ChunkMap::ChunkView, kGroup> chunks;
   ChunkViews crossed;
+  CrossedByView left;
   const auto mask_bits = bits_of_views(input);
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const GroupEntry& entry = entries[e];
@@ -280,6 +276,7 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
     const ViewsOfChunk seen_by = turn(bits.whole, input.view_count),
                        crossed_by = turn(bits.crossing, input.view_count);
     find_chunks(at, any, chunks);
+    test_views(input, entry, at, bits, masks != nullptr, chunks, left);
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
@@ -288,13 +285,15 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
         kept += write_whole(chunk, whole, kept, ids, masks);
         continue;
       }
-      const CrossedChunk crossing{input, entry, at.views, bits, chunk, i};
       if (whole == 0 && std::has_single_bit(by)) {
+        const int v = std::countr_zero(by);
         counts.tested += chunk.count;
-        kept += crossing.write_one(std::countr_zero(by), kept, ids, masks);
+        const std::size_t count = write_left(chunk, left[v][i], ids + kept);
+        if (masks) fill_masks(input.bits[v], count, masks + kept);
+        kept += count;
         continue;
       }
-      crossing.test(by, crossed);
+      gather(input, by, i, left, crossed);
       counts.tested += crossed.count * chunk.count;
       kept += write_parts(chunk, whole, crossed, kept, ids, masks);
     }

@@ -159,7 +159,7 @@ std::size_t strays(const ChunkMap& map) {
   for (const ChunkMap::Group& group : map.groups()) {
     for (std::uint32_t i = 1; i < group.count; ++i) {
       const auto before = map.chunk(group, i - 1), here = map.chunk(group, i);
-      count += here.objects != before.objects + (before.min_y - before.min_x);
+      count += here.objects != before.objects + before.step;
     }
   }
   return count;
