@@ -52,14 +52,8 @@ ColumnBits caster_chunks(const ChunkMap::Group& group, const CasterView& casters
 }
 
 void caster_objects(const ChunkMap::ChunkView& chunk, const CasterView& casters, ObjectBits& seen) {
-  const F f;
-  const Sides sides{chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5)};
-  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f)) {
-    auto outside = hn::Not(hn::FirstN(f, hn::Lanes(f)));
-    for (std::size_t p = 0; p < casters.count; ++p)
-      outside = hn::Or(outside, behind(casters.planes[p].plane, sides, casters.planes[p].near_side, i));
-    seen.words[i / 64] &= ~(std::uint64_t{bits_of(f, outside)} << i % 64);
-  }
+  for (std::size_t p = 0; p < casters.count; ++p)
+    drop_behind(chunk, casters.planes[p].plane, casters.planes[p].near_side, seen);
 }
 
 }  // namespace sightline::world::HWY_NAMESPACE
@@ -72,8 +66,6 @@ HWY_EXPORT(caster_objects);
 
 namespace {
 
-using geometry::BoxSpan;
-
 ColumnBits chunks_that_cast(const ChunkMap& map, std::uint32_t number, const SectorView& view) {
   const CasterView& casters = *view.casters;
   ColumnBits out{~0u, ~0u};
@@ -84,12 +76,8 @@ ColumnBits chunks_that_cast(const ChunkMap& map, std::uint32_t number, const Sec
     out.some &= by_planes.some, out.all &= by_planes.all;
   }
   if (!casters.mask || out.some == 0) return out;
-  const auto& b = group.bounds;
   std::array<std::uint8_t, ChunkMap::kGroupCapacity> seen;
-  occlusion::query_boxes(
-      *casters.mask, casters.projection,
-      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
-      seen.data());
+  occlusion::query_boxes(*casters.mask, casters.projection, boxes_of(group), seen.data());
   for (std::uint32_t i = 0; i < group.count; ++i) out.some &= ~(std::uint32_t{seen[i] == 0} << i);
   out.all = 0;
   return out;
@@ -103,10 +91,7 @@ ObjectBits objects_that_cast(const ChunkMap& map, const ChunkMap::Group& group,
   if (casters.count > 0) HWY_DYNAMIC_DISPATCH(caster_objects)(chunk, casters, seen);
   if (!casters.mask) return seen;
   std::array<std::uint8_t, ChunkMap::kCapacity> cast;
-  occlusion::query_boxes(
-      *casters.mask, casters.projection,
-      {chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5), chunk.count},
-      cast.data());
+  occlusion::query_boxes(*casters.mask, casters.projection, chunk.boxes(), cast.data());
   for (std::uint32_t i = 0; i < chunk.count; ++i)
     if (cast[i] == 0) seen.drop(i);
   return seen;

@@ -5,6 +5,8 @@
 
 #include <sightline/boxes.hpp>
 
+#include "library/geometry/box_reader.hpp"
+
 namespace sightline::world {
 
 /// Rows and columns of leaf regions, last ones included, that a box touches.
@@ -47,6 +49,9 @@ struct ChunkView {
   bool loose;  ///< movers' or with holes
 
   [[nodiscard]] const float* side(std::size_t k) const noexcept { return sides + std::size_t{step} * k; }
+  [[nodiscard]] geometry::BoxSpan boxes() const noexcept {
+    return {side(0), side(1), side(2), side(3), side(4), side(5), count};
+  }
   [[nodiscard]] Box box(std::size_t i) const noexcept {
     return {{side(0)[i], side(1)[i], side(2)[i]}, {side(3)[i], side(4)[i], side(5)[i]}};
   }

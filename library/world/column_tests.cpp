@@ -78,15 +78,6 @@ ColumnBits distance_chunks(const ChunkMap& map, std::uint32_t number, const Sect
   return out;
 }
 
-// A bit an object, as `seen(i)` says of the vector that begins there.
-template <class Seen>
-HWY_INLINE ObjectBits bits_of_objects(std::size_t count, const Seen& seen) {
-  ObjectBits out;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(F()))
-    out.words[i / 64] |= std::uint64_t{bits_of(F(), seen(i))} << i % 64;
-  return out;
-}
-
 ObjectBits layer_objects(const ChunkMap& map, const ChunkMap::Group& group, const ChunkMap::ChunkView& chunk,
                          const SectorView& view) {
   const U u;
@@ -100,19 +91,10 @@ ObjectBits layer_objects(const ChunkMap& map, const ChunkMap::Group& group, cons
 
 ObjectBits distance_objects(const ChunkMap& map, const ChunkMap::Group& group,
                             const ChunkMap::ChunkView& chunk, const SectorView& view) {
-  const F f;
   std::size_t step = 0;
   const float* metres = map.distances_of(group, chunk, step);
   return bits_of_objects(chunk.count, [&](std::size_t i) HWY_ATTR {
-    VF distance = hn::Zero(f);
-    const auto add = [&](const float* low, const float* high, float eye) HWY_ATTR {
-      const VF half = hn::Set(f, 0.5f);
-      const VF centre = hn::Add(hn::Mul(half, hn::Load(f, low + i)), hn::Mul(half, hn::Load(f, high + i)));
-      distance = hn::Add(distance, square(hn::Sub(centre, hn::Set(f, eye))));
-    };
-    add(chunk.side(0), chunk.side(3), view.distance_eye.x);
-    add(chunk.side(1), chunk.side(4), view.distance_eye.y);
-    add(chunk.side(2), chunk.side(5), view.distance_eye.z);
+    const VF distance = spheres_of(chunk, view.distance_eye, i).distance;
     return hn::And(hn::Ge(distance, reach(metres + i, view)),
                    hn::Lt(distance, reach(metres + step + i, view)));
   });

@@ -22,35 +22,19 @@ namespace sightline::world::HWY_NAMESPACE {
 // mean nothing.
 HWY_INLINE ObjectBits large_objects(const ChunkMap::ChunkView& chunk, const SectorView& view) {
   const F f;
-  ObjectBits out;
-  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f)) {
+  return bits_of_objects(chunk.count, [&](std::size_t i) HWY_ATTR {
     // π·r²·f² / d² >= min_area without the division; a bounding sphere that holds the eye always passes.
-    const VF half = hn::Set(f, 0.5f);
-    VF radius = hn::Zero(f), distance = hn::Zero(f);
-    const auto square = [&](const float* low, const float* high, float eye) HWY_ATTR {
-      const VF a = hn::Mul(half, hn::Load(f, low + i)), b = hn::Mul(half, hn::Load(f, high + i));
-      const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, eye));
-      radius = hn::Add(radius, hn::Mul(extent, extent));
-      distance = hn::Add(distance, hn::Mul(offset, offset));
-    };
-    square(chunk.side(0), chunk.side(3), view.eye.x);
-    square(chunk.side(1), chunk.side(4), view.eye.y);
-    square(chunk.side(2), chunk.side(5), view.eye.z);
+    const auto [radius, distance] = spheres_of(chunk, view.eye, i);
     const VF limit = view.orthographic ? hn::Set(f, 1.0f) : distance;
     const auto large = hn::Ge(hn::Mul(radius, hn::Set(f, view.area_scale)), limit);
-    out.words[i / 64] |= std::uint64_t{bits_of(f, hn::Or(large, hn::Le(distance, radius)))} << i % 64;
-  }
-  return out;
+    return hn::Or(large, hn::Le(distance, radius));
+  });
 }
 
 // Which of a group's chunks the occluders do not hide, a byte each.
 using ChunkAnswers = std::array<std::uint8_t, kGroup>;
 HWY_INLINE void ask_chunks(const ChunkMap::Group& group, const SectorView& view, ChunkAnswers& visible) {
-  const auto& b = group.bounds;
-  view.occluders->ask->boxes(
-      *view.occluders, view.projection,
-      {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count},
-      visible.data());
+  view.occluders->ask->boxes(*view.occluders, view.projection, boxes_of(group), visible.data());
 }
 
 inline std::uint64_t objects_of(const ChunkMap::ChunkView& chunk) {
@@ -90,10 +74,7 @@ inline std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const
   std::uint64_t dropped = 0;
   if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
   std::array<std::uint8_t, ChunkMap::kCapacity> visible;
-  view.occluders->ask->boxes(
-      *view.occluders, view.projection,
-      {chunk.side(0), chunk.side(1), chunk.side(2), chunk.side(3), chunk.side(4), chunk.side(5), chunk.count},
-      visible.data());
+  view.occluders->ask->boxes(*view.occluders, view.projection, chunk.boxes(), visible.data());
   for (std::uint32_t i = 0; i < chunk.count; ++i) {
     if (visible[i] || !seen.at(i)) continue;
     seen.drop(i);
@@ -131,6 +112,24 @@ HWY_INLINE ObjectBits view_objects(const PassInput& input, const EntryGroup& at,
   return seen;
 }
 
+// The chunks that a view sees all of, with nothing left to test.
+HWY_INLINE std::uint32_t seen_whole(const SectorView& view, const ChunkBits& bits, std::uint32_t parted) {
+  return view.area_scale > 0 || view.occluders ? 0 : bits.kept & ~(bits.crossing | parted);
+}
+
+// Tests what crosses planes, for each view. Without masks, who is seen whole by one view need not be asked
+// for others.
+HWY_INLINE void test_crossed_by_all(const PassInput& input, const GroupEntry& entry, const SectorView* views,
+                                    const std::array<ChunkBits, kMaxViews>& bits,
+                                    const std::array<std::uint32_t, kMaxViews>& parted, bool masks,
+                                    const Chunks& chunks, std::array<CrossedBits, kMaxViews>& left) {
+  std::uint32_t asked = ~0u;
+  for (std::size_t v = 0; v < input.view_count && !masks; ++v)
+    asked &= ~seen_whole(views[v], bits[v], parted[v]);
+  for (std::size_t v = 0; v < input.view_count; ++v)
+    test_crossed(chunks, views[v], entry.planes[v], bits[v], bits[v].kept & asked, left[v]);
+}
+
 // Who sees a chunk, and how: bits of a mask where nothing is left to test, views where something is.
 struct ChunkViewers {
   std::uint8_t whole = 0, part = 0;
@@ -142,9 +141,7 @@ HWY_INLINE ChunkViewers viewers_of(const PassInput& input, const EntryGroup& at,
   ChunkViewers out;
   for (std::size_t v = 0; v < input.view_count; ++v) {
     if ((bits[v].kept >> i & 1) == 0) continue;
-    const SectorView& view = at.views[v];
-    const bool all =
-        ((bits[v].crossing | parted[v]) >> i & 1) == 0 && view.area_scale == 0 && !view.occluders;
+    const bool all = seen_whole(at.views[v], bits[v], parted[v]) >> i & 1;
     if (all) out.whole |= input.bits[v];
     if (!all) out.part |= static_cast<std::uint8_t>(1u << v);
   }
@@ -170,7 +167,7 @@ HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const Grou
   std::array<ChunkBits, kMaxViews> bits;
   std::array<std::uint32_t, kMaxViews> parted;
   ChunkViews parts;
-  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  Chunks chunks;
   std::array<CrossedBits, kMaxViews> left;
   // What occlusion drops counts once for each of the caller's views that are the same.
   const auto count_occluded = [&](std::size_t v, std::uint64_t objects) {
@@ -192,9 +189,7 @@ HWY_INLINE PassCounts cull_filtered(const PassInput& input, std::span<const Grou
     }
     counts.chunks += at.group.count;
     find_chunks(at, any, chunks);
-    const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
-    for (std::size_t v = 0; v < input.view_count; ++v)
-      test_crossed(at.views[v], entry.planes[v], bits[v], bits[v].kept, chunk_at, left[v]);
+    test_crossed_by_all(input, entry, at.views, bits, parted, masks != nullptr, chunks, left);
     notes.begin(entry, at, any);
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));

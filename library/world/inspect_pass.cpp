@@ -38,9 +38,9 @@ public:
     ChunkBits bits = classify_chunks(at_.group, view_, planes_);
     const std::uint32_t inside = bits.kept, crossing = bits.crossing;
     CrossedBits by_planes;
-    test_crossed(
-        view_, planes_, bits, crossing, [&](std::uint32_t i) { return at_.map.chunk(at_.group, i); },
-        by_planes);
+    Chunks chunks;
+    find_chunks(at_, crossing, chunks);
+    test_crossed(chunks, view_, planes_, bits, crossing, by_planes);
     parted_ = input_.columns ? ask_columns(input_, at_, view_, bits) : 0;
     const std::uint32_t left = bits.kept;
     ChunkAnswers visible;
@@ -49,8 +49,7 @@ public:
     std::uint32_t seen = 0;
     for (std::uint32_t i = 0; i < at_.group.count; ++i) seen |= std::uint32_t{visible[i] != 0} << i;
     seen &= left;
-    const bool untested = view_.area_scale == 0 && !view_.occluders;
-    const std::uint32_t whole = untested ? seen & ~(bits.crossing | parted_) : 0;
+    const std::uint32_t whole = seen & seen_whole(view_, bits, parted_);
     ++stats_.groups;
     stats_.chunks += at_.group.count;
     stats_.chunks_outside += at_.group.count - bits_in(inside);

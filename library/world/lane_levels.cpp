@@ -87,17 +87,7 @@ struct Seen {
 HWY_INLINE Seen look_at(const ChunkMap::ChunkView& chunk, const Vec3& eye, const LevelScale& scale,
                         std::size_t i) {
   const F f;
-  const VF half = hn::Set(f, 0.5f);
-  VF radius = hn::Zero(f), distance = hn::Zero(f);
-  const auto add = [&](const float* low, const float* high, float at) HWY_ATTR {
-    const VF a = hn::Mul(half, hn::Load(f, low + i)), b = hn::Mul(half, hn::Load(f, high + i));
-    const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, at));
-    radius = hn::Add(radius, hn::Mul(extent, extent));
-    distance = hn::Add(distance, hn::Mul(offset, offset));
-  };
-  add(chunk.side(0), chunk.side(3), eye.x);
-  add(chunk.side(1), chunk.side(4), eye.y);
-  add(chunk.side(2), chunk.side(5), eye.z);
+  const auto [radius, distance] = spheres_of(chunk, eye, i);
   // Around the eye nothing is too small.
   const VF infinite = hn::Set(f, std::numeric_limits<float>::infinity());
   const VF reach = hn::Mul(hn::Set(f, scale.squared), radius);

@@ -161,11 +161,8 @@ public:
     std::uint32_t rest = sight_.any;
     if (pass_.view_count == 1) {
       // Those that nothing is to be asked of, at once.
-      const SectorView& view = *at.views;
-      const std::uint32_t part = input_.whole_chunks ? 0
-                                 : view.area_scale > 0 || view.occluders
-                                     ? rest
-                                     : sight_.bits[0].crossing | sight_.parted[0];
+      const std::uint32_t part =
+          input_.whole_chunks ? 0 : rest & ~seen_whole(*at.views, sight_.bits[0], sight_.parted[0]);
       out_.add_chunks(at, slots, rest & ~part, pass_.bits[0]);
       rest &= part;
     }
@@ -211,11 +208,13 @@ private:
   HWY_NOINLINE void test_crossed_by(const GroupEntry& entry, const EntryGroup& at) {
     std::uint32_t crossed = 0;
     for (std::size_t v = 0; v < pass_.view_count; ++v) crossed |= sight_.bits[v].crossing | sight_.parted[v];
-    const auto chunk_at = [&](std::uint32_t i) HWY_ATTR { return at.map.chunk(at.group, i); };
-    for (std::uint32_t rest = crossed & sight_.any; rest != 0; rest &= rest - 1)
-      hwy::Prefetch(chunk_at(static_cast<std::uint32_t>(std::countr_zero(rest))).sides);
-    for (std::size_t v = 0; v < pass_.view_count; ++v)
-      test_crossed(at.views[v], entry.planes[v], sight_.bits[v], sight_.bits[v].kept, chunk_at, left_[v]);
+    Chunks chunks;
+    for (std::uint32_t rest = crossed & sight_.any; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+      chunks[i] = at.map.chunk(at.group, i);
+      hwy::Prefetch(chunks[i].sides);
+    }
+    test_crossed_by_all(pass_, entry, at.views, sight_.bits, sight_.parted, masks_, chunks, left_);
   }
 
   HWY_INLINE void test(const EntryGroup& at, std::uint32_t i, const ChunkMap::ChunkView& chunk,

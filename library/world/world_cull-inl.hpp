@@ -152,6 +152,17 @@ HWY_INLINE void prefetch_ids(const ChunkMap::ChunkView& chunk) {
   for (std::uint32_t i = 64; i < ChunkMap::kCapacity; i += 16) hwy::Prefetch(chunk.objects + i);
 }
 
+// A bit an object, as `seen(i)` says of the vector that begins there.
+template <class Seen>
+HWY_INLINE ObjectBits bits_of_objects(std::size_t count, const Seen& seen) {
+  std::uint64_t low = 0, high = 0;
+  const auto bits = [&](std::size_t i) HWY_ATTR { return std::uint64_t{bits_of(F(), seen(i))}; };
+  const std::size_t first = std::min<std::size_t>(count, 64);
+  for (std::size_t i = 0; i < first; i += hn::Lanes(F())) low |= bits(i) << i;
+  for (std::size_t i = 64; i < count; i += hn::Lanes(F())) high |= bits(i) << (i - 64);
+  return {{low, high}};
+}
+
 // A bit each for as many objects.
 HWY_INLINE ObjectBits first_objects(std::uint32_t count) {
   const auto below = [](std::uint32_t end) {
@@ -164,12 +175,31 @@ HWY_INLINE ObjectBits first_objects(std::uint32_t count) {
 HWY_INLINE ObjectBits live_objects(const ChunkMap::ChunkView& chunk) {
   if (!chunk.loose) return first_objects(chunk.count);
   const U u;
-  ObjectBits out;
-  for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(u)) {
+  return bits_of_objects(chunk.count, [&](std::size_t i) HWY_ATTR {
     auto live = are_objects(hn::Load(u, chunk.objects + i));
     if (i + hn::Lanes(u) > chunk.count) live = hn::And(live, hn::FirstN(u, chunk.count - i));
-    out.words[i / 64] |= std::uint64_t{bits_of(u, live)} << i % 64;
-  }
+    return hn::RebindMask(F(), live);
+  });
+}
+
+// Of a vector of objects their bounding spheres' radii and their middles' distances from the eye, both
+// squared.
+struct WideSpheres {
+  VF radius, distance;
+};
+
+HWY_INLINE WideSpheres spheres_of(const ChunkMap::ChunkView& chunk, const Vec3& eye, std::size_t i) {
+  const F f;
+  const VF half = hn::Set(f, 0.5f);
+  WideSpheres out{hn::Zero(f), hn::Zero(f)};
+  const auto add = [&](std::size_t axis, float at) HWY_ATTR {
+    const VF a = hn::Mul(half, hn::Load(f, chunk.side(axis) + i)),
+             b = hn::Mul(half, hn::Load(f, chunk.side(axis + 3) + i));
+    const VF extent = hn::Sub(b, a), offset = hn::Sub(hn::Add(a, b), hn::Set(f, at));
+    out.radius = hn::Add(out.radius, hn::Mul(extent, extent));
+    out.distance = hn::Add(out.distance, hn::Mul(offset, offset));
+  };
+  add(0, eye.x), add(1, eye.y), add(2, eye.z);
   return out;
 }
 
@@ -185,37 +215,34 @@ HWY_INLINE void drop_behind(const ChunkMap::ChunkView& chunk, const Plane& plane
                             const std::array<std::uint8_t, 3>& near, ObjectBits& left) {
   const F f;
   const float *x = chunk.side(near[0]), *y = chunk.side(near[1]), *z = chunk.side(near[2]);
-  const auto test = [&](std::size_t i) HWY_ATTR {
+  left.keep(bits_of_objects(chunk.count, [&](std::size_t i) HWY_ATTR {
     const Points corner{hn::Load(f, x + i), hn::Load(f, y + i), hn::Load(f, z + i)};
-    return std::uint64_t{bits_of(f, not_behind(distance(plane, corner)))};
-  };
-  std::uint64_t low = 0, high = 0;
-  const std::size_t first = std::min<std::size_t>(chunk.count, 64);
-  for (std::size_t i = 0; i < first; i += hn::Lanes(f)) low |= test(i) << i;
-  for (std::size_t i = 64; i < chunk.count; i += hn::Lanes(f)) high |= test(i) << (i - 64);
-  left.keep({{low, high}});
+    return not_behind(distance(plane, corner));
+  }));
 }
+
+// The chunks of a group, as far as they were found.
+using Chunks = std::array<ChunkMap::ChunkView, kGroup>;
 
 // Which objects a view's planes leave of the chunks that cross some, holes among them; of others nothing.
 using CrossedBits = std::array<ObjectBits, kGroup>;
 
 // Of those of the group's chunks that are `asked`. Plane by plane rather than chunk by chunk: what is to be
-// known of a plane is found once a group, and hardly a branch depends on the chunk. chunk_at(i) is the i-th.
-template <class ChunkAt>
-HWY_INLINE void test_crossed(const SectorView& view, PlaneSet among, const ChunkBits& bits,
-                             std::uint32_t asked, const ChunkAt& chunk_at, CrossedBits& left) {
+// known of a plane is found once a group, and hardly a branch depends on the chunk.
+HWY_INLINE void test_crossed(const Chunks& chunks, const SectorView& view, PlaneSet among,
+                             const ChunkBits& bits, std::uint32_t asked, CrossedBits& left) {
   asked &= bits.crossing;
   if (asked == 0) return;
-  const auto for_each = [](std::uint32_t chunks, const auto& visit) HWY_ATTR {
-    for (; chunks != 0; chunks &= chunks - 1) visit(static_cast<std::uint32_t>(std::countr_zero(chunks)));
+  const auto for_each = [](std::uint32_t those, const auto& visit) HWY_ATTR {
+    for (; those != 0; those &= those - 1) visit(static_cast<std::uint32_t>(std::countr_zero(those)));
   };
-  for_each(asked, [&](std::uint32_t i) HWY_ATTR { left[i] = first_objects(chunk_at(i).count); });
+  for_each(asked, [&](std::uint32_t i) HWY_ATTR { left[i] = first_objects(chunks[i].count); });
   for (std::uint32_t planes = among; planes != 0; planes &= planes - 1) {
     const int p = std::countr_zero(planes);
     const Plane plane = view.planes[p];
     const std::array<std::uint8_t, 3> near = view.near_side[p];
     for_each(bits.planes[p] & asked,
-             [&](std::uint32_t i) HWY_ATTR { drop_behind(chunk_at(i), plane, near, left[i]); });
+             [&](std::uint32_t i) HWY_ATTR { drop_behind(chunks[i], plane, near, left[i]); });
   }
 }
 
@@ -335,8 +362,7 @@ HWY_INLINE std::uint32_t ask_columns(const PassInput& input, const EntryGroup& a
 
 // Finds the chunks of a group whose bits are set. Memory is what a pass waits for: all of a group's is asked
 // for before any of it is used.
-HWY_INLINE void find_chunks(const EntryGroup& at, std::uint32_t bits,
-                            std::array<ChunkMap::ChunkView, kGroup>& chunks) {
+HWY_INLINE void find_chunks(const EntryGroup& at, std::uint32_t bits, Chunks& chunks) {
   for (; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
     chunks[i] = at.map.chunk(at.group, i);

@@ -145,7 +145,7 @@ HWY_INLINE std::size_t write_left(const ChunkMap::ChunkView& chunk, const Object
 PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries, ObjectId* HWY_RESTRICT out) {
   PassCounts counts;
   ObjectId* end = out;
-  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  Chunks chunks;
   CrossedBits left;
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const GroupEntry& entry = entries[e];
@@ -163,8 +163,7 @@ PassCounts one_view(const PassInput& input, std::span<const GroupEntry> entries,
       continue;
     }
     find_chunks(at, bits.kept, chunks);
-    const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
-    test_crossed(*at.views, entry.planes[0], bits, bits.kept, chunk_at, left);
+    test_crossed(chunks, *at.views, entry.planes[0], bits, bits.kept, left);
     for (std::uint32_t rest = bits.kept; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
       const ChunkMap::ChunkView& chunk = chunks[i];
@@ -234,15 +233,12 @@ using CrossedByView = std::array<CrossedBits, kMaxViews>;
 
 // What each view leaves of the chunks that it crosses. Without masks, who is seen whole by one view need not
 // be asked for others.
-HWY_INLINE void test_views(const PassInput& input, const GroupEntry& entry, const EntryGroup& at,
-                           const GroupBits& bits, bool masks,
-                           const std::array<ChunkMap::ChunkView, kGroup>& chunks, CrossedByView& left) {
+HWY_INLINE void test_views(const PassInput& input, const GroupEntry& entry, const SectorView* views,
+                           const GroupBits& bits, bool masks, const Chunks& chunks, CrossedByView& left) {
   std::uint32_t asked = ~0u;
   for (std::size_t v = 0; v < input.view_count && !masks; ++v) asked &= ~bits.whole[v];
-  const auto chunk_at = [&](std::uint32_t i) -> const ChunkMap::ChunkView& { return chunks[i]; };
   for (std::size_t v = 0; v < input.view_count; ++v) {
-    if (bits.crossing[v] != 0)
-      test_crossed(at.views[v], entry.planes[v], bits.bits[v], asked, chunk_at, left[v]);
+    if (bits.crossing[v] != 0) test_crossed(chunks, views[v], entry.planes[v], bits.bits[v], asked, left[v]);
   }
 }
 
@@ -263,7 +259,7 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
   PassCounts counts;
   std::size_t kept = 0;
   GroupBits bits;
-  std::array<ChunkMap::ChunkView, kGroup> chunks;
+  Chunks chunks;
   ChunkViews crossed;
   CrossedByView left;
   const auto mask_bits = bits_of_views(input);
@@ -276,7 +272,7 @@ PassCounts frustum_views(const PassInput& input, std::span<const GroupEntry> ent
     const ViewsOfChunk seen_by = turn(bits.whole, input.view_count),
                        crossed_by = turn(bits.crossing, input.view_count);
     find_chunks(at, any, chunks);
-    test_views(input, entry, at, bits, masks != nullptr, chunks, left);
+    test_views(input, entry, at.views, bits, masks != nullptr, chunks, left);
     for (; any != 0; any &= any - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(any));
       const ChunkMap::ChunkView& chunk = chunks[i];
