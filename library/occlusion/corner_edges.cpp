@@ -1,5 +1,6 @@
-// Which edges of others end at a triangle's corners, so that drawing knows where the mesh ends beside it.
+// Which edges of others end at triangles' corners, so that drawing knows where the mesh ends beside them.
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <span>
 
@@ -12,7 +13,12 @@ using namespace geometry;
 
 namespace {
 
-using CornerEdge = OccluderTopology::CornerEdge;
+constexpr std::uint32_t kGroup = OccluderTopology::kGroup;
+
+struct CornerEdge {
+  std::uint32_t a, b;             // in `positions`
+  std::uint32_t triangle, other;  // as RimEdges has them
+};
 
 class CornerEdges {
 public:
@@ -95,19 +101,98 @@ private:
   std::vector<std::uint32_t> first_, at_vertex_, first_shared_, found_;
 };
 
+// What of a group's triangles are named, each with the bits of those that name it, in order.
+struct Named {
+  std::uint32_t what, of;
+};
+
+void join(std::vector<Named>& named) {
+  std::ranges::sort(named, {}, &Named::what);
+  std::size_t count = 0;
+  for (const Named& n : named) {
+    if (count > 0 && named[count - 1].what == n.what)
+      named[count - 1].of |= n.of;
+    else
+      named[count++] = n;
+  }
+  named.resize(count);
+}
+
+void name_triangles(const OccluderTopology& mesh, const CornerEdge& edge, std::uint32_t of,
+                    std::vector<Named>& out) {
+  out.push_back({edge.triangle, of});
+  if (edge.other == OccluderTopology::kNone) return;
+  if (edge.other < OccluderTopology::kShared) return out.push_back({edge.other, of});
+  const OccluderTopology::SharedEdge& shared = mesh.shared[edge.other - OccluderTopology::kShared];
+  for (std::uint32_t o = shared.first; o < shared.end; ++o) out.push_back({mesh.others[o] / 4, of});
+}
+
+// Those of the same triangles side by side, so that what is asked for of few lies in few blocks.
+void store_rim(OccluderTopology& mesh, const CornerEdges& edges, std::span<Named> named) {
+  std::ranges::stable_sort(named, {}, [](const Named& n) { return std::countr_zero(n.of); });
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (i % kGroup == 0) mesh.rim.emplace_back();
+    const CornerEdge& edge = edges.edge(named[i].what);
+    OccluderTopology::RimEdges& out = mesh.rim.back();
+    out.triangle[i % kGroup] = static_cast<std::int32_t>(edge.triangle);
+    out.other[i % kGroup] = static_cast<std::int32_t>(edge.other);
+    out.a[i % kGroup] = edge.a, out.b[i % kGroup] = edge.b;
+    out.of[i % kGroup] = static_cast<std::uint16_t>(named[i].of);
+    out.of_some |= out.of[i % kGroup];
+  }
+}
+
+void store_around(OccluderTopology& mesh, std::span<const Named> named) {
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (i % kGroup == 0) mesh.around.emplace_back();
+    mesh.around.back().triangle[i % kGroup] = static_cast<std::int32_t>(named[i].what);
+    for (std::uint32_t of = named[i].of; of != 0; of &= of - 1)
+      mesh.around.back().beside[static_cast<std::size_t>(std::countr_zero(of))] |=
+          static_cast<std::uint16_t>(1u << i % kGroup);
+  }
+}
+
+// The groups whose facings decide where the mesh ends around group g's triangles.
+void store_ring(OccluderTopology& mesh, std::uint32_t g, std::span<const Named> around) {
+  OccluderTopology::Group& group = mesh.groups[g];
+  group.first_ring = static_cast<std::uint32_t>(mesh.rings.size());
+  for (const Named& n : around) mesh.rings.push_back(n.what / kGroup);
+  for (std::uint32_t i = group.first_beside; i < group.end_beside; ++i) mesh.rings.push_back(mesh.beside[i]);
+  const auto first = mesh.rings.begin() + group.first_ring;
+  std::sort(first, mesh.rings.end());
+  mesh.rings.erase(std::unique(first, mesh.rings.end()), mesh.rings.end());
+  mesh.rings.erase(std::remove(first, mesh.rings.end(), g), mesh.rings.end());
+  group.end_ring = static_cast<std::uint32_t>(mesh.rings.size());
+}
+
 }  // namespace
 
 void find_corner_edges(OccluderTopology& mesh) {
   CornerEdges edges(mesh);
-  mesh.first_around.assign(1, 0);
-  mesh.alone.assign(mesh.triangles.size(), 0);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::vector<std::uint32_t>& places = edges.around(t);
-    mesh.alone[t] = places.size() > OccluderTopology::kMostAround;
-    if (!mesh.alone[t]) {
-      for (const std::uint32_t place : places) mesh.around.push_back(edges.edge(place));
+  std::vector<Named> rim, around;
+  for (std::uint32_t g = 0; g < mesh.groups.size(); ++g) {
+    OccluderTopology::Group& group = mesh.groups[g];
+    rim.clear(), around.clear();
+    const auto end = std::min<std::size_t>((g + 1) * std::size_t{kGroup}, mesh.triangles.size());
+    for (std::uint32_t t = g * kGroup; t < end; ++t) {
+      const std::vector<std::uint32_t>& places = edges.around(t);
+      const std::uint32_t bit = 1u << t % kGroup;
+      if (places.size() > OccluderTopology::kMostAround) {
+        group.alone |= bit;
+        continue;
+      }
+      for (const std::uint32_t place : places) {
+        rim.push_back({place, bit});
+        name_triangles(mesh, edges.edge(place), bit, around);
+      }
     }
-    mesh.first_around.push_back(static_cast<std::uint32_t>(mesh.around.size()));
+    join(rim), join(around);
+    group.first_rim = static_cast<std::uint32_t>(mesh.rim.size());
+    group.first_around = static_cast<std::uint32_t>(mesh.around.size());
+    store_rim(mesh, edges, rim), store_around(mesh, around);
+    group.end_rim = static_cast<std::uint32_t>(mesh.rim.size());
+    group.end_around = static_cast<std::uint32_t>(mesh.around.size());
+    store_ring(mesh, g, around);
   }
 }
 

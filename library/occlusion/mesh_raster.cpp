@@ -61,36 +61,33 @@ HWY_INLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, C
 }
 
 // Of the nearness: what is lowered by no more for its neighbours' sake is not drawn again on its own plane.
-constexpr float kLeastDeeper = 1e-3f;
+constexpr float kLeastDeeper = 1e-2f;
 
-// Where a pixel's margin counts. First the pixels that the piece shares with others, as deep as the deepest
-// of them may be there; then those that are its own.
-HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const OccluderTopology& mesh,
-                                   const RowTransform& transform, std::size_t group,
-                                   const ReadyTriangles& ready, const Piece& piece, Convex tight,
-                                   const TileRange& range, TileList<1>& list) {
-  const std::size_t end = piece.first + piece.count;
-  Rim rim;
-  for (std::size_t i = piece.first; i < end; ++i)
-    add_rim(tiles, mesh, transform, group * kGroup + i, tight, rim);
+// Where a pixel's margin counts. First the pixels that are the piece's own; then those that it shares with
+// others, as deep as the deepest of them may be there.
+HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim,
+                                   const Piece& piece, Convex tight, const TileRange& range,
+                                   TileList<1>& list) {
+  const std::size_t last = piece.first + piece.count - 1;
   const float own = std::fabs(tight.across) + std::fabs(tight.down),
-              deeper = tiles.margin * std::max(0.0f, rim.slant - own);
+              slant = std::max(rim.slant[piece.first], rim.slant[last]),
+              deeper = tiles.margin * std::max(0.0f, slant - own);
+  Bands bands;
+  const bool known = bands_in(rim, 1u << piece.first | 1u << last, tight, bands);
   const Convex middle = inset_piece(ready, piece, tight);
-  if (rim.known) {
-    tight.at -= deeper;
-    list_polygon(tiles, tight, range, rim.bands, list);
-  }
-  if (!rim.known || deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]))
+  if (!known || deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]))
     list_polygon(tiles, middle, range, list);
+  if (!known) return;
+  tight.at -= deeper;
+  list_polygon(tiles, tight, range, bands, middle, list);
 }
 
-HWY_INLINE void draw_piece(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group, const ReadyTriangles& ready, const Piece& piece,
+HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim, const Piece& piece,
                            const Convex& polygon, float nearest, TileList<1>& list) {
   const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
   if (hidden_tiles(tiles, range, nearest)) return;
   if (tiles.margin > 0)
-    draw_with_margin(tiles, mesh, transform, group, ready, piece, polygon, range, list);
+    draw_with_margin(tiles, ready, rim, piece, polygon, range, list);
   else
     list_polygon(tiles, polygon, range, list);
 }
@@ -149,29 +146,32 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
 // Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
 // draw_with_margin() has it.
 HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group, const ReadyTriangles& ready, std::size_t i) {
+                           std::size_t group, const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
   const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, group, i);
   const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh->front : 0;
   if (tiles.margin == 0) return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), {}, 0});
-  const std::size_t t = group * kGroup + i;
   Convex image;
   image.right = static_cast<float>(tiles.width), image.bottom = static_cast<float>(tiles.height);
-  Rim rim;
-  add_rim(tiles, mesh, transform, t, image, rim);
-  if (rim.known) draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), rim.bands, rim.slant});
-  if (!rim.known || rim.slant > tiles.mesh->slant[t]) draw_clipped_triangle(tiles, corners, way, {});
+  Bands bands;
+  const bool known = bands_in(rim, 1u << i, image, bands);
+  if (known) draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
+  if (!known || bands.count > 0 || rim.slant[i] > tiles.mesh->slant[group * kGroup + i])
+    draw_clipped_triangle(tiles, corners, way, {});
 }
 
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                            std::size_t group, TileList<1>& list) {
   ReadyTriangles ready;
+  if (tiles.margin > 0) prefetch_rim(mesh, group);
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(F()))
     set_up(tiles, mesh, transform, group, lane, ready);
+  if ((ready.drawn | ready.cut) == 0) return;
+  Rim rim;
+  if (tiles.margin > 0) find_rim(tiles, mesh, transform, group, ready.drawn | ready.cut, rim);
   const std::uint32_t alike = ready.sound & ready.sound >> 1 & ~(ready.to_right ^ ready.to_right >> 1) &
                               ~(ready.flat | ready.flat >> 1);
-  const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest) HWY_ATTR {
-    draw_piece(tiles, mesh, transform, group, ready, piece, polygon, nearest, list);
-  };
+  const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
+                        HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, list); };
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t halves = mesh.groups[group].first_half & alike & (rest | rest >> 1); halves != 0;
        halves &= halves - 1) {
@@ -187,7 +187,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   }
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    draw_cut(tiles, mesh, transform, group, ready, i);
+    draw_cut(tiles, mesh, transform, group, ready, rim, i);
   }
 }
 

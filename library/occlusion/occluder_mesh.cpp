@@ -94,8 +94,8 @@ Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
   find_neighbours(*mesh.topology_);
   pair_up(*mesh.topology_);
   find_shared_edges(*mesh.topology_, junctions == TJunctions::closed);
-  find_corner_edges(*mesh.topology_);
   mesh.topology_->lay_out();
+  find_corner_edges(*mesh.topology_);
   return mesh;
 }
 

@@ -51,32 +51,6 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
   }
 }
 
-// The groups whose facings decide where the mesh ends around the group's triangles.
-void store_ring(OccluderTopology& mesh, std::uint32_t g) {
-  constexpr std::uint32_t kGroup = OccluderTopology::kGroup;
-  OccluderTopology::Group& group = mesh.groups[g];
-  group.first_ring = static_cast<std::uint32_t>(mesh.rings.size());
-  const auto add = [&](std::uint32_t triangle) { mesh.rings.push_back(triangle / kGroup); };
-  const auto add_shared = [&](const OccluderTopology::SharedEdge& edge) {
-    for (std::uint32_t i = edge.first; i < edge.end; ++i) add(mesh.others[i] / 4);
-  };
-  const auto last = std::min<std::uint32_t>((g + 1) * kGroup, static_cast<std::uint32_t>(mesh.alone.size()));
-  for (std::uint32_t i = mesh.first_around[g * kGroup]; i < mesh.first_around[last]; ++i) {
-    const OccluderTopology::CornerEdge& edge = mesh.around[i];
-    add(edge.triangle);
-    if (edge.other < OccluderTopology::kShared)
-      add(edge.other);
-    else if (edge.other != OccluderTopology::kNone)
-      add_shared(mesh.shared[edge.other - OccluderTopology::kShared]);
-  }
-  for (std::uint32_t i = group.first_beside; i < group.end_beside; ++i) mesh.rings.push_back(mesh.beside[i]);
-  const auto first = mesh.rings.begin() + group.first_ring;
-  std::sort(first, mesh.rings.end());
-  mesh.rings.erase(std::unique(first, mesh.rings.end()), mesh.rings.end());
-  mesh.rings.erase(std::remove(first, mesh.rings.end(), g), mesh.rings.end());
-  group.end_ring = static_cast<std::uint32_t>(mesh.rings.size());
-}
-
 }  // namespace
 
 void OccluderTopology::lay_out() {
@@ -102,7 +76,6 @@ void OccluderTopology::lay_out() {
     beside.erase(std::unique(beside.begin() + group.first_beside, beside.end()), beside.end());
     group.end_beside = static_cast<std::uint32_t>(beside.size());
     store_box(*this, g, bounds);
-    store_ring(*this, static_cast<std::uint32_t>(g));
   }
 }
 

@@ -29,21 +29,6 @@ struct OccluderTopology {
   std::vector<SharedEdge> shared;  ///< by triangle
   /// Triangle · 4, + 2 where it is wound the other way, + 1 for the last of a piece.
   std::vector<std::uint32_t> others;
-  /// An edge that ends at a corner of some triangle but is none of its own, or at a corner that lies on one
-  /// of its edges: where the mesh ends at such an edge, pixels that it touches are not the triangle's.
-  struct CornerEdge {
-    std::uint32_t a = 0, b = 0;  ///< in `positions`
-    std::uint32_t triangle = 0;
-    std::uint32_t other = 0;  ///< its neighbour there, kNone, or kShared + a place in `shared`
-    bool operator==(const CornerEdge&) const noexcept = default;
-  };
-  static constexpr std::uint32_t kShared = 0x80000000u;
-  /// Those of triangle t: first_around[t] … first_around[t + 1]. None where there would be more than
-  /// kMostAround; `alone` says so.
-  static constexpr std::size_t kMostAround = 96;
-  std::vector<CornerEdge> around;
-  std::vector<std::uint32_t> first_around;
-  std::vector<std::uint8_t> alone;
   /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
   /// diagonal.
   std::vector<std::uint8_t> first_half;
@@ -58,10 +43,35 @@ struct OccluderTopology {
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
     std::uint32_t first_shared = 0, end_shared = 0;  ///< in `shared`
     std::uint32_t first_ring = 0, end_ring = 0;      ///< in `rings`
+    std::uint32_t first_rim = 0, end_rim = 0;        ///< in `rim`
+    std::uint32_t first_around = 0, end_around = 0;  ///< in `around`
+    /// A bit a triangle: at its corners more than kMostAround edges end, which `rim` and `around` leave out.
+    std::uint32_t alone = 0;
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …
   std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
   std::vector<std::uint32_t> rings;   ///< and those that hold what `around` names, itself left out
+  static constexpr std::size_t kMostAround = 96;
+  /// Edges that end at a corner of a group's triangles, or at a corner that lies on one of their edges: where
+  /// the mesh ends at such an edge, pixels that it touches are not the triangle's. Of a triangle its own
+  /// edges are none. What a block has no edge for is of no triangle.
+  struct RimEdges {
+    alignas(64) std::array<std::int32_t, kGroup> triangle{};
+    /// The triangle's neighbour there; as unsigned numbers kNone, or kShared + a place in `shared`.
+    alignas(64) std::array<std::int32_t, kGroup> other{};
+    std::array<std::uint32_t, kGroup> a{}, b{};  ///< in `positions`
+    std::array<std::uint16_t, kGroup> of{};      ///< a bit a triangle of the group
+    std::uint16_t of_some = 0;                   ///< of any of them
+  };
+  static constexpr std::uint32_t kShared = 0x80000000u;
+  std::vector<RimEdges> rim;
+  /// The triangles on either side of these edges, and of which of them each of the group's is beside, a bit
+  /// each.
+  struct AroundTriangles {
+    alignas(64) std::array<std::int32_t, kGroup> triangle{};
+    std::array<std::uint16_t, kGroup> beside{};
+  };
+  std::vector<AroundTriangles> around;
   /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
   geometry::AlignedVector<float> box;
   /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last
@@ -77,7 +87,7 @@ void sort_along_curve(OccluderTopology& mesh);
 /// Finds `shared`, T-junctions only where they are to be closed. Neighbours are known, and triangles numbered
 /// for good.
 void find_shared_edges(OccluderTopology& mesh, bool close_junctions);
-/// Finds `around`. Shared edges are known.
+/// Finds `rim`, `around` and `rings`. The mesh is laid out.
 void find_corner_edges(OccluderTopology& mesh);
 /// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
 /// places.

@@ -275,6 +275,37 @@ TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   }
 }
 
+// A mesh that ends at a triangle's corner and across it takes nothing from what the triangle covers alone.
+TEST(Coverage, OfATriangleAmongOthersIsNoLessThanAlone) {
+  Random random(36);
+  std::size_t held = 0;
+  for (int round = 0; round < 20; ++round) {
+    scene::Shape shape;
+    for (int i = 0; i < 12; ++i) shape.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
+    for (int i = 0; i < 16 * 3; i += 3) {
+      const std::uint32_t a = random.below(12), b = random.below(12), c = random.below(12);
+      shape.indices.insert(shape.indices.end(), {a, b, c});
+    }
+    const View view = looking_at(random, shape);
+    const auto draw = [&](std::span<const std::uint32_t> indices) {
+      OcclusionBuffer buffer;
+      EXPECT_TRUE(buffer.begin({view, {}}, kArea));
+      EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(shape.positions, indices, Sides::both)));
+      return pixels_of(buffer);
+    };
+    const std::vector<float> together = draw(shape.indices);
+    for (std::size_t t = 0; t < shape.indices.size(); t += 3) {
+      const std::vector<float> alone = draw(std::span(shape.indices).subspan(t, 3));
+      for (std::size_t i = 0; i < alone.size(); ++i) {
+        if (!(alone[i] > ExactRays::kMiss)) continue;
+        ++held;
+        ASSERT_GT(together[i], ExactRays::kMiss) << "pixel " << i << " of triangle " << t / 3;
+      }
+    }
+  }
+  EXPECT_GT(held, 10000);
+}
+
 // A wide quad with a row of narrow ones along it, and one of them missing.
 TEST(Coverage, OfTJunctionsIsSafeAtAnyPlace) {
   for (const int missing : {-1, 3}) {
