@@ -24,7 +24,7 @@ namespace sightline::occlusion::HWY_NAMESPACE {
 void draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
   TileList<1> list;
   list_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom),
-               without, no_pixels(), list);
+               without, kNoPixels, list);
   draw_listed(tiles, list);
 }
 

@@ -127,18 +127,23 @@ void name_triangles(const OccluderTopology& mesh, const CornerEdge& edge, std::u
   for (std::uint32_t o = shared.first; o < shared.end; ++o) out.push_back({mesh.others[o] / 4, of});
 }
 
+void store_edge(OccluderTopology& mesh, const CornerEdge& edge, std::uint32_t of, std::size_t place) {
+  if (place == 0) mesh.rim.emplace_back();
+  OccluderTopology::RimEdges& out = mesh.rim.back();
+  out.triangle[place] = static_cast<std::int32_t>(edge.triangle);
+  out.other[place] = static_cast<std::int32_t>(edge.other);
+  out.a[place] = edge.a, out.b[place] = edge.b;
+  out.of[place] = static_cast<std::uint16_t>(of);
+  out.of_some |= out.of[place];
+}
+
 // Those of the same triangles side by side, so that what is asked for of few lies in few blocks.
-void store_rim(OccluderTopology& mesh, const CornerEdges& edges, std::span<Named> named) {
-  std::ranges::stable_sort(named, {}, [](const Named& n) { return std::countr_zero(n.of); });
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    if (i % kGroup == 0) mesh.rim.emplace_back();
-    const CornerEdge& edge = edges.edge(named[i].what);
-    OccluderTopology::RimEdges& out = mesh.rim.back();
-    out.triangle[i % kGroup] = static_cast<std::int32_t>(edge.triangle);
-    out.other[i % kGroup] = static_cast<std::int32_t>(edge.other);
-    out.a[i % kGroup] = edge.a, out.b[i % kGroup] = edge.b;
-    out.of[i % kGroup] = static_cast<std::uint16_t>(named[i].of);
-    out.of_some |= out.of[i % kGroup];
+void store_rim(OccluderTopology& mesh, const CornerEdges& edges, std::span<const Named> named) {
+  std::size_t count = 0;
+  for (int i = 0; i < static_cast<int>(kGroup); ++i) {
+    for (const Named& n : named) {
+      if (std::countr_zero(n.of) == i) store_edge(mesh, edges.edge(n.what), n.of, count++ % kGroup);
+    }
   }
 }
 

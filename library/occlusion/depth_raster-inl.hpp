@@ -28,19 +28,12 @@ HWY_INLINE Held store_whole_step(const Step& step, std::uint64_t* out) {
   return {step.asked(), step.asked()};
 }
 
-// Columns of tiles.
-struct ColumnRange {
-  std::uint32_t begin = 0, end = 0;
-
-  [[nodiscard]] bool meets(std::uint32_t from, std::uint32_t to) const { return begin < to && from < end; }
-};
-
 // What of a polygon's pixels is left out: nothing.
 struct NothingLeftOut {
   // The sixteen lines from a pixel centre on come next.
   void come_to(float) {}
-  // Something of these lines may be left out there.
-  [[nodiscard]] ColumnRange columns() const { return {}; }
+  // Nothing is left out of these lines.
+  [[nodiscard]] bool none() const { return true; }
   void take_from(const Step&, std::uint64_t*, Held&) const {}
 };
 
@@ -51,30 +44,25 @@ public:
       : bands_(bands), but_(but), width_(static_cast<float>(tiles.width)) {}
   void come_to(float first_y) {
     count_ = 0;
-    all_ = {};
     for (std::size_t i = 0; i < bands_.count; ++i) {
-      if (bands_.top[i] > first_y + 15 || bands_.bottom[i] < first_y) continue;
-      const ColumnRange its = columns_of_band(i, first_y);
-      if (its.begin >= its.end) continue;
-      all_ = count_ == 0 ? its : ColumnRange{std::min(all_.begin, its.begin), std::max(all_.end, its.end)};
-      columns_[count_] = its;
-      spans_[count_++] = spans_of(bands_, i, first_y, width_);
+      if (bands_.top[i] <= first_y + 15 && bands_.bottom[i] >= first_y)
+        spans_[++count_] = spans_of(bands_, i, first_y, width_);
     }
-    if (count_ > 0) but_spans_ = spans_of(but_, first_y, width_);
+    if (count_ > 0) spans_[0] = spans_of(but_, first_y, width_);
   }
-  [[nodiscard]] ColumnRange columns() const { return all_; }
+  [[nodiscard]] bool none() const { return count_ == 0; }
   HWY_INLINE void take_from(const Step& step, std::uint64_t* pixels, Held& held) const {
-    if (!all_.meets(step.tx, step.tx + step.columns)) return;
+    if (count_ == 0) return;
     const Words words;
-    alignas(64) std::array<std::uint64_t, kStepTiles> but, band;
-    store_step_pixels(but_spans_, step, but.data());
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (!columns_[i].meets(step.tx, step.tx + step.columns)) continue;
-      store_step_pixels(spans_[i], step, band.data());
+    // The polygon's pixels first, then those of one band after another.
+    alignas(64) std::array<std::array<std::uint64_t, kStepTiles>, 2> its;
+    for (std::size_t i = 0; i <= count_; ++i) {
+      store_step_pixels(spans_[i], step, its[i > 0].data());
+      if (i == 0) continue;
       held = {};
       for (std::size_t row = 0; row < kStepTiles; row += kStepColumns) {
         for (std::size_t tile = row; tile < row + step.columns; tile += kWords) {
-          const auto out = hn::AndNot(hn::LoadU(words, &but[tile]), hn::LoadU(words, &band[tile]));
+          const auto out = hn::AndNot(hn::LoadU(words, &its[0][tile]), hn::LoadU(words, &its[1][tile]));
           const auto rest = hn::AndNot(out, hn::LoadU(words, pixels + tile));
           hn::StoreU(rest, words, pixels + tile);
           add_held(rest, tile, held);
@@ -84,47 +72,23 @@ public:
   }
 
 private:
-  // The columns that a band's pixels of sixteen lines lie in, or more.
-  [[nodiscard]] ColumnRange columns_of_band(std::size_t i, float first_y) const {
-    const float first = bands_.at[i] + bands_.slope[i] * first_y,
-                last = bands_.at[i] + bands_.slope[i] * (first_y + 15);
-    const float low = std::max({bands_.left[i], std::min(first, last) - bands_.half[i], 0.0f}),
-                high = std::min({bands_.right[i], std::max(first, last) + bands_.half[i], width_});
-    if (!(low <= high)) return {};
-    return {static_cast<std::uint32_t>(low) / kTile, static_cast<std::uint32_t>(high) / kTile + 1};
-  }
-
   const Bands& bands_;
   const Convex& but_;
   float width_;
-  std::array<Spans, Bands::kMost> spans_;
-  Spans but_spans_;
-  std::array<ColumnRange, Bands::kMost> columns_;
-  ColumnRange all_;
+  std::array<Spans, 1 + Bands::kMost> spans_;  // the polygon's, and the bands'
   std::size_t count_ = 0;
 };
 
-// Of columns that are held whole those on one side of `out_of`, where more of them are.
-HWY_INLINE void leave_whole(const ColumnRange& out_of, TileColumns& columns) {
-  if (!out_of.meets(columns.begin_whole, columns.end_whole)) return;
-  const std::uint32_t before = std::max(out_of.begin, columns.begin_whole) - columns.begin_whole,
-                      after = columns.end_whole - std::min(out_of.end, columns.end_whole);
-  if (before > after)
-    columns.end_whole = columns.begin_whole + before;
-  else
-    columns.begin_whole = columns.end_whole - after;
-}
-
 // The columns of two rows of tiles, of those in range. Of a wide polygon that lies aslant they hold only a
 // part, and most of that whole.
-HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, const ColumnRange& left_out) {
+HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, bool some_whole) {
   if (range.end_x - range.begin_x <= kStepColumns) return {range.begin_x, range.end_x};
   TileColumns out = columns_of(spans);
   out.begin = std::max(out.begin, range.begin_x), out.end = std::min(out.end, range.end_x);
   out.begin_whole = std::max(out.begin_whole, out.begin), out.end_whole = std::min(out.end_whole, out.end);
-  leave_whole(left_out, out);
   // A step that is cut short costs as much as one that is not.
-  if (out.end_whole < out.begin_whole + kStepColumns) out.begin_whole = out.end_whole = out.end;
+  if (!some_whole || out.end_whole < out.begin_whole + kStepColumns)
+    out.begin_whole = out.end_whole = out.end;
   return out;
 }
 
@@ -138,7 +102,7 @@ HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
     const float first_y = static_cast<float>(ty * kTile) + 0.5f;
     const Spans spans = spans_from(first_y);
     left_out.come_to(first_y);
-    const TileColumns columns = columns_in(range, spans, left_out.columns());
+    const TileColumns columns = columns_in(range, spans, left_out.none());
     const std::uint32_t rows = std::min(kStepRows, range.end_y - ty);
     for (std::uint32_t tx = columns.begin, next = 0; tx < columns.end; tx = next) {
       const bool whole = columns.begin_whole <= tx && tx < columns.end_whole;
@@ -178,20 +142,18 @@ HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, 
   list_polygon_without(tiles, polygon, range, NothingLeftOut(), list);
 }
 
-HWY_INLINE Convex no_pixels() {
-  Convex out;
+constexpr Convex kNoPixels = [] {
+  Convex out{};
   out.top = 1;
-  out.has_left = out.has_right = true;
   return out;
-}
+}();
 
 // The same without the pixels of some bands that are none of `middle`, the part of it that it covers alone.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                                       const Bands& without, const Convex& middle, TileList<1>& list) {
   if (without.count == 0) return list_polygon(tiles, polygon, range, list);
-  if (!middle.has_left || !middle.has_right)
-    return list_polygon(tiles, polygon, range, without, no_pixels(), list);
-  list_polygon_without(tiles, polygon, range, BandsLeftOut(tiles, without, middle), list);
+  const Convex& but = middle.has_left && middle.has_right ? middle : kNoPixels;
+  list_polygon_without(tiles, polygon, range, BandsLeftOut(tiles, without, but), list);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

@@ -44,8 +44,8 @@ struct RimEnds {
 };
 
 // Appends bands around edges on the image, those of `shown` that come near it.
-HWY_INLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF by, hn::Mask<F> shown,
-                             const std::uint32_t* of, Rim& out) {
+HWY_NOINLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF by, hn::Mask<F> shown,
+                               const std::uint32_t* of, Rim& out) {
   const F f;
   const VF widest = hn::Max(hn::Max(hn::Abs(ax), hn::Abs(ay)), hn::Max(hn::Abs(bx), hn::Abs(by))),
            reach = inset_of(tiles, widest),
@@ -79,8 +79,8 @@ HWY_INLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF by
   }
 }
 
-inline void append_band(const DepthTiles& tiles, const std::optional<ImageSegment>& segment, std::uint32_t of,
-                        Rim& out) {
+HWY_NOINLINE inline void append_band(const DepthTiles& tiles, const std::optional<ImageSegment>& segment,
+                                     std::uint32_t of, Rim& out) {
   if (!segment) return;
   const auto& [a, b] = *segment;
   const F f;
@@ -260,7 +260,7 @@ HWY_INLINE hn::Mask<F> apart_from(const Rim& rim, std::size_t first, const Conve
 
 // The bands around some triangles, a bit each, that hold pixel centres of a polygon; false where there are
 // too many.
-HWY_INLINE bool bands_in(const Rim& rim, std::uint32_t triangles, const Convex& polygon, Bands& out) {
+HWY_NOINLINE bool bands_in(const Rim& rim, std::uint32_t triangles, const Convex& polygon, Bands& out) {
   const F f;
   if ((rim.unknown & triangles) != 0) return false;
   for (std::size_t first = 0; first < rim.count; first += hn::Lanes(f)) {

@@ -183,8 +183,9 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
 }
 
 // Triangle 16·group + i of the mesh in double precision.
-inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
-                                  const RowTransform& transform, std::size_t group, std::size_t i) {
+HWY_NOINLINE inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
+                                               const RowTransform& transform, std::size_t group,
+                                               std::size_t i) {
   ExactCorners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
@@ -313,8 +314,8 @@ HWY_INLINE void set_whole_edges(const DepthTiles& tiles, const Candidates& c, Re
 }
 
 // Whether others go on all along an edge that has more than one or a row of them. Facings are known.
-inline bool goes_on_along(const DepthTiles& tiles, const OccluderTopology& mesh,
-                          const OccluderTopology::SharedEdge& edge) {
+HWY_NOINLINE inline bool goes_on_along(const DepthTiles& tiles, const OccluderTopology& mesh,
+                                       const OccluderTopology::SharedEdge& edge) {
   const float* facing = tiles.mesh->facing.data();
   const float turns = facing[edge.triangle];
   bool all = true, piece = false;
