@@ -35,6 +35,21 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
     return static_cast<std::uint32_t>(wasm_i32x4_bitmask(static_cast<v128_t>(mask.raw)));
   }
 #endif
+#if defined(__GNUC__) && !defined(__clang__) && HWY_TARGET <= HWY_AVX3
+  // g++ 12 spills such a number as the 16 bits of its mask, and reads 32 back: what is moved by hand has all.
+  // It is of no use to a register of masks, so it is no slower.
+  if constexpr (sizeof(mask.raw) <= 4) {
+    (void)d;
+    std::uint32_t moved;
+    if constexpr (sizeof(mask.raw) == 1)
+      __asm__("kmovb %1, %0" : "=r"(moved) : "k"(mask.raw));
+    else if constexpr (sizeof(mask.raw) == 2)
+      __asm__("kmovw %1, %0" : "=r"(moved) : "k"(mask.raw));
+    else
+      __asm__("kmovd %1, %0" : "=r"(moved) : "k"(mask.raw));
+    return moved & static_cast<std::uint32_t>((std::uint64_t{1} << hn::Lanes(d)) - 1);
+  }
+#endif
   // Read back as wide as it is written, or else the read waits until the write has reached memory.
   constexpr std::size_t kLanes = hn::MaxLanes(D());
   using Wide = std::conditional_t<kLanes <= 16, std::uint16_t, std::uint32_t>;
