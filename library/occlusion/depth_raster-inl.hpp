@@ -127,33 +127,28 @@ HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
   list_spans(tiles, planes, range, spans_from, nothing, list);
 }
 
-template <class LeftOut>
-HWY_INLINE void list_polygon_without(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                                     LeftOut left_out, TileList<1>& list) {
-  if (!polygon.has_left || !polygon.has_right) return;
-  list_spans(
-      tiles, {{polygon.at}, {polygon.across}, {polygon.down}}, range,
-      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
-      left_out, list);
-}
-
-HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                                      TileList<1>& list) {
-  list_polygon_without(tiles, polygon, range, NothingLeftOut(), list);
-}
-
+constexpr Bands kNoBands{};
 constexpr Convex kNoPixels = [] {
   Convex out{};
   out.top = 1;
   return out;
 }();
 
-// The same without the pixels of some bands that are none of `middle`, the part of it that it covers alone.
+// Lists a polygon, but for the pixels of some bands that are none of `middle`, the part of it that it covers
+// alone.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                                       const Bands& without, const Convex& middle, TileList<1>& list) {
-  if (without.count == 0) return list_polygon(tiles, polygon, range, list);
-  const Convex& but = middle.has_left && middle.has_right ? middle : kNoPixels;
-  list_polygon_without(tiles, polygon, range, BandsLeftOut(tiles, without, but), list);
+  if (!polygon.has_left || !polygon.has_right) return;
+  BandsLeftOut left_out(tiles, without, middle.has_left && middle.has_right ? middle : kNoPixels);
+  list_spans(
+      tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
+      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
+      left_out, list);
+}
+
+HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                             TileList<1>& list) {
+  list_polygon(tiles, polygon, range, kNoBands, kNoPixels, list);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

@@ -66,20 +66,21 @@ constexpr float kLeastDeeper = 1e-2f;
 // Where a pixel's margin counts. First the pixels that are the piece's own; then those that it shares with
 // others, as deep as the deepest of them may be there.
 HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim,
-                                   const Piece& piece, Convex tight, const TileRange& range,
+                                   const Piece& piece, const Convex& tight, const TileRange& range,
                                    TileList<1>& list) {
   const std::size_t last = piece.first + piece.count - 1;
   const float own = std::fabs(tight.across) + std::fabs(tight.down),
               slant = std::max(rim.slant[piece.first], rim.slant[last]),
               deeper = tiles.margin * std::max(0.0f, slant - own);
+  const bool again = deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]);
   Bands bands;
   const bool known = bands_in(rim, 1u << piece.first | 1u << last, tight, bands);
+  Convex shared = tight;
+  shared.at -= deeper;
+  if (known && !again && bands.count == 0) return list_polygon(tiles, shared, range, list);
   const Convex middle = inset_piece(ready, piece, tight);
-  if (!known || deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]))
-    list_polygon(tiles, middle, range, list);
-  if (!known) return;
-  tight.at -= deeper;
-  list_polygon(tiles, tight, range, bands, middle, list);
+  if (!known || again) list_polygon(tiles, middle, range, list);
+  if (known) list_polygon(tiles, shared, range, bands, middle, list);
 }
 
 HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim, const Piece& piece,

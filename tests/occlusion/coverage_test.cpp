@@ -262,15 +262,18 @@ TEST(Coverage, OfMeshesThatTheNearPlaneCutsIsSafeAtAnyPlaceAndClosed) {
 }
 
 // Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
+scene::Shape loose_triangles(Random& random, std::uint32_t corners, std::uint32_t triangles) {
+  scene::Shape out;
+  for (std::uint32_t i = 0; i < corners; ++i)
+    out.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
+  for (std::uint32_t i = 0; i < 3 * triangles; ++i) out.indices.push_back(random.below(corners));
+  return out;
+}
+
 TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   Random random(34);
   for (int round = 0; round < 25; ++round) {
-    scene::Shape shape;
-    for (int i = 0; i < 14; ++i) shape.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
-    for (int i = 0; i < 30 * 3; i += 3) {
-      const std::uint32_t a = random.below(14), b = random.below(14), c = random.below(14);
-      shape.indices.insert(shape.indices.end(), {a, b, c});
-    }
+    const scene::Shape shape = loose_triangles(random, 14, 30);
     share_drawn(shape, round % 2 == 0 ? Sides::both : Sides::front, TJunctions::closed, kArea);
   }
 }
@@ -280,12 +283,7 @@ TEST(Coverage, OfATriangleAmongOthersIsNoLessThanAlone) {
   Random random(36);
   std::size_t held = 0;
   for (int round = 0; round < 20; ++round) {
-    scene::Shape shape;
-    for (int i = 0; i < 12; ++i) shape.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
-    for (int i = 0; i < 16 * 3; i += 3) {
-      const std::uint32_t a = random.below(12), b = random.below(12), c = random.below(12);
-      shape.indices.insert(shape.indices.end(), {a, b, c});
-    }
+    const scene::Shape shape = loose_triangles(random, 12, 16);
     const View view = looking_at(random, shape);
     const auto draw = [&](std::span<const std::uint32_t> indices) {
       OcclusionBuffer buffer;
