@@ -171,13 +171,37 @@ HWY_INLINE Projected project(const DepthTiles& tiles, const Corners& q, VF reach
 
 bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i);
 
-// A vector of triangles, parts of the triangles `whole`; of those beyond `count` nothing is said.
+// Triangles that the eye surely sees from behind, by the side of their planes that it is on. Of one with a
+// corner that is no number nothing is sure.
+HWY_INLINE std::uint32_t turned_away(const DepthTiles& tiles, const Corners& corners) {
+  return bits_of(F(), hn::Lt(side_of_planes(tiles, corners), hn::Zero(F())));
+}
+
+// Of triangles those wide enough on the image that they turn the same way wherever a rasteriser moves their
+// corners, which may see one from its front that is almost edge on.
+HWY_INLINE std::uint32_t turn_surely(const Projected& p) {
+  const F f;
+  const VF *x = p.image.x, *y = p.image.y;
+  VF around = hn::Zero(f);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    around = hn::Add(around, hn::Add(hn::Abs(hn::Sub(x[next], x[k])), hn::Abs(hn::Sub(y[next], y[k]))));
+  }
+  const VF play = hn::Mul(p.slack, hn::Add(around, hn::Mul(p.slack, hn::Set(f, 8.0f))));
+  return bits_of(f, hn::And(p.placed, hn::Gt(hn::Abs(area_of(p.image)), play)));
+}
+
+// A vector of triangles, parts of the triangles `whole`; of those beyond `count` nothing is said. Those
+// `away` are turned away, and asked for only where a rasteriser may not see it.
 template <bool kMayClip>
 HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole, std::size_t count,
-                          std::uint32_t asked) {
+                          std::uint32_t away) {
   const F f;
   const VF reach = reach_of(whole);
   const Projected p = project(tiles, q, reach);
+  std::uint32_t asked = (1u << count) - 1;
+  if (away != 0) asked &= ~(away & turn_surely(p));
+  if (asked == 0) return false;
   std::array<std::uint8_t, 16> visible;
   answer(tiles, {p.bounds, p.nearest, p.before}, count, visible.data());
   std::uint32_t rest = 0;
@@ -254,15 +278,9 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) 
                  hn::Load(f, in[3 * k + 2].data())};
     }
     const std::size_t count = std::min(hn::Lanes(f), triangles - first);
-    if (some_seen<false>(tiles, part, its, count, (1u << count) - 1)) return true;
+    if (some_seen<false>(tiles, part, its, count, 0)) return true;
   }
   return false;
-}
-
-// Triangles that the eye surely sees from behind, by the side of their planes that it is on. Of one with a
-// corner that is no number nothing is sure.
-HWY_INLINE std::uint32_t turned_away(const DepthTiles& tiles, const Corners& corners) {
-  return bits_of(F(), hn::Lt(side_of_planes(tiles, corners), hn::Zero(F())));
 }
 
 bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, std::size_t triangles,
@@ -277,9 +295,8 @@ bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, s
                                           hn::Load(f, &from[k][2][lane])});
     }
     const std::size_t count = std::min(hn::Lanes(f), triangles - first);
-    std::uint32_t asked = (1u << count) - 1;
-    if (sides == Sides::front) asked &= ~turned_away(tiles, q);
-    if (asked != 0 && some_seen<true>(tiles, q, q, count, asked)) return true;
+    const std::uint32_t away = sides == Sides::front ? turned_away(tiles, q) : 0;
+    if (some_seen<true>(tiles, q, q, count, away)) return true;
   }
   return false;
 }
