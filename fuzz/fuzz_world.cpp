@@ -303,9 +303,9 @@ private:
     for (float& f : corners) f = in_.single(1);
     const double origin[3] = {in_.number(1), in_.number(1), in_.number(1)};
     const std::size_t points = corners.size() / 3;
-    (void)done(sightline_world_set_triangles(world_.get(), things_[0].handle, corners.data(),
-                                             points > 0 && in_.rarely() ? points - 1 : points,
-                                             in_.byte() & 1 ? origin : nullptr));
+    (void)done(sightline_world_set_triangles(
+        world_.get(), things_[0].handle, corners.data(), points > 0 && in_.rarely() ? points - 1 : points,
+        in_.byte() & 1 ? origin : nullptr, in_.rarely() ? 2 : in_.byte() & 1));
   }
 
   void ask() {

@@ -78,12 +78,14 @@ void set_occluding(SharedWorld& world, const py::object& handles, const py::obje
 }
 
 void set_triangles(SharedWorld& world, const py::object& handle, const py::object& corners,
-                   const py::object& origin) {
+                   const py::object& origin, const py::object& sides) {
   const Strided<const Handle> which = handles_of(handle);
   if (which.size() != 1) refuse("handle: expected one, (1, 2)");
   const std::vector<Vec3> points = points_of(corners, "corners");
   const WorldPoint about = origin.is_none() ? WorldPoint{} : world_point_of(origin, "origin");
-  expect(changing(world, [&](World& w) { return w.set_triangles(which[0], points, about); }));
+  const std::vector<Sides> seen = sides_of(sides);
+  if (seen.size() != 1) refuse("sides: expected 'both' or 'front'");
+  expect(changing(world, [&](World& w) { return w.set_triangles(which[0], points, about, seen[0]); }));
 }
 
 }  // namespace
@@ -115,8 +117,9 @@ void add_world_occluders(py::class_<SharedWorld>& world) {
       .def("set_triangles", &set_triangles,
            "Gives one object all of its triangles, float32 (..., 3) about `origin`: asked for where its box "
            "may\n"
-           "be seen, by views of the same origin. None of them takes them away.",
-           py::arg("handle"), py::arg("corners"), py::arg("origin") = py::none());
+           "be seen, by views of the same origin, from both sides or their front alone. None of them takes\n"
+           "them away.",
+           py::arg("handle"), py::arg("corners"), py::arg("origin") = py::none(), py::arg("sides") = "both");
 }
 
 }  // namespace sightline::python

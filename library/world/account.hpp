@@ -20,14 +20,19 @@ public:
   }
   void close_frame(double cost, double frustum_cost) noexcept {
     credit_ += 1.01998 * frustum_cost - cost;
-    // Tries that do not pay become rarer: at the worst one frame in 32. To look and find that nothing is
-    // affordable is none.
-    if (cost > 1.001 * frustum_cost) pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
+    // Tries that do not pay become rarer: at the worst one frame in 32 alike. To look and find that nothing
+    // is affordable is none.
+    if (cost > 1.001 * frustum_cost) {
+      pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
+      failed_ = frustum_cost;
+    }
     if (cost < frustum_cost) pause_ = waits_ = 0;
   }
-  /// Whether a frame may try at all; counts the frames that may not.
-  [[nodiscard]] bool begins_try() noexcept {
-    if (waits_ == 0) return true;
+  /// Whether a frame may try at all; counts the frames that may not. One with far more in view than the one
+  /// that failed is no like of it: the camera turned, or a door opened.
+  [[nodiscard]] bool begins_try(double frustum_cost) noexcept {
+    constexpr double kUnlike = 8;
+    if (waits_ == 0 || frustum_cost > kUnlike * failed_) return true;
     --waits_;
     return false;
   }
@@ -36,6 +41,7 @@ private:
   static constexpr std::uint32_t kLongestPause = 31;
   double credit_ = 0;
   std::uint32_t pause_ = 0, waits_ = 0;
+  double failed_ = 0;  // what the last frame of which a try did not pay costs by frustum
 };
 
 /// What a frame has to spend: its allowance and what it has saved for certain, less what it spent.

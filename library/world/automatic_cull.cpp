@@ -202,7 +202,7 @@ private:
       if ((before & different_.bits[d]) == 0 || !drawn_[d] || !(set.origin == views_[place].view.origin))
         continue;
       const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
-      if (!occlusion::query_triangles(tiles, set.blocks, set.count))
+      if (!occlusion::query_triangles(tiles, set.blocks, set.count, set.sides))
         seen &= static_cast<std::uint8_t>(~different_.bits[d]);
     }
     seen &= asked;

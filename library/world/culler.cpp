@@ -117,7 +117,7 @@ void hide(CullerState& state, std::span<const CullView> views, const DifferentVi
       static_cast<double>(result.tested) * double{costs.test} +
       static_cast<double>(count_drawn(state, result.count)) * double{costs.object};
   const WorldOccluders* occluders = state.world->occluders.get();
-  if (occluders && occluders->any() && result.count > 0 && state.account.begins_try()) {
+  if (occluders && occluders->any() && result.count > 0 && state.account.begins_try(result.frustum_cost)) {
     const Zone zone(state.zones, "sightline: automatic occlusion");
     if (!state.hiding) state.hiding = occluders->make_hiding();
     state.hiding->hide(state, views, different, options, costs, result);

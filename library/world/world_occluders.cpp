@@ -189,7 +189,7 @@ void WorldOccluders::take_away(ObjectId id) noexcept {
 }
 
 void WorldOccluders::set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin,
-                                   std::size_t ids) {
+                                   Sides sides, std::size_t ids) {
   if (corners.empty()) return take_triangles(id);
   if (triangles_of.size() < ids) triangles_of.resize(ids, kNothing);
   std::uint32_t& at = triangles_of[id];
@@ -203,7 +203,7 @@ void WorldOccluders::set_triangles(ObjectId id, std::span<const Vec3> corners, c
   for (const Vec3& p : corners) {
     low = glm::min(low, geometry::to_double(p)), high = glm::max(high, geometry::to_double(p));
   }
-  set.origin = origin;
+  set.origin = origin, set.sides = sides;
   set.bounds = about(origin, low, high);
 }
 
@@ -279,7 +279,8 @@ Status World::set_occluding(Strided<const Handle> handles, Strided<const std::ui
   return {};
 }
 
-Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin) {
+Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin,
+                            Sides sides) {
   if (!contains(handle))
     return {StatusCode::stale_handle, "world: the handle names no object that stands in this world"};
   if (corners.size() % 3 != 0) return {StatusCode::bad_mesh, "world: expected three points a triangle"};
@@ -287,7 +288,9 @@ Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const 
     return {StatusCode::too_many, "world: an object cannot have more than 2^30 triangles"};
   if (!world::in_reach(origin))
     return {StatusCode::bad_argument, "world: the triangles' origin is not finite or out of reach"};
-  state_->own_occluders().set_triangles(handle.index, corners, origin, state_->objects.size());
+  if (sides != Sides::both && sides != Sides::front)
+    return {StatusCode::bad_argument, "world: the triangles' sides are none, expected both or front"};
+  state_->own_occluders().set_triangles(handle.index, corners, origin, sides, state_->objects.size());
   return {};
 }
 

@@ -51,6 +51,7 @@ struct Carrier {
 struct ObjectTriangles {
   std::vector<occlusion::TriangleBlock> blocks;
   std::uint32_t count = 0;
+  Sides sides = Sides::both;  ///< from which each is seen
   WorldPoint origin;
   WorldBox bounds;
 };
@@ -87,7 +88,8 @@ struct WorldOccluders {
 
   void place(ObjectId id, const OccluderPlacement& placement, std::size_t ids);
   void take_away(ObjectId id) noexcept;
-  void set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin, std::size_t ids);
+  void set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin, Sides sides,
+                     std::size_t ids);
   void take_triangles(ObjectId id) noexcept;
 };
 

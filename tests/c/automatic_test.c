@@ -91,9 +91,13 @@ static void refusals(void) {
   EXPECT(sightline_world_set_occluders(world, &first, &placement, 1) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_set_occluders(world, &first, NULL, 1) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_set_occluding(world, &first, &on, 1) == SIGHTLINE_BAD_ARGUMENT);
-  EXPECT(sightline_world_set_triangles(world, handles[0], corners, 2, NULL) == SIGHTLINE_BAD_MESH);
-  EXPECT(sightline_world_set_triangles(world, handles[0], corners, 3, NULL) == SIGHTLINE_OK);
-  EXPECT(sightline_world_set_triangles(world, handles[0], NULL, 0, NULL) == SIGHTLINE_OK);
+  EXPECT(sightline_world_set_triangles(world, handles[0], corners, 2, NULL, SIGHTLINE_BOTH_SIDES) ==
+         SIGHTLINE_BAD_MESH);
+  EXPECT(sightline_world_set_triangles(world, handles[0], corners, 3, NULL, SIGHTLINE_FRONT_SIDE) ==
+         SIGHTLINE_OK);
+  EXPECT(sightline_world_set_triangles(world, handles[0], corners, 3, NULL, 2) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_world_set_triangles(world, handles[0], NULL, 0, NULL, SIGHTLINE_BOTH_SIDES) ==
+         SIGHTLINE_OK);
   EXPECT(sightline_report_frame_time(culler, -1) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_report_frame_time(culler, NAN) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_report_frame_time(NULL, 1) == SIGHTLINE_BAD_ARGUMENT);

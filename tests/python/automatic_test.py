@@ -78,6 +78,7 @@ class Automatic(Case):
         self.bad("one a handle", world.set_occluders, handles[:3], name, np.zeros((2, 4, 4)))
         self.refused("bad_argument", "not affine", world.set_occluders, handles[:1], name, np.zeros((4, 4)), index=0)
         self.refused("bad_mesh", "three points", world.set_triangles, handles[:1], np.zeros((2, 3), np.float32))
+        self.bad("sides: expected 'both'", world.set_triangles, handles[:1], np.zeros((3, 3), np.float32), sides=[True, False])
         self.bad("expected one", world.set_triangles, handles[:2], np.zeros((3, 3), np.float32))
 
 

@@ -55,7 +55,7 @@ std::vector<Frame> played(int kind, std::uint32_t seed, int frames) {
   for (int i = 0; i < frames; ++i) {
     const Move move = adversary(kind, i, random);
     double cost = move.frustum_cost;
-    if (account.begins_try()) {
+    if (account.begins_try(move.frustum_cost)) {
       Purse purse(account.allowance(move.frustum_cost));
       const double spent = move.spends * purse.left();
       EXPECT_TRUE(purse.affords(spent));
@@ -102,15 +102,22 @@ TEST(Account, TriesMoreAndMoreSeldomWhereThatNeverPaysAndAtOnceWhereItDoes) {
   Account account;
   int tries = 0;
   for (int i = 0; i < 640; ++i) {
-    const bool tried = account.begins_try();
+    const bool tried = account.begins_try(1e6);
     tries += tried;
     account.close_frame(tried ? 1.01e6 : 1e6, 1e6);
   }
   EXPECT_GE(tries, 640 / 32);
   EXPECT_LE(tries, 640 / 32 + 6);
-  while (!account.begins_try()) account.close_frame(1e6, 1e6);
+  // What is in view grew a little, and grew a lot; then it shrank, and all waits the longest.
+  while (account.begins_try(1e6)) account.close_frame(1.01e6, 1e6);
+  EXPECT_FALSE(account.begins_try(4e6));
+  EXPECT_TRUE(account.begins_try(9e6));
+  account.close_frame(9.1e6, 9e6);
+  int waited = 0;
+  for (; !account.begins_try(1e6); ++waited) account.close_frame(1e6, 1e6);
+  EXPECT_EQ(waited, 31);
   account.close_frame(0.9e6, 1e6);
-  EXPECT_TRUE(account.begins_try());
+  EXPECT_TRUE(account.begins_try(1e6));
 }
 
 }  // namespace

@@ -163,6 +163,22 @@ TEST(Carriers, AsksForTheTrianglesOfWhatItsBoxLeaves) {
   EXPECT_EQ(wall.seen_anew(), before);
 }
 
+TEST(Carriers, DoesNotSeeTrianglesOfOneSideFromBehind) {
+  Wall wall;
+  World& world = wall.scene.world;
+  const std::array boxes{Box{{-1, 0, -6}, {1, 2, -5}}};  // before the wall
+  const std::array<Vec3, 3> away{Vec3{-1, 0, -5.5f}, {0, 2, -5.5f}, {1, 0, -5.5f}},
+      towards{away[0], away[2], away[1]};
+  std::array<Handle, 1> handle;
+  ASSERT_TRUE(world.insert(BoxView(boxes), handle));
+  ASSERT_TRUE(world.set_triangles(handle[0], away));
+  EXPECT_EQ(wall.seen_anew(), 2u);
+  ASSERT_TRUE(world.set_triangles(handle[0], away, {}, Sides::front));
+  EXPECT_EQ(wall.seen_anew(), 1u);
+  ASSERT_TRUE(world.set_triangles(handle[0], towards, {}, Sides::front));
+  EXPECT_EQ(wall.seen_anew(), 2u);
+}
+
 TEST(Carriers, ShapesAreSharedTurnedAndScaled) {
   World world;
   const std::vector<Box> boxes = Wall::boxes();
@@ -239,6 +255,7 @@ TEST(Carriers, RefusesWhatItCannotTake) {
   EXPECT_EQ(world.set_occluding({}, std::array<std::uint8_t, 1>{1}).code(), StatusCode::bad_argument);
   EXPECT_EQ(world.set_triangles(one[0], std::array<Vec3, 2>{}).code(), StatusCode::bad_mesh);
   EXPECT_EQ(world.set_triangles({}, {}).code(), StatusCode::stale_handle);
+  EXPECT_EQ(world.set_triangles(one[0], {}, {}, static_cast<Sides>(2)).code(), StatusCode::bad_argument);
   Culler culler;
   std::vector<ObjectId> ids(cull_capacity(world));
   CullOptions options = automatic(-1);

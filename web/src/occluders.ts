@@ -2,6 +2,7 @@
 import { refuse, said } from './errors.js';
 import { Block, calling, expectKind, expectLength, fields, readOrigin } from './memory.js';
 import type { Call, Input, Numbers } from './memory.js';
+import { sidesNumber, type Sides } from './occlusion.js';
 import { buffer, check, need } from './runtime.js';
 import { handleList, World as CoreWorld, type Handle, type Handles } from './world.js';
 
@@ -97,14 +98,14 @@ export class World extends CoreWorld {
     });
   }
   /** Gives an object its triangles, nine numbers each, in metres about `origin`: all that it shows. Culls with automatic
-   * occlusion whose view has the same origin ask for them where the box may be seen. Call it again when the object has
-   * moved. None takes them away. */
-  setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0]): void {
+   * occlusion whose view has the same origin ask for them where the box may be seen; for those of `front` from that side
+   * alone. Call it again when the object has moved. None takes them away. */
+  setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0], sides: Sides = 'both'): void {
     calling((call) => {
       this.expect('setTriangles', handle);
       const [x, y, z] = readOrigin('setTriangles', origin);
       const [at, count] = column('setTriangles', call, 'corners', corners, Float32Array, 3);
-      check(need('world_set_triangles')(this.pointer, handle, at, count, x!, y!, z!));
+      check(need('world_set_triangles')(this.pointer, handle, at, count, x!, y!, z!, sidesNumber('setTriangles', sides)));
     });
   }
 }

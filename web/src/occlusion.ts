@@ -5,19 +5,26 @@ import { calling, expectBlock, expectKind, expectLength, fields, isA, readNumber
 import { buffer, check, need, Owned, wasm } from './runtime.js';
 import { readView, viewBytes, writeView, type View } from './views.js';
 
+/** From which sides triangles are there: the front is that from which corners turn counter-clockwise. */
+export type Sides = 'both' | 'front';
+export function sidesNumber(what: string, sides: Sides): number {
+  if (sides !== 'both' && sides !== 'front') refuse(`${what}: sides of ${said(sides)}, expected both or front`);
+  return sides === 'front' ? 1 : 0;
+}
+
 /** Triangles that occlude. What can be looked through must not be among them. */
 export class OccluderMesh extends Owned {
   /** Three numbers a position, in metres; three indices a triangle. `front`: only the side from which corners turn
    * counter-clockwise occludes. Some microseconds a triangle: build once. */
-  constructor(positions: Input<Float32Array>, indices: Input<Uint32Array>, sides: 'both' | 'front' = 'both') {
+  constructor(positions: Input<Float32Array>, indices: Input<Uint32Array>, sides: Sides = 'both') {
     super('OccluderMesh', 'mesh_create', 'mesh_destroy', calling((call) => {
       expectKind('OccluderMesh: positions', positions, Float32Array);
       expectKind('OccluderMesh: indices', indices, Uint32Array);
-      if (sides !== 'both' && sides !== 'front') refuse(`OccluderMesh: sides of ${said(sides)}, expected both or front`);
+      const drawn = sidesNumber('OccluderMesh', sides);
       if (positions.length % 3 !== 0)
         refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
       const [at, index] = call.place(positions, indices);
-      const made = need('mesh_create')(at!, positions.length / 3, index!, indices.length, sides === 'front' ? 1 : 0);
+      const made = need('mesh_create')(at!, positions.length / 3, index!, indices.length, drawn);
       if (made === 0) check(wasm().last_code!());
       return made;
     }));

@@ -77,6 +77,7 @@ const entrances = {
   'setTriangles: handle': (x) => world.setTriangles(x, triangle[0]),
   'setTriangles: corners': (x) => world.setTriangles(handle, x),
   'setTriangles: origin': (x) => world.setTriangles(handle, triangle[0], [x, 0, 0]),
+  'setTriangles: sides': (x) => world.setTriangles(handle, triangle[0], [0, 0, 0], x),
   'BoxBvh: boxes': (x) => bvh.build(x),
   'BoxBvh.cast: rays': (x) => bvh.cast(x, integers(1), floats(1)),
   'BoxBvh.visibleSet: columns': (x) => bvh.visibleSet(view, x, 1),

@@ -70,8 +70,9 @@ std::uint32_t world_set_occluding(WebWorld* web, const double* numbers, const st
 }
 SIGHTLINE_WEB(world_set_triangles)
 std::uint32_t world_set_triangles(WebWorld* web, double number, const Vec3* corners, std::size_t count,
-                                  double x, double y, double z) {
-  return keep(web->world.set_triangles(web->read(&number, 1)[0], {corners, count}, {x, y, z}));
+                                  double x, double y, double z, std::uint32_t sides) {
+  return keep(web->world.set_triangles(web->read(&number, 1)[0], {corners, count}, {x, y, z},
+                                       static_cast<Sides>(sides)));
 }
 
 }  // extern "C"

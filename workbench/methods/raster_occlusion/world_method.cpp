@@ -104,7 +104,7 @@ private:
   void set_triangles(ObjectId o) {
     corners_.clear();
     append_corners(o);
-    usable_ = world_.set_triangles(handles_[o], corners_) && usable_;
+    usable_ = world_.set_triangles(handles_[o], corners_, {}, scene_.sides[o]) && usable_;
   }
 
   // All opaque objects that never moved, in world space, so that their seams are joined across objects.
