@@ -1,5 +1,6 @@
 // Nothing in the bytes is trusted: each count is held against what the bytes have room for before it is used.
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 #include <sightline/box_view.hpp>
@@ -7,6 +8,7 @@
 
 #include "library/world/chunk_map.hpp"
 #include "library/world/snapshot_format.hpp"
+#include "library/world/world_state.hpp"
 
 namespace sightline::world {
 
@@ -58,11 +60,14 @@ bool is_sound(const SnapshotTable& table) {
 Status check_sectors(SnapshotDirectory& out, const SnapshotTail& tail) {
   const SnapshotRows rows(out.columns);
   std::uint64_t at = sizeof(SnapshotHead);
+  std::unordered_set<SectorCell, SectorCellHash> cells;
   for (std::size_t i = 0; i < out.sectors.size(); ++i) {
     const SectorEntry& e = out.sectors[i];
+    const std::size_t entry = static_cast<std::size_t>(tail.directory) + i * sizeof(SectorEntry);
     if (!is_sound(e, rows) || e.bytes > tail.directory - at)
-      return damaged("snapshot: the entry of a sector is not sound, at this byte",
-                     static_cast<std::size_t>(tail.directory) + i * sizeof(SectorEntry));
+      return damaged("snapshot: the entry of a sector is not sound, at this byte", entry);
+    if (!cells.insert({e.cell[0], e.cell[1], e.cell[2]}).second)
+      return damaged("snapshot: a sector stands where another does, its entry at this byte", entry);
     out.first_bytes.push_back(static_cast<std::size_t>(at));
     at += e.bytes, out.objects += e.objects;
   }

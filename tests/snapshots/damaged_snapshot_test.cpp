@@ -164,6 +164,22 @@ TEST(DamagedSnapshot, NoCountOfTheDirectoryIsBelieved) {
   }
 }
 
+// Neither could leave again, for each would count as changed by the other.
+TEST(DamagedSnapshot, TwoSectorsAtOnePlaceAreRefused) {
+  World world;
+  const std::vector<WorldBox> boxes{{{0, 0, 0}, {1, 1, 1}}, {{9000, 0, 0}, {9001, 1, 1}}};
+  std::vector<Handle> handles(2);
+  ASSERT_TRUE(world.insert(boxes, handles));
+  FileBytes bytes = test::saved(world);
+  const std::size_t first = test::tail_of(bytes).directory, second = first + sizeof(world::SectorEntry);
+  std::memcpy(bytes.data() + second, bytes.data() + first, sizeof world::SectorEntry::cell);
+  test::forge_checksums(bytes);
+  const auto loaded = load(bytes);
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().code(), StatusCode::bad_file);
+  EXPECT_EQ(loaded.error().index(), second);
+}
+
 TEST(DamagedSnapshot, AnIdThatStandsTwiceLeavesTheSecondSectorOut) {
   World world;
   const std::vector<WorldBox> boxes{{{0, 0, 0}, {1, 1, 1}}, {{9000, 0, 0}, {9001, 1, 1}}};
