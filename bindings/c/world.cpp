@@ -233,7 +233,6 @@ sightline_status sightline_world_set_triangles(sightline_world* world, sightline
   const auto points = points_of(corners, corner_count);
   if (!world || !can_hold(points.data(), corner_count))
     return refuse("set_triangles: a pointer is NULL, or a count more than memory holds");
-  if (sides > SIGHTLINE_FRONT_SIDE) return refuse("set_triangles: expected both sides or the front");
   const WorldPoint about = origin ? WorldPoint{origin[0], origin[1], origin[2]} : WorldPoint{};
   return keep(world->world.set_triangles(handle_of(handle), points, about, static_cast<Sides>(sides)));
 }

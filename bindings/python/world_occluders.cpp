@@ -117,8 +117,8 @@ void add_world_occluders(py::class_<SharedWorld>& world) {
       .def("set_triangles", &set_triangles,
            "Gives one object all of its triangles, float32 (..., 3) about `origin`: asked for where its box "
            "may\n"
-           "be seen, by views of the same origin, from both sides or their front alone. None of them takes\n"
-           "them away.",
+           "be seen, by views of the same origin, from both sides, or from their front alone where\n"
+           "no view, a shadow map's included, draws their backs. None of them takes them away.",
            py::arg("handle"), py::arg("corners"), py::arg("origin") = py::none(), py::arg("sides") = "both");
 }
 

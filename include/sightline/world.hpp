@@ -152,10 +152,11 @@ public:
   Status set_occluding(Strided<const Handle> handles, Strided<const std::uint8_t> on);
   /// Gives an object its triangles, three points each in metres about `origin`: all that it shows. Culls with
   /// Occlusion::automatic whose view has the same origin ask for them where the box may be seen; those of
-  /// Sides::front from that side alone, where corners turn counter-clockwise. Call it again when the object
-  /// has moved: triangles that reach out of its box are not asked. None takes them away. Errors: bad_mesh
-  /// where the points are no multiple of three; too_many beyond 2³⁰ triangles; bad_argument for sides that
-  /// are none; stale_handle. Cost: a copy. Allocates: 576 bytes for every 16 triangles begun, 4 an id.
+  /// Sides::front from that side alone, where corners turn counter-clockwise: where no view, a shadow
+  /// map's included, draws their backs. Call it again when the object has moved: triangles that
+  /// reach out of its box are not asked. None takes them away. Errors: bad_mesh where the points are no
+  /// multiple of three; too_many beyond 2³⁰ triangles; bad_argument for sides that are none; stale_handle.
+  /// Cost: a copy. Allocates: 576 bytes for every 16 triangles begun, 4 an id.
   Status set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin = {},
                        Sides sides = Sides::both);
 

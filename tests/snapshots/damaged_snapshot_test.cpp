@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
 
@@ -164,13 +165,21 @@ TEST(DamagedSnapshot, NoCountOfTheDirectoryIsBelieved) {
   }
 }
 
+// Two objects, each in a sector of its own.
+struct TwoSectors {
+  TwoSectors() {
+    const std::vector<WorldBox> boxes{{{0, 0, 0}, {1, 1, 1}}, {{9000, 0, 0}, {9001, 1, 1}}};
+    World world;
+    EXPECT_TRUE(world.insert(boxes, handles));
+    bytes = test::saved(world);
+  }
+  std::array<Handle, 2> handles;
+  FileBytes bytes;
+};
+
 // Neither could leave again, for each would count as changed by the other.
 TEST(DamagedSnapshot, TwoSectorsAtOnePlaceAreRefused) {
-  World world;
-  const std::vector<WorldBox> boxes{{{0, 0, 0}, {1, 1, 1}}, {{9000, 0, 0}, {9001, 1, 1}}};
-  std::vector<Handle> handles(2);
-  ASSERT_TRUE(world.insert(boxes, handles));
-  FileBytes bytes = test::saved(world);
+  FileBytes bytes = TwoSectors().bytes;
   const std::size_t first = test::tail_of(bytes).directory, second = first + sizeof(world::SectorEntry);
   std::memcpy(bytes.data() + second, bytes.data() + first, sizeof world::SectorEntry::cell);
   test::forge_checksums(bytes);
@@ -181,11 +190,7 @@ TEST(DamagedSnapshot, TwoSectorsAtOnePlaceAreRefused) {
 }
 
 TEST(DamagedSnapshot, AnIdThatStandsTwiceLeavesTheSecondSectorOut) {
-  World world;
-  const std::vector<WorldBox> boxes{{{0, 0, 0}, {1, 1, 1}}, {{9000, 0, 0}, {9001, 1, 1}}};
-  std::vector<Handle> handles(2);
-  ASSERT_TRUE(world.insert(boxes, handles));
-  FileBytes bytes = test::saved(world);
+  auto [handles, bytes] = TwoSectors();
   // A group, a chunk, the end of its chain, a box; then the id.
   const std::size_t id = sizeof(world::SnapshotHead) + 4 * (3 + 6), length = 4 * (3 + 8);
   std::memcpy(bytes.data() + id + length, bytes.data() + id, 4);

@@ -99,7 +99,8 @@ export class World extends CoreWorld {
   }
   /** Gives an object its triangles, nine numbers each, in metres about `origin`: all that it shows. Culls with automatic
    * occlusion whose view has the same origin ask for them where the box may be seen; for those of `front` from that side
-   * alone. Call it again when the object has moved. None takes them away. */
+   * alone: where no view, a shadow map's included, draws their backs. Call it again when the object has moved. None takes them
+   * away. */
   setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0], sides: Sides = 'both'): void {
     calling((call) => {
       this.expect('setTriangles', handle);
