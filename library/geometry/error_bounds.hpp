@@ -97,10 +97,12 @@ inline constexpr float kPixelPlay = 1.0f / 64;
 inline constexpr float kDrawnNormalRounding = 4.2e-7f, kAskedNormalRounding = 4e-7f;
 /// Beyond, the plane of a triangle asked for says nothing, and its nearest point stands for it; not bounds.
 inline constexpr float kMostDoubt = 1e4f, kMostNearness = 1e30f;
-/// Of |at| + |across|·x + |down|·y of the first half's plane, when a quad is drawn on it: the differences of
-/// coefficients are exact, for they are nearly alike; two products, three sums and the move itself round, the
-/// sums no more than u of what is left of them. Needs 0.1 (the move alone takes 1 u of |at|).
-inline constexpr float kQuadRounding = 5e-7f;
+/// Corners of a polygon lie up to e from the plane that it is drawn on, d from the eye: its nearness there is
+/// less by the part e / d at most, of a d that is off by a 40th where kEdgeOnPart just lets it pass. Needs
+/// 0.82.
+inline constexpr float kPolygonApart = 1.25f;
+/// Of |at|, when that plane is moved: the move rounds 1 u of it, and its terms next to nothing. Needs 0.48.
+inline constexpr float kPolygonRounding = 1.25e-7f;
 /// Of a tile's nearest value: what else its pixels' sums may round to. No promise hangs on it: where it is
 /// too low, what is asked for is called visible.
 inline constexpr float kTileRounding = 1e-6f;

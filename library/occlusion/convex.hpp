@@ -12,6 +12,10 @@ struct Convex {
   std::size_t edges = 0;
   /// x = at + slope·y; an edge bounds one side, on the other it lies at infinity.
   std::array<float, kMaxEdges> slope, left_at, right_at;
+  /// Where edges may go straight on, rounding would let the line of a short one cut a long one: then each
+  /// bounds the lines from..to alone.
+  bool by_lines = false;
+  std::array<float, kMaxEdges> from, to;
   bool has_left = false, has_right = false;  // edges
   float top = 0, bottom = 0;                 // pixel centres y with top <= y <= bottom
   float left = 0, right = 0;                 // bounds of the same kind

@@ -37,7 +37,8 @@ struct MeshScratch {
   geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
-  float front = 1;  ///< which way triangles turn on the image that are seen from their front
+  float front = 1;    ///< which way triangles turn on the image that are seen from their front
+  float stretch = 1;  ///< how much longer the mesh's placement may make distances
 };
 
 /// The nearness of a tile that one plane covers.

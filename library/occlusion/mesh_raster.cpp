@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include <sightline/projection.hpp>
 
@@ -23,40 +25,51 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-// Adds the first `count` edges of triangle i.
-HWY_INLINE void add_edges(const ReadyTriangles& ready, int i, std::size_t count, Convex& out) {
-  std::uint32_t left = 0, right = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    out.slope[out.edges] = ready.slope[k][i];
-    out.left_at[out.edges] = ready.left_at[k][i];
-    out.right_at[out.edges++] = ready.right_at[k][i];
-    left |= ready.on_left[k], right |= ready.on_right[k];
-  }
-  out.has_left |= left >> i & 1, out.has_right |= right >> i & 1;
-}
-
-// Of a group of triangles, those that are drawn as one: a triangle, or a quad's halves. Of a quad each adds
-// two edges.
+// Of a group of triangles those that are drawn as one polygon, and a bit a triangle and edge within it.
 struct Piece {
   std::size_t first, count;
-};
+  std::array<std::uint32_t, 3> inner{};
 
-// Moves the edges of a piece inwards that are drawn tight, as if nothing went on there.
-HWY_INLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, Convex tight) {
-  const auto first = static_cast<int>(piece.first);
-  const float inset =
-      piece.count == 2 ? std::max(ready.inset[first], ready.inset[first + 1]) : ready.inset[first];
-  tight.left += inset, tight.right -= inset, tight.top += inset, tight.bottom -= inset;
-  tight.edges = 0;
-  for (int i = first; i < first + static_cast<int>(piece.count); ++i) {
-    const std::size_t edges = piece.count == 2 ? 2 : 3;
-    for (std::size_t k = 0; k < edges; ++k) {
-      const float slope = ready.slope[k][i],
-                  inwards = ready.seam[k] >> i & 1 ? inset * (1 + std::fabs(slope)) : 0;
-      if (ready.on_right[k] >> i & 1) tight.add_edge(true, ready.right_at[k][i] - inwards, slope);
-      if (ready.on_left[k] >> i & 1) tight.add_edge(false, ready.left_at[k][i] + inwards, slope);
+  [[nodiscard]] std::uint32_t bits() const { return ((1u << count) - 1) << first; }
+  // edge(triangle, k) for each edge of the polygon.
+  template <class Visit>
+  HWY_INLINE void for_edges(const Visit& edge) const {
+    for (std::size_t i = first; i < first + count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!(inner[k] >> i & 1)) edge(i, k);
     }
   }
+};
+
+// Adds edge k of triangle i. What bounds its own lines alone does so where it ends at a corner beside it,
+// too, if it is to be kept away from.
+HWY_INLINE void add_edge(const ReadyTriangles& ready, std::size_t i, std::size_t k, Convex& out) {
+  out.slope[out.edges] = ready.slope[k][i];
+  out.left_at[out.edges] = ready.left_at[k][i];
+  out.right_at[out.edges] = ready.right_at[k][i];
+  if (out.by_lines) {
+    const float a = ready.y[k][i], b = ready.y[(k + 1) % 3][i],
+                away = ready.seam[k] >> i & 1 ? 0 : ready.inset[i];
+    out.from[out.edges] = std::min(a, b) - away, out.to[out.edges] = std::max(a, b) + away;
+  }
+  ++out.edges;
+  out.has_left |= ready.on_left[k] >> i & 1, out.has_right |= ready.on_right[k] >> i & 1;
+}
+
+// Moves the edges of a piece inwards that are drawn tight, as if nothing went on there.
+HWY_NOINLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, Convex tight) {
+  const auto its = std::span(ready.inset).subspan(piece.first, piece.count);
+  const float inset = *std::ranges::max_element(its);
+  tight.left += inset, tight.right -= inset, tight.top += inset, tight.bottom -= inset;
+  tight.edges = 0;
+  piece.for_edges([&](std::size_t i, std::size_t k) {
+    const std::size_t at = tight.edges;
+    add_edge(ready, i, k, tight);
+    if (!(ready.seam[k] >> i & 1)) return;
+    const float inwards = inset * (1 + std::fabs(tight.slope[at]));
+    tight.left_at[at] += inwards, tight.right_at[at] -= inwards;
+    if (tight.by_lines) tight.from[at] -= inset, tight.to[at] += inset;
+  });
   return tight;
 }
 
@@ -68,13 +81,12 @@ constexpr float kLeastDeeper = 1e-2f;
 HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim,
                                    const Piece& piece, const Convex& tight, const TileRange& range,
                                    TileList<1>& list) {
-  const std::size_t last = piece.first + piece.count - 1;
+  const auto slants = std::span(rim.slant).subspan(piece.first, piece.count);
   const float own = std::fabs(tight.across) + std::fabs(tight.down),
-              slant = std::max(rim.slant[piece.first], rim.slant[last]),
-              deeper = tiles.margin * std::max(0.0f, slant - own);
+              slant = *std::ranges::max_element(slants), deeper = tiles.margin * std::max(0.0f, slant - own);
   const bool again = deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]);
   Bands bands;
-  const bool known = bands_in(rim, 1u << piece.first | 1u << last, tight, bands);
+  const bool known = bands_in(rim, piece.bits(), tight, bands);
   Convex shared = tight;
   shared.at -= deeper;
   if (known && !again && bands.count == 0) return list_polygon(tiles, shared, range, list);
@@ -93,41 +105,67 @@ HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const
     list_polygon(tiles, polygon, range, list);
 }
 
-HWY_INLINE Convex triangle_of(const ReadyTriangles& ready, int i) {
+HWY_INLINE Convex triangle_of(const ReadyTriangles& ready, std::size_t i) {
   Convex out;
   out.left = ready.left[i], out.right = ready.right[i];
   out.top = ready.top[i], out.bottom = ready.bottom[i];
   out.at = ready.at[i], out.across = ready.across[i], out.down = ready.down[i];
-  add_edges(ready, i, 3, out);
+  for (std::size_t k = 0; k < 3; ++k) add_edge(ready, i, k, out);
   return out;
 }
 
-// How far apart a quad's halves may lie, of their nearness, before they are drawn one by one.
+// Whether a piece's triangles all have a plane and turn one way, and each edge of it bounds it to a side, or,
+// where edges bound more than their own lines, its rows.
+HWY_INLINE bool makes_one(const ReadyTriangles& ready, const Piece& piece, bool by_lines) {
+  const std::uint32_t its = piece.bits(), to_right = ready.to_right & its;
+  if ((ready.sound & its) != its || (to_right != 0 && to_right != its)) return false;
+  if (!by_lines) return (ready.flat & its) == 0;
+  std::uint32_t flat = 0;
+  for (std::size_t k = 0; k < 3; ++k) flat |= ~(ready.on_left[k] | ready.on_right[k] | piece.inner[k]);
+  return (flat & its) == 0;
+}
+
+// How far apart a polygon and its plane may lie, of the eye's distance, before its triangles are drawn one by
+// one.
 constexpr float kMostApart = 4e-5f;
 
-// Triangles i and i + 1 as one quad on the first one's plane, moved behind the second's wherever the image
-// may hold the quad; false where their planes differ by more than rounding. Whether the answer is true does
-// not depend on what is drawn already, for widths of vectors see that at different times.
-HWY_INLINE bool make_quad(const DepthTiles& tiles, const ReadyTriangles& ready, int i, Convex& out) {
-  out.left = std::min(ready.left[i], ready.left[i + 1]);
-  out.right = std::max(ready.right[i], ready.right[i + 1]);
-  out.top = std::min(ready.top[i], ready.top[i + 1]);
-  out.bottom = std::max(ready.bottom[i], ready.bottom[i + 1]);
-  out.across = ready.across[i], out.down = ready.down[i];
-  const float across = out.across - ready.across[i + 1], down = out.down - ready.down[i + 1];
-  const float x0 = std::max(out.left, 0.0f), x1 = std::min(out.right, static_cast<float>(tiles.width)),
-              y0 = std::max(out.top, 0.0f), y1 = std::min(out.bottom, static_cast<float>(tiles.height));
-  const float apart = ready.at[i] - ready.at[i + 1];
-  const float before = apart + std::max(across * x0, across * x1) + std::max(down * y0, down * y1),
-              behind = -apart - std::min(across * x0, across * x1) - std::min(down * y0, down * y1);
-  const float rounding =
-      kQuadRounding * (std::fabs(ready.at[i]) + std::fabs(out.across) * x1 + std::fabs(out.down) * y1);
-  const float back = std::max(before, 0.0f) + rounding;
-  const float most = kMostApart * std::min(std::fabs(ready.nearest[i]), std::fabs(ready.nearest[i + 1]));
-  if (!(back + std::max(behind, 0.0f) <= most)) return false;
-  out.at = ready.at[i] - back;
-  add_edges(ready, i, 2, out);
-  add_edges(ready, i + 1, 2, out);
+// Moves a polygon's plane, its first triangle's, behind all of it: triangles lie up to `apart` from the
+// plane, and reach farther than the first, for whose corners its rounding is known. False where that is too
+// far.
+HWY_INLINE bool move_behind(const DepthTiles& tiles, const ReadyTriangles& ready, const Piece& piece,
+                            float apart, float nearest, Convex& out) {
+  const bool orthographic = tiles.projection.orthographic;
+  const std::size_t first = piece.first;
+  const float away = kPolygonApart * apart / ready.distance[first];
+  if (!(away <= kMostApart)) return false;
+  const auto sides = std::span(ready.sides).subspan(first, piece.count);
+  const float farther = orthographic ? std::accumulate(sides.begin(), sides.end(), 0.0f) / sides[0]
+                                     : nearest / ready.nearest[first],
+              nearer = std::fabs(nearest) - std::fabs(ready.nearest[first]);
+  out.at = ready.at[first] -
+           ((orthographic ? 1 : nearest) * away + (farther - 1) * ready.doubt[first] +
+            kNearnessRounding * std::max(nearer, 0.0f) + kPolygonRounding * std::fabs(ready.at[first]));
+  return true;
+}
+
+// A piece as one polygon, unless a plane or a side of it is unsure. Whether the answer is true does not
+// depend on what is drawn already, for widths of vectors see that at different times.
+HWY_NOINLINE bool make_polygon(const DepthTiles& tiles, const ReadyTriangles& ready, const Piece& piece,
+                               bool by_lines, float apart, Convex& out, float& nearest) {
+  if (!makes_one(ready, piece, by_lines)) return false;
+  const auto least = [&](const std::array<float, 16>& of) {
+    return *std::ranges::min_element(std::span(of).subspan(piece.first, piece.count));
+  };
+  const auto most = [&](const std::array<float, 16>& of) {
+    return *std::ranges::max_element(std::span(of).subspan(piece.first, piece.count));
+  };
+  nearest = most(ready.nearest);
+  if (!move_behind(tiles, ready, piece, apart, nearest, out)) return false;
+  out.across = ready.across[piece.first], out.down = ready.down[piece.first];
+  out.left = least(ready.left), out.right = most(ready.right);
+  out.top = least(ready.top), out.bottom = most(ready.bottom);
+  out.by_lines = by_lines;
+  piece.for_edges([&](std::size_t i, std::size_t k) { add_edge(ready, i, k, out); });
   return true;
 }
 
@@ -164,27 +202,28 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
                            std::size_t group, TileList<1>& list) {
   ReadyTriangles ready;
   if (tiles.margin > 0) prefetch_rim(mesh, group);
-  for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(F()))
-    set_up(tiles, mesh, transform, group, lane, ready);
+  set_up(tiles, mesh, transform, group, ready);
   if ((ready.drawn | ready.cut) == 0) return;
   Rim rim;
   if (tiles.margin > 0) find_rim(tiles, mesh, transform, group, ready.drawn | ready.cut, rim);
-  const std::uint32_t alike = ready.sound & ready.sound >> 1 & ~(ready.to_right ^ ready.to_right >> 1) &
-                              ~(ready.flat | ready.flat >> 1);
+  const OccluderTopology::Group& its = mesh.groups[group];
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
                         HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, list); };
+  const float apart = its.apart * tiles.mesh->stretch;
   std::uint32_t rest = ready.drawn;
-  for (std::uint32_t halves = mesh.groups[group].first_half & alike & (rest | rest >> 1); halves != 0;
-       halves &= halves - 1) {
-    const int i = std::countr_zero(halves);
-    Convex quad;
-    if (!make_quad(tiles, ready, i, quad)) continue;
-    draw({static_cast<std::size_t>(i), 2}, quad, std::max(ready.nearest[i], ready.nearest[i + 1]));
-    rest &= ~(3u << i);
+  for (std::uint32_t leads = its.follows >> 1 & ~its.follows; leads != 0; leads &= leads - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(leads));
+    const Piece piece{i, 1 + static_cast<std::size_t>(std::countr_one(its.follows >> (i + 1))), its.inner};
+    if ((rest & piece.bits()) == 0) continue;
+    Convex polygon;
+    float nearest = 0;
+    if (!make_polygon(tiles, ready, piece, its.straight >> i & 1, apart, polygon, nearest)) continue;
+    draw(piece, polygon, nearest);
+    rest &= ~piece.bits();
   }
   for (; rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
-    draw({static_cast<std::size_t>(i), 1}, triangle_of(ready, i), ready.nearest[i]);
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    draw({i, 1}, triangle_of(ready, i), ready.nearest[i]);
   }
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
@@ -222,6 +261,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = *tiles.mesh;
   TileList<1> list;
+
   for (std::size_t first = 0; first < s.near_first.size(); first += kGroupsAtOnce) {
     const std::size_t count = std::min(kGroupsAtOnce, s.near_first.size() - first);
     if (budget && !budget->pay(static_cast<double>(count) * budget->query)) return;
@@ -264,8 +304,19 @@ bool mirrors(const RowTransform& transform) {
   return glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
 }
 
+// How much longer distances may become.
+float stretch_of(const RowTransform& transform) {
+  if (transform.in_place) return 1;
+  double squares = 0;
+  for (const Vec4& r : transform.rows) {
+    const glm::dvec3 row(r.x, r.y, r.z);
+    squares += glm::dot(row, row);
+  }
+  return static_cast<float>(std::sqrt(squares) * (1 + 1e-6));
+}
+
 // For meshes of that many groups, one of which is drawn.
-void make_ready(MeshScratch& s, std::size_t groups, float front) {
+void make_ready(MeshScratch& s, std::size_t groups, float front, const RowTransform& transform) {
   if (s.known.size() < groups) {
     for (auto& side : s.box) side.resize(groups);
     s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
@@ -273,7 +324,7 @@ void make_ready(MeshScratch& s, std::size_t groups, float front) {
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
-  s.front = front;
+  s.front = front, s.stretch = stretch_of(transform);
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
 }
 
@@ -305,7 +356,7 @@ constexpr std::uint32_t kLeastRows = 6;  // of tiles; a thinner band is not wort
 
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                MeshBudget& budget) {
-  make_ready(*tiles.mesh, mesh.groups.size(), front_of(tiles, transform));
+  make_ready(*tiles.mesh, mesh.groups.size(), front_of(tiles, transform), transform);
   HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, &budget);
 }
 
@@ -315,7 +366,7 @@ void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& me
   const std::uint32_t count = jobs.run ? std::max(1u, most) : 1;
   if (memory.scratch.size() < count) memory.scratch.resize(count), tiles.mesh = memory.scratch.data();
   const std::span scratch = std::span(memory.scratch).first(count);
-  for (MeshScratch& s : scratch) make_ready(s, mesh.groups.size(), front_of(tiles, transform));
+  for (MeshScratch& s : scratch) make_ready(s, mesh.groups.size(), front_of(tiles, transform), transform);
   if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, nullptr);
   MeshBands bands{tiles, scratch, mesh, transform};
   jobs.run(

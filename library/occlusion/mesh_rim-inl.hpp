@@ -248,7 +248,9 @@ HWY_INLINE hn::Mask<F> apart_from(const Rim& rim, std::size_t first, const Conve
   };
   auto apart = hn::Or(beyond(ax, bx, least, polygon.left, polygon.right),
                       beyond(ay, by, least, polygon.top, polygon.bottom));
-  for (std::size_t e = 0; e < polygon.edges; ++e) {
+  // The line of an edge that bounds its own lines alone says nothing of the others.
+  const std::size_t edges = polygon.by_lines ? 0 : polygon.edges;
+  for (std::size_t e = 0; e < edges; ++e) {
     const VF slope = hn::Set(f, polygon.slope[e]),
              reach = hn::Mul(least, hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
     const auto along = [&](VF x, VF y) HWY_ATTR { return hn::Sub(x, hn::Mul(slope, y)); };

@@ -81,6 +81,9 @@ struct ReadyTriangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down, inset;
   alignas(64) std::array<std::array<float, 16>, 3> slope, left_at, right_at;  // as Convex has them
   std::array<std::uint32_t, 3> on_right{}, on_left{};  // a bit a triangle: the edge bounds it there
+  // Where triangles make polygons.
+  alignas(64) std::array<float, 16> doubt, distance, sides;  // as TrianglePlanes has them
+  alignas(64) std::array<std::array<float, 16>, 3> y;  // of the corners; where a polygon goes straight on
   std::uint32_t drawn = 0, cut = 0;
   std::array<std::uint32_t, 3> seam{}, whole{};  // drawn tight; of cut ones, before the near plane end to end
   // Have a plane and turn one way; to the right; have an outer edge that is flat on the image.
@@ -151,6 +154,8 @@ HWY_INLINE VPoints nearest_of(const Candidates& c) {
 // which are not sound, nothing is said.
 struct TrianglePlanes {
   VF at, across, down, doubt;
+  VF distance;  // of the eye from the plane; in an orthographic view the sine under which it is seen
+  VF sides;     // two together, at least as long as the triangle reaches
   hn::Mask<F> sound;
 };
 
@@ -166,6 +171,7 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF reach = reach_of(c.corners);
   const VF plane_at = dot(unit, nearest_of(c));
   const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
+  out.distance = hn::Abs(scale);
   const VF least = orthographic ? hn::Set(f, static_cast<float>(kEdgeOnSine))
                                 : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
                                           hn::Set(f, static_cast<float>(kEdgeOnDistance)));
@@ -175,7 +181,7 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF ray_at = dot(unit, rays.at);
   out.at = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
   // The normal is as uncertain as the corners are far and the triangle is thin.
-  const VF sides = hn::Add(largest(pq), largest(pr));
+  const VF sides = out.sides = hn::Add(largest(pq), largest(pr));
   out.doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
                       hn::Mul(length, hn::Abs(scale)));
   if (orthographic) out.doubt = hn::Mul(out.doubt, hn::Add(sides, sides));
@@ -231,14 +237,20 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTrans
   if (cut != 0) know_cut(tiles, mesh, transform, group);
 }
 
-HWY_INLINE void set_planes(const DepthTiles& tiles, Candidates& c, ReadyTriangles& out) {
+HWY_INLINE void set_planes(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
+                           ReadyTriangles& out) {
   const F f;
-  const auto [at, across, down, doubt, sound] = planes_of(tiles, c);
+  const auto [at, across, down, doubt, distance, sides, sound] = planes_of(tiles, c);
   c.drawn = hn::And(c.drawn, sound);
   out.sound |= bits_of(f, sound) << c.lane;
   hn::Store(hn::Sub(moved_back(tiles, at, across, down, c.nearest), doubt), f, &out.at[c.lane]);
   hn::Store(across, f, &out.across[c.lane]);
   hn::Store(down, f, &out.down[c.lane]);
+  if (mesh.groups[c.group].follows != 0) {
+    hn::Store(doubt, f, &out.doubt[c.lane]);
+    hn::Store(distance, f, &out.distance[c.lane]);
+    hn::Store(sides, f, &out.sides[c.lane]);
+  }
   hn::Store(c.nearest, f, &out.nearest[c.lane]);
 }
 
@@ -273,6 +285,7 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
   const F f;
   const I i32;
   const VF* y = c.image.y;
+  if (mesh.groups[c.group].straight != 0) hn::Store(y[k], f, &out.y[k][c.lane]);
   const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
   const auto has_other = hn::Gt(other, hn::Set(i32, -1));
   const VF others = hn::GatherIndex(f, tiles.mesh->facing.data(), hn::Max(other, hn::Zero(i32)));
@@ -347,31 +360,46 @@ inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, cons
   return std::span(mesh.beside).subspan(its.first_beside, its.end_beside - its.first_beside);
 }
 
-// Triangles 16·group + lane … of the mesh.
-HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                       std::size_t group, std::size_t lane, ReadyTriangles& out) {
+// A vector of a group's triangles, some of which are drawn if `some`.
+HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
+                       const std::array<std::uint32_t, 3>& shared, bool some, ReadyTriangles& out) {
   const F f;
-  Candidates c = candidates_of(tiles, mesh, transform, group, lane);
-  std::uint32_t cut = bits_of(f, hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut)));
+  if (some) {
+    if (hn::AllFalse(f, c.drawn)) find_nearness(tiles.projection, c);
+    set_planes(tiles, mesh, c, out);
+  }
+  out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << c.lane;
+  const VF inset = inset_of(tiles, widest_of(c.outline));
+  Rectangles outline = c.outline;
+  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> c.lane, outline, out);
+  if ((out.cut >> c.lane & ((1u << hn::Lanes(f)) - 1)) != 0) set_whole_edges(tiles, c, out);
+  // Where only seams bound a corner of the outline, rounding may carry them beyond it.
+  store(outline, out, c.lane);
+  out.drawn |= bits_of(f, c.drawn) << c.lane;
+}
+
+// The triangles of a group. All or none are set up, however many a vector holds: whether they are drawn as
+// polygons does not depend on that.
+HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                       std::size_t group, ReadyTriangles& out) {
+  const F f;
+  const std::size_t lanes = hn::Lanes(f);
+  std::array<Candidates, kGroup / hn::MaxLanes(F())> vectors;
   const VF exact = hn::Zero(f);
-  if (cut != 0) cut &= ~beyond_a_side(tiles, c.corners, {exact, exact, exact});
-  out.cut |= cut << lane;
-  const bool some = keep_those_that_show(tiles, c);
-  if (!some && cut == 0) return;
-  if (some) set_planes(tiles, c, out);
-  out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << lane;
+  bool some = false;
+  for (std::size_t v = 0; v * lanes < kGroup; ++v) {
+    Candidates& c = vectors[v] = candidates_of(tiles, mesh, transform, group, v * lanes);
+    std::uint32_t cut = bits_of(f, hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut)));
+    if (cut != 0) cut &= ~beyond_a_side(tiles, c.corners, {exact, exact, exact});
+    out.cut |= cut << c.lane;
+    some |= keep_those_that_show(tiles, c);
+  }
+  if (!some && out.cut == 0) return;
   know_facing(tiles, mesh, transform, group);
   for (const std::uint32_t other : around_group(tiles, mesh, group))
     know_facing(tiles, mesh, transform, other);
-  const VF inset = inset_of(tiles, widest_of(c.outline));
-  Rectangles outline = c.outline;
   const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
-  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> lane, outline, out);
-  if (cut != 0) set_whole_edges(tiles, c, out);
-  // Where only seams bound a corner of the outline, rounding may carry them beyond it.
-  store(outline, out, lane);
-  if (!some) return;
-  out.drawn |= bits_of(f, c.drawn) << lane;
+  for (std::size_t v = 0; v * lanes < kGroup; ++v) set_up(tiles, mesh, vectors[v], shared, some, out);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -92,7 +92,7 @@ Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
   add_triangles(*mesh.topology_, positions, indices, sides);
   sort_along_curve(*mesh.topology_);
   find_neighbours(*mesh.topology_);
-  pair_up(*mesh.topology_);
+  join_flat_polygons(*mesh.topology_);
   find_shared_edges(*mesh.topology_, junctions == TJunctions::closed);
   mesh.topology_->lay_out();
   find_corner_edges(*mesh.topology_);

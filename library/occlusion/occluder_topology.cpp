@@ -35,7 +35,9 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
   const std::size_t at = g * kGroup + i, last = mesh.triangles.size() - 1;
   const auto& triangle = mesh.triangles[std::min(at, last)];
   if (at <= last) {
-    group.first_half |= std::uint32_t{mesh.first_half[at]} << i;
+    group.follows |= std::uint32_t{mesh.parts[at].follows} << i;
+    group.apart = std::max(group.apart, mesh.parts[at].apart);
+    group.straight |= std::uint32_t{mesh.parts[at].straight} << i;
     group.one_sided |= std::uint32_t{mesh.one_sided[at]} << i;
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -44,6 +46,7 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
     out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
     bounds.add(p);
     if (at > last) continue;
+    group.inner[k] |= (std::uint32_t{mesh.parts[at].inner} >> k & 1) << i;
     group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
     const std::uint32_t other = mesh.neighbours[at][k];
     mesh.neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);

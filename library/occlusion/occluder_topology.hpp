@@ -29,17 +29,26 @@ struct OccluderTopology {
   std::vector<SharedEdge> shared;  ///< by triangle
   /// Triangle · 4, + 2 where it is wound the other way, + 1 for the last of a piece.
   std::vector<std::uint32_t> others;
-  /// Whether this triangle, of even number, and the next make a flat convex quad; their edges 2 are its
-  /// diagonal.
-  std::vector<std::uint8_t> first_half;
+  /// A triangle's part in a flat convex polygon. Its triangles lie together within a group, that first whose
+  /// plane is the polygon's.
+  struct Part {
+    std::uint8_t follows = 0;   ///< the triangle before is of the same polygon
+    std::uint8_t inner = 0;     ///< a bit an edge: beyond it the polygon goes on
+    std::uint8_t straight = 0;  ///< the first of a polygon some of whose corners go straight on, or all but
+    float apart = 0;            ///< of the first: so far the others lie from its plane at most
+  };
+  static constexpr std::size_t kMostParts = 8, kMostSides = 10;  ///< of a polygon
+  std::vector<Part> parts;
 
   /// Runs of triangles with a box that holds them: what is out of view or hidden as a whole is not set up.
   static constexpr std::uint32_t kGroup = 16;
   struct Group {
     /// A bit a triangle and edge: its second corner has the lower number.
     std::array<std::uint32_t, 3> turned{};
-    std::uint32_t first_half = 0;                    ///< a bit a triangle
-    std::uint32_t one_sided = 0;                     ///< the same
+    std::array<std::uint32_t, 3> inner{};            ///< of Part
+    std::uint32_t follows = 0, straight = 0;         ///< the same, a bit a triangle
+    float apart = 0;                                 ///< the most of them
+    std::uint32_t one_sided = 0;                     ///< a bit a triangle
     std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
     std::uint32_t first_shared = 0, end_shared = 0;  ///< in `shared`
     std::uint32_t first_ring = 0, end_ring = 0;      ///< in `rings`
@@ -89,8 +98,7 @@ void sort_along_curve(OccluderTopology& mesh);
 void find_shared_edges(OccluderTopology& mesh, bool close_junctions);
 /// Finds `rim`, `around` and `rings`. The mesh is laid out.
 void find_corner_edges(OccluderTopology& mesh);
-/// Puts halves of quads side by side. Neighbours are known; triangles are numbered anew, near their old
-/// places.
-void pair_up(OccluderTopology& mesh);
+/// Finds `parts`. Neighbours are known; triangles are numbered anew, near their old places.
+void join_flat_polygons(OccluderTopology& mesh);
 
 }  // namespace sightline::occlusion

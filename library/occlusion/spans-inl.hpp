@@ -65,14 +65,29 @@ HWY_INLINE void narrow(VF y, float slope, float left_at, float right_at, VF& lef
   right = hn::Min(right, hn::Add(hn::Set(f, right_at), along));
 }
 
+// Narrows spans to edges of which each bounds its own lines alone.
+HWY_INLINE void narrow_by_lines(VF y, const Convex& polygon, VF& left, VF& right) {
+  const F f;
+  for (std::size_t e = 0; e < polygon.edges; ++e) {
+    VF its_left = left, its_right = right;
+    narrow(y, polygon.slope[e], polygon.left_at[e], polygon.right_at[e], its_left, its_right);
+    const auto its = hn::And(hn::Ge(y, hn::Set(f, polygon.from[e])), hn::Le(y, hn::Set(f, polygon.to[e])));
+    left = hn::IfThenElse(its, its_left, left), right = hn::IfThenElse(its, its_right, right);
+  }
+}
+
 HWY_INLINE Spans spans_of(const Convex& polygon, float first_y, float width) {
   const F f;
   Spans out;
   for (std::size_t i = 0; i < 2 * kTile; i += hn::Lanes(f)) {
     const auto y = hn::Add(hn::Set(f, first_y), hn::Load(f, kLine + i));
     auto left = hn::Set(f, polygon.left), right = hn::Set(f, polygon.right);
-    for (std::size_t e = 0; e < polygon.edges; ++e)
-      narrow(y, polygon.slope[e], polygon.left_at[e], polygon.right_at[e], left, right);
+    if (polygon.by_lines) {
+      narrow_by_lines(y, polygon, left, right);
+    } else {
+      for (std::size_t e = 0; e < polygon.edges; ++e)
+        narrow(y, polygon.slope[e], polygon.left_at[e], polygon.right_at[e], left, right);
+    }
     store_spans(left, right,
                 hn::And(hn::Ge(y, hn::Set(f, polygon.top)), hn::Le(y, hn::Set(f, polygon.bottom))), width, i,
                 out);

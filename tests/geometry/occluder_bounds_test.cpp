@@ -125,27 +125,21 @@ TEST(ErrorBounds, PlanesOfTrianglesAskedFor) {
   expect_share(worst(18, part_of(2, 0.003)), 0.084);
 }
 
-TEST(ErrorBounds, HalvesOfQuads) {
-  const auto part = [](Draws& d) {
-    const float x0 = static_cast<float>(d.between(0, 8000)), x1 = x0 + static_cast<float>(d.between(1, 192));
-    const float y0 = static_cast<float>(d.between(0, 8000)), y1 = y0 + static_cast<float>(d.between(1, 192));
-    const float across1 = d.any_float(1e-6, 1e-3), down1 = d.any_float(1e-6, 1e-3),
-                at1 = d.any_float(0.01, 1);
-    const auto beside = [&](float v) { return v * static_cast<float>(1 + d.between(-1e-5, 1e-5)); };
-    const float across2 = beside(across1), down2 = beside(down1), at2 = beside(at1);
-    const float across = across1 - across2, down = down1 - down2, apart = at1 - at2;
-    const float before = apart + std::max(across * x0, across * x1) + std::max(down * y0, down * y1);
-    const float rounding = kQuadRounding * (std::fabs(at1) + std::fabs(across1) * x1 + std::fabs(down1) * y1);
-    const float at = at1 - (std::max(before, 0.0f) + rounding);
-    double over = -1e30;
-    for (const double x : {x0, x1}) {
-      for (const double y : {y0, y1})
-        over = std::max(over,
-                        (double{at} - at2) + (double{across1} - across2) * x + (double{down1} - down2) * y);
-    }
-    return (over + rounding) / rounding;
+TEST(ErrorBounds, PlanesOfPolygons) {
+  // A point beside a plane that some ray meets, and the plane's nearness there.
+  const auto apart = [](Draws& d) {
+    const double distance = d.any_size(0.05, 20), sine = d.between(0.01, 1), depth = distance / sine;
+    const double e = distance * d.between(1e-7, 4e-5), found = distance * d.between(0.976, 1.024);
+    const double true_depth = depth + d.between(-e, e) / sine;
+    return (1 / depth - 1 / true_depth) / (kPolygonApart / depth * e / found);
   };
-  expect_share(worst(10, part), 0.115);
+  expect_share(worst(5, apart), 0.82);
+  const auto moved = [](Draws& d) {
+    const float at = d.any_float(0.01, 1), by = std::fabs(at) * static_cast<float>(d.between(1e-6, 1e-4));
+    const volatile float to = at - (by + kPolygonRounding * std::fabs(at));
+    return ((double{to} - (double{at} - by)) / (double{kPolygonRounding} * std::fabs(at))) + 1;
+  };
+  expect_share(worst(3, moved), 0.48);
 }
 
 TEST(ErrorBounds, SurelyFacingTheEye) {
