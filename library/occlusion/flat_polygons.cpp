@@ -36,6 +36,7 @@ struct FlatPolygon {
   std::array<Side, kMostSides> side;
   std::array<std::uint32_t, kMostParts> part;
   std::size_t sides = 0, parts = 0;
+  double apart = 0;  // so far its corners lie from that plane at most
 
   [[nodiscard]] std::span<const std::uint32_t> triangles() const { return std::span(part).first(parts); }
   void add(const Side& s) { side[sides++] = s; }
@@ -53,11 +54,11 @@ struct FlatPolygon {
 class FlatPolygons {
 public:
   explicit FlatPolygons(const OccluderTopology& mesh)
-      : mesh_(mesh), number_(mesh.triangles.size()), outlines_(mesh.triangles.size()) {
+      : mesh_(mesh), number_(mesh.triangles.size()), polygons_(mesh.triangles.size()) {
     std::iota(number_.begin(), number_.end(), 0u);
     for (std::uint32_t t = 0; t < number_.size(); ++t) {
-      for (const std::uint32_t k : {0u, 1u, 2u}) outlines_[t].add(Side{t, k});
-      outlines_[t].add(std::span(&t, 1));
+      for (const std::uint32_t k : {0u, 1u, 2u}) polygons_[t].add(Side{t, k});
+      polygons_[t].add(std::span(&t, 1));
     }
   }
 
@@ -80,27 +81,13 @@ public:
   }
 
   // The polygon that a triangle is of.
-  [[nodiscard]] const FlatPolygon& of(std::uint32_t triangle) const { return outlines_[number_[triangle]]; }
+  [[nodiscard]] const FlatPolygon& of(std::uint32_t triangle) const { return polygons_[number_[triangle]]; }
   [[nodiscard]] bool together(std::uint32_t triangle, std::uint32_t other) const {
     return other != kNone && number_[triangle] == number_[other];
   }
-  // How far its corners lie from its plane at most, and how far from one another.
-  struct Flatness {
-    double apart = 0, reach = 0;
-  };
-  [[nodiscard]] Flatness flatness(const FlatPolygon& outline) const {
-    const glm::dvec3 from = corner({outline.part[0], 0}), unit = glm::normalize(normal(outline.part[0]));
-    Flatness out;
-    for (std::size_t i = 0; i < outline.sides; ++i) {
-      const glm::dvec3 to = corner(outline.side[i]) - from;
-      out.reach = std::max(out.reach, glm::length(to));
-      out.apart = std::max(out.apart, std::fabs(glm::dot(unit, to)));
-    }
-    return out;
-  }
-  [[nodiscard]] bool goes_straight_on(const FlatPolygon& outline) const {
+  [[nodiscard]] bool goes_straight_on(const FlatPolygon& polygon) const {
     bool out = false;
-    for_corners(outline, [&](double sine, double) { out = out || sine <= kLeastTurn; });
+    for_corners(polygon, [&](double sine, double) { out = out || sine <= kLeastTurn; });
     return out;
   }
 
@@ -115,27 +102,39 @@ private:
     return glm::cross(along({triangle, 0}), along({triangle, 1}));
   }
 
-  // visit(sine, cosine) of the angle by which the outline turns at each corner.
+  // visit(sine, cosine) of the angle by which the polygon turns at each corner.
   template <class Visit>
-  void for_corners(const FlatPolygon& outline, const Visit& visit) const {
-    const glm::dvec3 unit = glm::normalize(normal(outline.part[0]));
-    for (std::size_t i = 0; i < outline.sides; ++i) {
-      const glm::dvec3 in = along(outline.side[i]), on = along(outline.side[(i + 1) % outline.sides]);
+  void for_corners(const FlatPolygon& polygon, const Visit& visit) const {
+    const glm::dvec3 unit = glm::normalize(normal(polygon.part[0]));
+    for (std::size_t i = 0; i < polygon.sides; ++i) {
+      const glm::dvec3 in = along(polygon.side[i]), on = along(polygon.side[(i + 1) % polygon.sides]);
       const double lengths = glm::length(in) * glm::length(on);
       visit(glm::dot(glm::cross(in, on), unit) / lengths, glm::dot(in, on) / lengths);
     }
   }
-  [[nodiscard]] bool is_convex(const FlatPolygon& outline) const {
+  [[nodiscard]] bool is_convex(const FlatPolygon& polygon) const {
     bool out = true;
-    for_corners(outline, [&](double sine, double cosine) {
+    for_corners(polygon, [&](double sine, double cosine) {
       out = out && sine >= -kMostBack && (sine > kMostBack || cosine > 0);
     });
     return out;
   }
+  // Finds how far its corners lie from its plane.
+  [[nodiscard]] bool is_flat(FlatPolygon& polygon) const {
+    const glm::dvec3 from = corner({polygon.part[0], 0}), unit = glm::normalize(normal(polygon.part[0]));
+    double reach = 0;
+    for (std::size_t i = 0; i < polygon.sides; ++i) {
+      const glm::dvec3 to = corner(polygon.side[i]) - from;
+      reach = std::max(reach, glm::length(to));
+      polygon.apart = std::max(polygon.apart, std::fabs(glm::dot(unit, to)));
+    }
+    return polygon.apart <= kMostUneven * reach;
+  }
+
   void join_across(const Side& side) {
     const std::uint32_t other = mesh_.neighbours[side.triangle][side.edge], number = number_[side.triangle];
     if (together(side.triangle, other)) return;
-    const FlatPolygon &a = outlines_[number], &b = outlines_[number_[other]];
+    const FlatPolygon &a = polygons_[number], &b = polygons_[number_[other]];
     if (a.parts + b.parts > kMostParts || a.sides + b.sides - 2 > kMostSides) return;
     const auto& across = mesh_.neighbours[other];
     const auto edge = std::ranges::find(across, side.triangle) - across.begin();
@@ -146,15 +145,14 @@ private:
     const bool a_first = glm::length(normal(a.part[0])) >= glm::length(normal(b.part[0]));
     joined.add((a_first ? a : b).triangles());
     joined.add((a_first ? b : a).triangles());
-    const Flatness flat = flatness(joined);
-    if (!(flat.apart <= kMostUneven * flat.reach) || !is_convex(joined)) return;
-    outlines_[number] = joined;
+    if (!is_flat(joined) || !is_convex(joined)) return;
+    polygons_[number] = joined;
     for (const std::uint32_t t : joined.triangles()) number_[t] = number;
   }
 
   const OccluderTopology& mesh_;
   std::vector<std::uint32_t> number_;  // of a triangle's polygon
-  std::vector<FlatPolygon> outlines_;  // by number
+  std::vector<FlatPolygon> polygons_;  // by number
 };
 
 // Triangles in a new order, in which a polygon's lie together within a group. A polygon that does not fit
@@ -231,9 +229,8 @@ void join_flat_polygons(OccluderTopology& mesh) {
     part.follows = order.follows[i];
     const bool leads = i + 1 < count && order.follows[i + 1] && !part.follows;
     if (leads) {
-      const FlatPolygon& outline = polygons.of(from);
-      part.straight = polygons.goes_straight_on(outline);
-      part.apart = static_cast<float>(polygons.flatness(outline).apart * (1 + 1e-6));
+      part.straight = polygons.goes_straight_on(polygons.of(from));
+      part.apart = static_cast<float>(polygons.of(from).apart * (1 + 1e-6));
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t other = mesh.neighbours[from][k];

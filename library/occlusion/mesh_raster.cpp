@@ -128,6 +128,7 @@ HWY_INLINE bool makes_one(const ReadyTriangles& ready, const Piece& piece, bool 
 // How far apart a polygon and its plane may lie, of the eye's distance, before its triangles are drawn one by
 // one.
 constexpr float kMostApart = 4e-5f;
+static_assert(OccluderTopology::kMostSides <= Convex::kMaxEdges);
 
 // Moves a polygon's plane, its first triangle's, behind all of it: triangles lie up to `apart` from the
 // plane, and reach farther than the first, for whose corners its rounding is known. False where that is too
@@ -304,6 +305,10 @@ bool mirrors(const RowTransform& transform) {
   return glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
 }
 
+float front_of(const DepthTiles& tiles, const RowTransform& transform) {
+  return tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
+}
+
 // How much longer distances may become.
 float stretch_of(const RowTransform& transform) {
   if (transform.in_place) return 1;
@@ -315,8 +320,10 @@ float stretch_of(const RowTransform& transform) {
   return static_cast<float>(std::sqrt(squares) * (1 + 1e-6));
 }
 
-// For meshes of that many groups, one of which is drawn.
-void make_ready(MeshScratch& s, std::size_t groups, float front, const RowTransform& transform) {
+// For a mesh that is to be drawn.
+void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology& mesh,
+                const RowTransform& transform) {
+  const std::size_t groups = mesh.groups.size();
   if (s.known.size() < groups) {
     for (auto& side : s.box) side.resize(groups);
     s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
@@ -324,12 +331,8 @@ void make_ready(MeshScratch& s, std::size_t groups, float front, const RowTransf
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
-  s.front = front, s.stretch = stretch_of(transform);
+  s.front = front_of(tiles, transform), s.stretch = stretch_of(transform);
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
-}
-
-float front_of(const DepthTiles& tiles, const RowTransform& transform) {
-  return tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
 }
 
 // A mesh that jobs draw, a band of the image each: no pixel is written by two, and what one holds does not
@@ -356,7 +359,7 @@ constexpr std::uint32_t kLeastRows = 6;  // of tiles; a thinner band is not wort
 
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                MeshBudget& budget) {
-  make_ready(*tiles.mesh, mesh.groups.size(), front_of(tiles, transform), transform);
+  make_ready(*tiles.mesh, tiles, mesh, transform);
   HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, &budget);
 }
 
@@ -366,7 +369,7 @@ void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& me
   const std::uint32_t count = jobs.run ? std::max(1u, most) : 1;
   if (memory.scratch.size() < count) memory.scratch.resize(count), tiles.mesh = memory.scratch.data();
   const std::span scratch = std::span(memory.scratch).first(count);
-  for (MeshScratch& s : scratch) make_ready(s, mesh.groups.size(), front_of(tiles, transform), transform);
+  for (MeshScratch& s : scratch) make_ready(s, tiles, mesh, transform);
   if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, nullptr);
   MeshBands bands{tiles, scratch, mesh, transform};
   jobs.run(
