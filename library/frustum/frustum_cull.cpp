@@ -22,32 +22,10 @@ using VF = hn::Vec<F>;
 
 using geometry::BoxSpan;
 using geometry::SphereSpan;
+using geometry::HWY_NAMESPACE::lowest;
+using geometry::HWY_NAMESPACE::spread;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
-
-// A plane spread over the lanes, held in registers through a loop.
-struct WidePlane {
-  Points normal;
-  VF distance;
-};
-
-HWY_INLINE WidePlane spread(const Plane& plane) {
-  const F f;
-  return {{hn::Set(f, plane.normal.x), hn::Set(f, plane.normal.y), hn::Set(f, plane.normal.z)},
-          hn::Set(f, plane.distance)};
-}
-
-// signed_distance() of a vector of points, with its roundings.
-HWY_INLINE VF distance(const WidePlane& plane, const Points& p) {
-  return hn::Add(geometry::HWY_NAMESPACE::dot(plane.normal, p), plane.distance);
-}
-
-// Less than `than` where some plane's distance to its point is: a distance that is no number takes no part.
-// One comparison at the end then does for all planes, and minima go where products do not.
-template <class... Distances>
-HWY_INLINE VF lowest(VF than, Distances... distances) {
-  ((than = geometry::HWY_NAMESPACE::lower_or(distances, than)), ...);
-  return than;
-}
+using WidePlane = geometry::HWY_NAMESPACE::WidePlane<VF>;
 
 // What is looked at together: a cache line of each array.
 constexpr std::size_t kGroup = 16;
@@ -134,8 +112,9 @@ struct Nearest {
 
 std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* out) {
   const auto& p = frustum.planes;
-  const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
-                  p4 = spread(p[4]), p5 = spread(p[5]);
+  const F f;
+  const WidePlane p0 = spread(f, p[0]), p1 = spread(f, p[1]), p2 = spread(f, p[2]), p3 = spread(f, p[3]),
+                  p4 = spread(f, p[4]), p5 = spread(f, p[5]);
   const Nearest n0(p[0], boxes), n1(p[1], boxes), n2(p[2], boxes), n3(p[3], boxes), n4(p[4], boxes),
       n5(p[5], boxes);
   const auto from = [](const auto& at, const WidePlane& plane, const Nearest& n) HWY_ATTR {
@@ -152,8 +131,9 @@ std::size_t cull_boxes(const Frustum& frustum, const BoxSpan& boxes, ObjectId* o
 
 std::size_t cull_spheres(const Frustum& frustum, const SphereSpan& s, ObjectId* out) {
   const auto& p = frustum.planes;
-  const WidePlane p0 = spread(p[0]), p1 = spread(p[1]), p2 = spread(p[2]), p3 = spread(p[3]),
-                  p4 = spread(p[4]), p5 = spread(p[5]);
+  const F f;
+  const WidePlane p0 = spread(f, p[0]), p1 = spread(f, p[1]), p2 = spread(f, p[2]), p3 = spread(f, p[3]),
+                  p4 = spread(f, p[4]), p5 = spread(f, p[5]);
   const auto centre = [&](const auto& at) HWY_ATTR { return Points{at(s.x), at(s.y), at(s.z)}; };
   return pack(
       s.count, s.x, out,

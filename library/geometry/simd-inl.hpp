@@ -182,6 +182,33 @@ HWY_INLINE V distance(const Plane& plane, const Points<V>& p) {
   return dot_row(Vec4{plane.normal.x, plane.normal.y, plane.normal.z, plane.distance}, p);
 }
 
+// A plane spread over the lanes, held in registers through a loop.
+template <class V>
+struct WidePlane {
+  Points<V> normal;
+  V distance;
+};
+
+template <class D>
+HWY_INLINE WidePlane<hn::Vec<D>> spread(D d, const Plane& plane) {
+  return {{hn::Set(d, plane.normal.x), hn::Set(d, plane.normal.y), hn::Set(d, plane.normal.z)},
+          hn::Set(d, plane.distance)};
+}
+
+// signed_distance() of a vector of points, with its roundings.
+template <class V>
+HWY_INLINE V distance(const WidePlane<V>& plane, const Points<V>& p) {
+  return hn::Add(dot(plane.normal, p), plane.distance);
+}
+
+// Less than `than` where some plane's distance to its point is: a distance that is no number takes no part.
+// One comparison at the end then does for all planes, and minima go where products do not.
+template <class V, class... Distances>
+HWY_INLINE V lowest(V than, Distances... distances) {
+  ((than = lower_or(distances, than)), ...);
+  return than;
+}
+
 }  // namespace sightline::geometry::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -7,6 +7,7 @@
 #include "library/geometry/box_math.hpp"
 #include "library/geometry/mutant.h"
 #include "library/world/chunk_map.hpp"
+#include "library/world/chunk_runs.hpp"
 #include "library/world/free_list.hpp"
 
 namespace sightline::world {
@@ -54,8 +55,12 @@ Box bounds_of(const Side& side, std::uint32_t count) {
 
 }  // namespace
 
+Box bounds_of_rows(const float* first, std::size_t step, std::uint32_t count) noexcept {
+  return world::bounds_of([&](std::uint32_t side) { return first + side * step; }, count);
+}
+
 Box ChunkMap::tight(const Chunk& c) const noexcept {
-  if (c.live == c.count) return world::bounds_of([&](std::uint32_t side) { return lanes(c, side); }, c.count);
+  if (c.live == c.count) return bounds_of_rows(lanes(c, 0), step(c), c.count);
   Box box = kEmptyBox;
   for (std::uint32_t i = 0; i < c.count; ++i) {
     if (ids(c)[i] != kNoObject) box = united(box, box_at(c, i));

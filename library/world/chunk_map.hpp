@@ -128,16 +128,21 @@ public:
   std::uint32_t move_run(std::uint32_t& chunk, std::uint32_t& slot, const ObjectId* objects,
                          const geometry::BoxBlock& boxes, std::size_t first, std::uint32_t count,
                          bool past_cache) noexcept;
-  /// To be called before objects are moved, many of all or not: says whether movers are to have pages from
-  /// now on.
-  void expect_moves(bool many) noexcept;
+  /// Of objects of which many begin to move at once: makes movers of them while each has been still and is of
+  /// the `sector`, as World numbers them. Returns how many did.
+  std::uint32_t join_movers(const ObjectId* objects, std::uint32_t sector, const geometry::BoxBlock& boxes,
+                            std::size_t first, std::uint32_t count);
+  /// To be called before objects are moved, many of all or not, of which so many stand still: says whether
+  /// movers are to have pages from now on.
+  void expect_moves(bool many, std::size_t newcomers) noexcept;
   [[nodiscard]] bool keeps_pages() const noexcept {
     return kHasPages && by_id_;
   }
-  /// Moves objects while each stands in its page, lies `within` and nothing but its own box changes; returns
-  /// how many did.
-  std::uint32_t move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
-                              const Box& within) noexcept;
+  /// Moves objects in pages while each is of the `sector`, as World numbers them, lies `within` and is a
+  /// mover or, where many begin to move, becomes one. Returns how many did; those that came to their pages
+  /// now are counted in `came`.
+  std::uint32_t move_in_pages(std::span<const ObjectId> objects, const Box* boxes, const Box& within,
+                              std::uint32_t sector, bool many, std::uint32_t& came);
   /// Asks for the memory that moving these will need, where they lie far apart.
   void prefetch_pages(std::span<const ObjectId> objects) const noexcept;
   /// Asks for the memory that moving an object will need; of an object that may have left, it asks in vain.
@@ -405,6 +410,7 @@ private:
   static void lengthen_rows(Pool& pool, std::size_t lanes);
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
+  void come_to_page(ObjectId object);
   void free_mover_chunk(std::uint32_t chunk);
   [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
     return chunk.previous != kNone;
@@ -413,9 +419,9 @@ private:
     return is_page(mover) && mover.previous < kept_pages_;
   }
   void leave(std::uint32_t chunk, std::uint32_t slot);
-  void leave_soon(std::uint32_t chunk, std::uint32_t slot);
-  void leave_next();
+  void leave_soon(ObjectId object);
   void leave_now();
+  void leave_all(std::uint8_t pool);
   void move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& box);
   void tighten_grown(std::uint32_t chunk);
   bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
@@ -441,6 +447,7 @@ private:
   Status check_chunk(std::uint32_t chunk) const;
   Status check_group(std::uint32_t group) const;
   Status check_node(std::uint32_t node) const;
+  static Box widened(const Box& box) noexcept;
   Box tight(const Chunk& chunk) const noexcept;
   Box tight(const Group& group) const noexcept;
   void loosen(std::uint32_t node, const Box& gone) noexcept;
@@ -469,16 +476,11 @@ private:
   std::vector<std::uint32_t> free_chunks_, free_splits_, free_groups_;
   std::vector<std::uint32_t> changed_;
   std::vector<std::uint32_t> dirty_;  // chunks that wait for flush()
-  // Slots of still chunks whose objects are movers already: holes once leave_now() is called.
-  struct Place {
-    std::uint32_t chunk, slot;
-  };
-  static constexpr std::uint32_t kLeaving = 32;
-  std::array<Place, kLeaving> leaving_;
-  std::uint32_t asked_ = 0, left_ = 0;                    // how many, ever
-  std::vector<std::uint32_t> grown_;                      // still chunks with wide bounds or holes
-  std::vector<std::uint32_t> mover_chunks_;               // each chunk's `parent` is its place here
-  std::uint32_t open_ = kNone;                            // of these the one that takes the next mover
+  std::vector<Leaving> leaving_;      // slots that are holes once leave_now() is called
+  std::array<std::vector<std::uint32_t>, kPools> leaving_bits_;  // or, of many, a bit an id
+  std::vector<std::uint32_t> grown_;                             // still chunks with wide bounds or holes
+  std::vector<std::uint32_t> mover_chunks_;                      // each chunk's `parent` is its place here
+  std::uint32_t open_ = kNone;                                   // of these the one that takes the next mover
   std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;  // since expect_moves(): one by one; who became one
   std::size_t woken_ = 0;             // since rest(): who became a mover, or had not moved since it was there
   bool by_id_ = false;                // which stands in its page instead

@@ -38,6 +38,13 @@ struct Moving {
   std::uint32_t allowance = 0;  ///< how many may become movers for moving often
 };
 
+/// Where an object stood that stands elsewhere already.
+struct Leaving {
+  ObjectId object = kNoObject;
+  std::uint32_t chunk = 0;
+  std::uint32_t slot = 0;  ///< in 7 bits, and whether it was among movers, as ChunkMap::Location has them
+};
+
 /// The objects of a chunk: arrays of `count` values, aligned to 64 bytes and readable up to the next
 /// multiple of 16, ids up to ChunkMap::kCapacity. Where it is loose, some objects may be kNoObject, and their
 /// boxes mean nothing.

@@ -21,13 +21,6 @@ float longest_side(const Box& b) {
   return std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
 }
 
-// Room for moves to come: small beside the box, so that culling hardly sees it.
-Box widened(const Box& b) {
-  constexpr float kSlack = 0.125f;
-  const float by = kSlack * longest_side(b);
-  return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
-}
-
 // Whether an object that moves now has done so in most of the last frames.
 bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
   constexpr int kOften = 4;  // of 8
@@ -40,12 +33,19 @@ bool moves_often(ChunkMap::Location& at, std::uint16_t tick) {
 
 }  // namespace
 
+// Room for moves to come: small beside the box, so that culling hardly sees it.
+Box ChunkMap::widened(const Box& b) noexcept {
+  constexpr float kSlack = 0.125f;
+  const float by = kSlack * longest_side(b);
+  return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
+}
+
 void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
   loosely_ = true;
   Location& at = (*locations_)[object];
   const bool for_movers = keeps_movers(), at_once = for_movers && moving.many && !at.moves();
   if (kHasPages && at_once) {
-    leave_soon(at.chunk, at.slot());
+    leave_soon(object);
     add_mover(object, box);
     ++joined_, ++woken_;
     return;
@@ -161,28 +161,6 @@ void ChunkMap::lengthen_rows(Pool& pool, std::size_t lanes) {
   pool.lanes = std::move(longer);
 }
 
-// Many leave chunks that lie far apart. What it takes is asked for in two steps, each when the one before has
-// arrived: memory answers few at a time, so that asking for many at once gains little.
-void ChunkMap::leave_soon(std::uint32_t chunk, std::uint32_t slot) {
-  constexpr std::uint32_t kHalf = kLeaving / 2;
-  ask_ahead(&chunks_[chunk]);
-  if (asked_ - left_ >= kHalf) {
-    const Place& next = leaving_[(asked_ - kHalf) % kLeaving];
-    ask_ahead(ids(chunks_[next.chunk]) + next.slot);
-  }
-  if (asked_ - left_ == kLeaving) leave_next();
-  leaving_[asked_++ % kLeaving] = {chunk, slot};
-}
-
-void ChunkMap::leave_now() {
-  while (kHasPages && left_ != asked_) leave_next();
-}
-
-void ChunkMap::leave_next() {
-  const Place place = leaving_[left_++ % kLeaving];
-  leave(place.chunk, place.slot);
-}
-
 std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
   if (mover_node_ == kNone) {
     mover_node_ = static_cast<std::uint32_t>(nodes_.size());
@@ -232,35 +210,67 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
   return added;
 }
 
-void ChunkMap::expect_moves(bool many) noexcept {
+void ChunkMap::expect_moves(bool many, std::size_t newcomers) noexcept {
   // Where few move, each cull would read all pages for them; where the same ones move again and again in the
-  // order in which they stand, they stand well. Others each time show as such when movers move again.
+  // order in which they stand, they stand well. Others each time show as newcomers while some move already,
+  // or as such when movers move again.
   constexpr std::size_t kFewest = 6;  // of all ids
-  const bool again = scattered_ + in_runs_ > 0, others = 2 * (scattered_ + joined_) > in_runs_;
-  by_id_ = kHasPages && keeps_movers() && movers() >= locations_->size() / kFewest &&
-           (by_id_ || (many && again && others));
+  const std::size_t enough = locations_->size() / kFewest;
+  const bool others = movers() > 0 && 4 * newcomers > movers(),
+             unordered = scattered_ + in_runs_ > 0 && 2 * (scattered_ + joined_) > in_runs_;
+  by_id_ =
+      kHasPages && keeps_movers() &&
+      (by_id_ ? movers() >= enough
+              : many && ((others && movers() + newcomers >= enough) || (unordered && movers() >= enough)));
   scattered_ = in_runs_ = joined_ = 0;
 }
 
-std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes,
-                                      const Box& within) noexcept {
+// Of an object of the map that stands elsewhere.
+void ChunkMap::come_to_page(ObjectId object) {
+  loosely_ = true;
+  leave_soon(object);
+  const std::uint32_t chunk = open_page(object), slot = object % kCapacity;
+  Chunk& c = chunks_[chunk];
+  ++c.live, ++joined_, ++woken_;
+  ids(c)[slot] = object;
+  Location& at = (*locations_)[object];
+  at.chunk = chunk, at.slot_and_history = (at.slot_and_history & ~0xffu) | Location::kMoves | slot;
+  if (has_columns()) load_columns(c, slot), note_stale(chunk);
+  make_dirty(chunk);
+}
+
+std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes, const Box& within,
+                                      std::uint32_t sector, bool many, std::uint32_t& came) {
   ++changes_[kMovers];
   std::uint32_t at = kNone;
   Chunk* c = nullptr;
   const ObjectId* stand = nullptr;
-  const std::size_t row = pools_[kMovers].row;
+  std::size_t row = 0;
   float* to = nullptr;
   bool full = false;
   Box bounds;
+  const auto enter = [&](std::uint32_t page) {
+    at = page, full = false, stand = nullptr;
+    if (page >= pages_.size() || pages_[page] == kNone) return;
+    c = &chunks_[pages_[page]], bounds = intersected(c->bounds, within);
+    stand = ids(*c), to = lanes(*c, 0), row = step(*c), full = c->live == kCapacity;
+  };
   for (std::uint32_t i = 0; i < objects.size(); ++i) {
     const std::uint32_t page = objects[i] / kCapacity, slot = objects[i] % kCapacity;
-    if (page != at) {
-      if (page >= pages_.size() || pages_[page] == kNone) return i;
-      at = page, c = &chunks_[pages_[page]], bounds = intersected(c->bounds, within);
-      stand = ids(*c), to = lanes(*c, 0), full = c->live == kCapacity;
+    if (page != at) enter(page);
+    if (!full && (stand == nullptr || stand[slot] != objects[i])) {
+      const Location& place = (*locations_)[objects[i]];
+      if (place.sector != sector || !(many || place.moves()) || !holds(within, boxes[i])) return i;
+      come_to_page(objects[i]);
+      ++came;
+      enter(page);
     }
     const Box box = boxes[i];
-    if ((!full && stand[slot] != objects[i]) || !holds(bounds, box)) return i;
+    if (!holds(bounds, box)) {
+      if (!holds(within, box)) return i;
+      c->bounds = widened(united(c->bounds, box)), bounds = intersected(c->bounds, within);
+      make_dirty(pages_[page]);
+    }
     const std::array<float, 6> values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
     for (std::uint32_t side = 0; side < 6; ++side) to[side * row + slot] = values[side];
     note_moved(*c, slot);

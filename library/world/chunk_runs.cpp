@@ -101,6 +101,25 @@ std::uint32_t write_run(const MoverRun& run, std::uint32_t& slot, const ObjectId
   return i;
 }
 
+std::uint32_t take_out(ObjectId* objects, std::uint32_t count, const std::uint32_t* bits,
+                       std::uint32_t words) {
+  const U u;
+  const hn::RebindToSigned<U> i32;
+  const auto limit = hn::Set(u, words), hole = hn::Set(u, kNoObject);
+  std::uint32_t taken = 0;
+  for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(hn::Lanes(u))) {
+    const auto ids = hn::Load(u, objects + i), word = hn::ShiftRight<5>(ids);
+    auto in = hn::Lt(word, limit);
+    if (i + hn::Lanes(u) > count) in = hn::And(in, hn::FirstN(u, count - i));
+    const auto of = hn::BitCast(i32, hn::IfThenElseZero(in, word));
+    const auto its = hn::Shr(hn::GatherIndex(u, bits, of), hn::And(ids, hn::Set(u, 31)));
+    const auto out = hn::And(in, hn::Ne(hn::And(its, hn::Set(u, 1)), hn::Zero(u)));
+    hn::Store(hn::IfThenElse(out, hole, ids), u, objects + i);
+    taken += static_cast<std::uint32_t>(hn::CountTrue(u, out));
+  }
+  return taken;
+}
+
 // Boxes are pairs of points: their coordinates are taken apart, then minima and maxima.
 float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
   std::size_t i = 0;
@@ -165,6 +184,11 @@ namespace sightline::world {
 HWY_EXPORT(write_run);
 HWY_EXPORT(are_sound);
 HWY_EXPORT(lay_out);
+HWY_EXPORT(take_out);
+
+std::uint32_t take_out(ObjectId* objects, std::uint32_t count, std::span<const std::uint32_t> bits) noexcept {
+  return HWY_DYNAMIC_DISPATCH(take_out)(objects, count, bits.data(), static_cast<std::uint32_t>(bits.size()));
+}
 
 bool boxes_are_sound(std::span<const Box> boxes) noexcept {
   // The greatest float that is not beyond kWorldReach.

@@ -21,6 +21,11 @@ struct MoverRun {
   bool past_cache;       ///< whole vectors need not stay in the cache
 };
 
+/// Makes holes of the objects whose bits are set, of `count` that are readable up to the next multiple of 16.
+/// Returns how many it found.
+std::uint32_t take_out(ObjectId* objects, std::uint32_t count, std::span<const std::uint32_t> bits) noexcept;
+/// The union of boxes that lie as six rows, so many floats apart.
+Box bounds_of_rows(const float* first, std::size_t step, std::uint32_t count) noexcept;
 /// Lays at most a block of boxes out, an array a coordinate. Returns how far they reach from 0 on any axis.
 float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept;
 /// Whether all are valid: min <= max within ±kWorldReach.

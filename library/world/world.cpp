@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_runs.hpp"
 #include "library/world/free_list.hpp"
@@ -74,14 +73,8 @@ void WorldState::tidy(bool after_insertions) {
   touched.clear();
 }
 
-void WorldState::begin_generations() {
-  if (!ChunkMap::kHasPages || !generations.empty()) return;
-  generations.resize(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) note_generation(static_cast<ObjectId>(i));
-}
-
 void WorldState::note_generation(ObjectId id) {
-  if (!ChunkMap::kHasPages || generations.empty()) return;
+  if (!ChunkMap::kHasPages) return;
   if (id >= generations.size()) generations.resize(objects.size(), kUnknown);
   const bool known = objects[id].sector != ChunkMap::kNone && objects[id].generation < kUnknown;
   generations[id] = known ? static_cast<std::uint8_t>(objects[id].generation) : kUnknown;
@@ -93,14 +86,8 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   const WorldState& state = WorldAccess::state(world);
   const std::span<const ChunkMap::Location> objects = state.objects;
   const std::span<const std::uint8_t> generations = state.generations;
-  constexpr std::size_t kAhead = 32;
-  const bool asks = !geometry::kAsksByReading && generations.empty();
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const Handle handle = handles[i];
-    if (asks && i + kAhead < handles.size()) {
-      const std::uint32_t next = handles[i + kAhead].index;
-      if (next < objects.size()) geometry::ask_ahead(&objects[next]);
-    }
     if (ChunkMap::kHasPages && handle.index < generations.size() &&
         handle.generation < WorldState::kUnknown && generations[handle.index] == handle.generation)
       continue;
@@ -163,6 +150,7 @@ void reserve(WorldState& s, std::size_t more) {
   if (limit <= s.objects.capacity()) return;
   const std::size_t room = std::max(limit, 2 * s.objects.capacity());
   s.objects.reserve(room);
+  if (ChunkMap::kHasPages) s.generations.reserve(room);
 }
 
 }  // namespace

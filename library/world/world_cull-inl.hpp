@@ -31,7 +31,9 @@ using VF = hn::Vec<F>;
 using geometry::prefetch_lines;
 using geometry::HWY_NAMESPACE::bits_of;
 using geometry::HWY_NAMESPACE::distance;
+using geometry::HWY_NAMESPACE::lowest;
 using geometry::HWY_NAMESPACE::mask_of;
+using geometry::HWY_NAMESPACE::spread;
 using geometry::HWY_NAMESPACE::store_kept;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
 

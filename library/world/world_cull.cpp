@@ -63,20 +63,23 @@ HWY_INLINE void test_run(const ChunkMap::ChunkView& run, const SectorView& view,
   const F f;
   struct Corner {
     const float *x, *y, *z;
-    Plane plane;
   };
-  std::array<Corner, Frustum::sides> corners;
-  for (std::size_t p = 0; p < corners.size(); ++p) {
+  const auto plane = [&](std::size_t p) HWY_ATTR { return spread(f, view.planes[p]); };
+  const auto corner = [&](std::size_t p) {
     const auto& near = view.near_side[p];
-    corners[p] = {run.side(near[0]), run.side(near[1]), run.side(near[2]), view.planes[p]};
-  }
+    return Corner{run.side(near[0]), run.side(near[1]), run.side(near[2])};
+  };
+  const auto p0 = plane(0), p1 = plane(1), p2 = plane(2), p3 = plane(3), p4 = plane(4), p5 = plane(5);
+  const Corner c0 = corner(0), c1 = corner(1), c2 = corner(2), c3 = corner(3), c4 = corner(4), c5 = corner(5);
   for (std::size_t i = 0; i < run.count; i += hn::Lanes(f)) {
-    VF worst = hn::Zero(f);
-    for (const auto& [x, y, z, plane] : corners) {
-      const Points corner{hn::Load(f, x + i), hn::Load(f, y + i), hn::Load(f, z + i)};
-      worst = hn::Min(worst, distance(plane, corner));
-    }
-    take(i, not_behind(worst));
+    const auto from = [i](const auto& of, const Corner& c) HWY_ATTR {
+      const F f;
+      return distance(of, Points{hn::Load(f, c.x + i), hn::Load(f, c.y + i), hn::Load(f, c.z + i)});
+    };
+    // Left and right reject what lies behind the eye, too: all of a vector where neighbours stand together.
+    const VF sides = lowest(hn::Zero(f), from(p0, c0), from(p1, c1));
+    if (hn::AllFalse(f, not_behind(sides))) continue;
+    take(i, not_behind(lowest(sides, from(p2, c2), from(p3, c3), from(p4, c4), from(p5, c5))));
   }
 }
 

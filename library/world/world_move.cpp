@@ -31,6 +31,7 @@ public:
     const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
     for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
     if (map_ != nullptr && map_->keeps_pages() && move_by_id(count)) return;
+    if (std::exchange(alone_, 0) > 0) ask_for_next();
     // A run that goes on needs nothing else of memory, not even to be told its sector.
     bool inside = runs() && read_boxes(count);
     std::uint32_t i = inside ? move_run(0, count) : 0;
@@ -45,7 +46,12 @@ public:
         i += moved;
         if (moved > 0) continue;
       }
+      if (const std::uint32_t joined = inside ? join(i, count) : 0) {
+        i += joined;
+        continue;
+      }
       patience_ -= patience_ > 0;
+      ++alone_;
       if (!geometry::kAsksByReading) ask_ahead(first + i);
       move_one(i++, inside);
     }
@@ -60,12 +66,28 @@ private:
     return moved;
   }
 
+  // Of all to be moved, about how many stand still.
+  [[nodiscard]] std::size_t newcomers() const {
+    constexpr std::size_t kAsked = 64;
+    const std::size_t step = std::max<std::size_t>(1, handles_.size() / kAsked);
+    std::size_t asked = 0, still = 0;
+    for (std::size_t i = 0; i < handles_.size(); i += step, ++asked)
+      still += !s_.objects[handles_[i].index].moves();
+    return handles_.size() * still / asked;
+  }
+
+  // Where many move at once: how many from i on have only now begun to.
+  std::uint32_t join(std::uint32_t i, std::uint32_t count) {
+    if (!ChunkMap::kHasPages || !moving_.many) return 0;
+    if (i == 0) ask_for_next();
+    return map_->join_movers(&ids_[i], sector_, block_, i, count - i);
+  }
+
   void begin_sector(std::uint32_t sector) {
     s_.touch(sector);
     if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
     sector_ = sector, map_ = s_.sectors[sector].map.get();
-    map_->expect_moves(moving_.many);
-    if (map_->keeps_pages()) s_.begin_generations();
+    map_->expect_moves(moving_.many, moving_.many ? newcomers() : 0);
     run_chunk_ = ChunkMap::kNone;
   }
 
@@ -75,14 +97,12 @@ private:
     const std::span<const ObjectId> ids(ids_.data(), count);
     const Box* const boxes = structs(count);
     ask_for_pages();
-    const bool asks = std::exchange(joined_, 0) > 0;
+    if (std::exchange(came_, 0) > 0) ask_for_next();
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t moved = map_->move_in_pages(ids.subspan(i), boxes + i, kInSector);
-      if (asks) ask_for_objects(i, std::min(count, i + moved + 1));
-      i += moved;
+      i += map_->move_in_pages(ids.subspan(i), boxes + i, kInSector, sector_, moving_.many, came_);
       if (i == count) break;
       if (i == 0 && s_.objects[ids[0]].sector != sector_) return false;
-      ++joined_;
+      ++came_;
       s_.objects[ids[i]].sector == sector_&& geometry::holds(kInSector, boxes[i])
           ? map_->move_loosely(ids[i], boxes[i], moving_)
           : move_anywhere(ids[i], world_box(i));
@@ -117,11 +137,11 @@ private:
     map_->prefetch_pages({ids.data(), count});
   }
 
-  // Of the objects behind those of the block, as where some had to be looked up there will be more.
-  void ask_for_objects(std::size_t i, std::size_t end) const {
-    constexpr std::size_t kAhead = 32;
-    end = std::min(first_ + end + kAhead, handles_.size());
-    for (i += first_ + kAhead; i < end; ++i) geometry::ask_ahead(&s_.objects[handles_[i].index]);
+  // Of the objects of the next block.
+  void ask_for_next() const {
+    if (geometry::kAsksByReading) return;
+    const std::size_t end = std::min(first_ + 2 * kBlock, handles_.size());
+    for (std::size_t i = first_ + kBlock; i < end; ++i) geometry::ask_ahead(&s_.objects[handles_[i].index]);
   }
 
   // Returns whether all surely have their centres in the sector.
@@ -219,7 +239,8 @@ private:
   std::uint32_t patience_ = 0;
   std::uint32_t sector_ = ChunkMap::kNone;
   ChunkMap* map_ = nullptr;
-  std::uint32_t joined_ = 0;  // of the last block, objects that did not stand in their pages
+  // Of the last block, objects that did not stand in their pages; that were neither in a run nor joined.
+  std::uint32_t came_ = 1, alone_ = 1;
   // Where the next object stands if they are listed as they stand.
   std::uint32_t run_chunk_ = ChunkMap::kNone, run_slot_ = 0;
   std::array<ObjectId, kBlock> ids_;
@@ -257,9 +278,7 @@ void WorldState::let_rest() {
 void WorldState::move(const Strided<const Handle>& handles, const BoxView& boxes) {
   const bool new_frame = begin_frame();
   constexpr std::size_t kManyOf = 16, kOftenOf = 64;
-  constexpr std::size_t kFewestForGenerations = 1024, kShareForGenerations = 4;
   const std::size_t count = boxes.size();
-  if (count >= kFewestForGenerations && kShareForGenerations * count >= objects.size()) begin_generations();
   Moving moving{tick, kManyOf * count >= size, allowance};
   moving.allowance += static_cast<std::uint32_t>(count / kOftenOf);
   if (new_frame) moving.allowance = static_cast<std::uint32_t>(count / kOftenOf) + kFewestAtRest;

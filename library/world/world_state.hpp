@@ -61,9 +61,8 @@ struct WorldState {
   /// One an id, shared by all sectors' maps; where the sector is kNone the id is free.
   ChunkMap::Locations objects;
   std::vector<ObjectId> free_ids;
-  /// One an id once so many move that what check_handles() reads must be little: a quarter of all at once, or
-  /// a third that stand in pages.
-  /// The generation, but kUnknown of free ids and of greater generations: then `objects` is asked.
+  /// One an id, so that check_handles() reads little: the generation, but kUnknown of free ids and of greater
+  /// ones; then `objects` is asked. Where there are no pages, none.
   geometry::LargeVector<std::uint8_t> generations;
   static constexpr std::uint8_t kUnknown = 0xff;
   Columns columns;
@@ -97,7 +96,6 @@ struct WorldState {
   void tidy(bool after_insertions);
   /// To be called when a column that says who is seen has come to be, with an element for each id.
   void begin_column(const ColumnTests& tests);
-  void begin_generations();
   /// To be called when an object has come to be or is gone.
   void note_generation(ObjectId id);
   /// World::move, of what has been checked.

@@ -155,6 +155,81 @@ TEST(Movers, EqualBruteForceAfterTenThousandRandomOperations) {
   EXPECT_GT(most, 1000u);
 }
 
+// All that begin to move together stand among the movers at once, some of them told twice to move, and what
+// they left holds them no more.
+TEST(Movers, ManyBeginAtOnce) {
+  for (const Box& around : {kOneSector, kTwoSectors}) {
+    for (const std::size_t more : {0, 50}) {
+      Crowd crowd(41, around);
+      crowd.insert(5000);
+      crowd.cull();
+      // Of few in a sector none are movers.
+      const auto expect_movers = [&](std::size_t count) {
+        const std::size_t movers = movers_of(crowd.world());
+        EXPECT_LE(movers, count);
+        EXPECT_GE(movers, around == kOneSector ? count : count / 2);
+      };
+      crowd.move(0, 700, 1);
+      expect_movers(700);
+      crowd.move(300, 2000, 1);
+      expect_movers(2300);
+      crowd.move(0, 5000 + more, 1);
+      expect_movers(5000);
+      expect_sound(crowd.world());
+      crowd.expect_right();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+}
+
+// What says who is seen goes with them.
+TEST(Movers, ManyTakeTheirLayersAlong) {
+  Random random(42);
+  const Box around{{-20, -20, -60}, {20, 20, -20}};
+  std::vector<Box> boxes;
+  std::vector<std::uint32_t> layers;
+  for (std::uint32_t i = 0; i < 3000; ++i)
+    boxes.push_back(test::random_box(random, around)), layers.push_back(1u << random.below(2));
+  World world;
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+  ASSERT_TRUE(world.set_layers(handles, layers));
+  Culler culler;
+  std::vector<ObjectId> visible(cull_capacity(world));
+  for (int frame = 0; frame < 3; ++frame) {
+    std::size_t seen = 0;
+    for (const std::uint32_t layer : {1u, 2u}) {
+      CullView view{.view = {*make_view({}, 64, 64), {}}};
+      view.layers = layer;
+      const CullResult result = *culler.cull(world, view, visible);
+      for (std::size_t i = 0; i < result.count; ++i) EXPECT_EQ(layers[visible[i]], layer);
+      seen += result.count;
+    }
+    EXPECT_GT(seen, 1000u);
+    ASSERT_TRUE(world.move(handles, BoxView(boxes)));
+    expect_sound(world);
+  }
+  EXPECT_EQ(movers_of(world), handles.size());
+}
+
+// Where others move each time pages begin in the second frame; where the same do, they stand well as they
+// are.
+TEST(Movers, PagesBeginOnceOthersMove) {
+  for (const bool others : {false, true}) {
+    Crowd crowd(43, {{-300, -50, -300}, {300, 50, 300}});
+    crowd.insert(6000);
+    for (int frame = 0; frame < 4; ++frame) {
+      if (others) crowd.shuffle();
+      crowd.move(0, 3000, 1);
+      EXPECT_EQ(keeps_pages(crowd.world()), others && frame > 0) << frame;
+      expect_sound(crowd.world());
+      crowd.expect_right();
+      crowd.cull();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+}
+
 // All settle when nobody moves, a part a frame, and a world that is given up leaves nothing behind.
 TEST(Movers, SettleWhenTheyRest) {
   Crowd crowd(32, kOneSector);
