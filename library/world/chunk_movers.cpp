@@ -156,8 +156,7 @@ void ChunkMap::lengthen_rows(Pool& pool, std::size_t lanes) {
   pool.row = (lanes + kPage - 1) / kPage * kPage + kApart;
   geometry::UnwrittenVector<float> longer(6 * pool.row);
   for (std::size_t side = 0; side < 6; ++side)
-    std::copy_n(pool.lanes.begin() + static_cast<std::ptrdiff_t>(side * old_row), old_row,
-                longer.begin() + static_cast<std::ptrdiff_t>(side * pool.row));
+    std::copy_n(pool.lanes.begin() + side * old_row, old_row, longer.begin() + side * pool.row);
   pool.lanes = std::move(longer);
 }
 

@@ -24,8 +24,6 @@ void ChunkMap::arrange(bool tightly) {
   const auto room_of = [&](const Chunk& c) { return tightly ? tight_capacity(c) : c.capacity; };
   std::size_t room = kCapacity;
   for (const Chunk& c : chunks_) room += c.pool == kStill && c.key != kNone ? room_of(c) : 0;
-  // Room for some more, where memory that is never written costs nothing: to grow copies all within a frame.
-  if (kHasPages && room * sizeof(float) >= geometry::kLargePage) room += room / 4;
   pool.lanes.reserve(6 * room), pool.ids.reserve(room);
   for (const Node& node : nodes_) {
     for (const std::uint32_t group : node.groups) {
