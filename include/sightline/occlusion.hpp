@@ -41,7 +41,7 @@ struct OcclusionOptions {
 
 /// The triangles of many objects, laid out to be asked for frame after frame: what their boxes and spheres
 /// leave, OcclusionBuffer::may_see(const OccludeeTriangles&, …) tests triangle by triangle. Objects are
-/// numbered 0 … objects() - 1. Holds 576 bytes for every 16 triangles begun of an object.
+/// numbered 0 … objects() - 1. Holds 144 bytes for every four triangles begun of an object.
 ///
 /// A refused call changes nothing. Unless a function says otherwise: Errors: none. Cost: constant. Threads:
 /// many may read while nobody changes it. Allocates: nothing.

@@ -163,6 +163,11 @@ void store_ring(OccluderTopology& mesh, std::uint32_t g, std::span<const Named> 
   group.first_ring = static_cast<std::uint32_t>(mesh.rings.size());
   for (const Named& n : around) mesh.rings.push_back(n.what / kGroup);
   for (std::uint32_t i = group.first_beside; i < group.end_beside; ++i) mesh.rings.push_back(mesh.beside[i]);
+  const auto end = std::min<std::size_t>((g + 1) * std::size_t{kGroup}, mesh.triangles.size());
+  for (std::size_t t = std::size_t{g} * kGroup; t < end; ++t) {
+    for (const std::uint32_t other : mesh.neighbours[t])
+      if (other != OccluderTopology::kNone) mesh.rings.push_back(other / kGroup);
+  }
   const auto first = mesh.rings.begin() + group.first_ring;
   std::sort(first, mesh.rings.end());
   mesh.rings.erase(std::unique(first, mesh.rings.end()), mesh.rings.end());

@@ -118,9 +118,14 @@ struct Question {
   hn::Mask<F> sure;  // else the rectangle is not to be trusted, and what it stands for is visible
 };
 
-// visible[i] = 1 where some pixel centre of rectangle i may see past the occluders, else 0; of the first
-// `count`.
-HWY_INLINE void answer(const DepthTiles& tiles, const Question& q, std::size_t count, std::uint8_t* visible) {
+// What tiles alone say of a vector of rectangles, a bit each: which may be seen, and which only who looks
+// closer knows.
+struct Glance {
+  PixelRanges ranges;
+  std::uint32_t seen, open;
+};
+
+HWY_INLINE Glance glance(const DepthTiles& tiles, const Question& q) {
   const F f;
   const PixelBounds bounds = pixel_bounds(tiles, q.within);
   const auto finite =
@@ -132,16 +137,13 @@ HWY_INLINE void answer(const DepthTiles& tiles, const Question& q, std::size_t c
   const auto behind_all = hn::AndNot(hn::RebindMask(f, ranges.many),
                                      hn::Lt(q.nearest, least_at_corners(tiles, tiles.farthest, ranges)));
   const auto before_some = hn::Gt(q.nearest, least_at_corners(tiles, tiles.nearest, ranges));
-  const auto open = hn::AndNot(hn::Or(behind_all, before_some), asked);
   std::uint32_t seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
   if (SIGHTLINE_MUTANT(unsure_questions_hidden)) seen = bits_of(f, hn::And(asked, before_some));
-  const std::uint32_t rest = bits_of(f, open) & ((1u << count) - 1);
-  if (rest != 0) seen |= look_closer(tiles, ranges, q.nearest, rest);
-  for (std::size_t i = 0; i < count; ++i) visible[i] = seen >> i & 1;
+  return {ranges, seen, bits_of(f, hn::AndNot(hn::Or(behind_all, before_some), asked))};
 }
 
-// The same for `count` things, a vector at a time: question(from) asks for those that `from` points at, an
-// array a coordinate.
+// visible[i] = 1 where thing i may be seen, else 0, for `count` of them, a vector at a time: question(from)
+// asks for those that `from` points at, an array a coordinate.
 template <std::size_t N, class Ask>
 HWY_INLINE void answer_all(const DepthTiles& tiles, const std::array<const float*, N>& arrays,
                            std::size_t count, std::uint8_t* visible, const Ask& question) {
@@ -153,7 +155,11 @@ HWY_INLINE void answer_all(const DepthTiles& tiles, const std::array<const float
     for (const float*& array : from) array += first;
     alignas(64) std::array<std::array<float, 16>, N> room;
     repeat_last(f, some, from, room);
-    answer(tiles, question(from), some, visible + first);
+    const Question asked = question(from);
+    const auto [ranges, shown, open] = glance(tiles, asked);
+    const std::uint32_t rest = open & ((1u << some) - 1),
+                        seen = shown | (rest != 0 ? look_closer(tiles, ranges, asked.nearest, rest) : 0);
+    for (std::size_t i = 0; i < some; ++i) visible[first + i] = seen >> i & 1;
   }
 }
 

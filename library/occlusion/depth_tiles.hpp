@@ -163,18 +163,21 @@ void query_spheres(const DepthTiles& tiles, const EyeProjection& projection, con
 /// Three corners a triangle.
 bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept;
 
-/// Sixteen triangles ready to be asked for: a value a triangle, by corner and axis. Of fewer the last again.
+/// Four triangles ready to be asked for: a value a triangle, by corner and axis. Of fewer the last again.
 struct TriangleBlock {
-  static constexpr std::size_t kSize = 16;
-  alignas(64) std::array<std::array<std::array<float, kSize>, 3>, 3> corners;
-  /// Up to 16 of the triangles from `first` on, three corners each.
+  static constexpr std::size_t kSize = 4;
+  alignas(16) std::array<std::array<std::array<float, kSize>, 3>, 3> corners;
+  /// Up to four of the triangles from `first` on, three corners each.
   void take(std::span<const Vec3> triangles, std::size_t first) noexcept;
 };
-/// Of blocks that are soon asked for the first, if there is one.
-void prefetch(std::span<const TriangleBlock> blocks) noexcept;
-/// The same of the first `count` triangles of whole blocks, which may be seen from these sides.
-bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks, std::size_t count,
-                     Sides sides = Sides::both) noexcept;
+/// The first `count` triangles of whole blocks, which may be seen from these sides.
+struct TriangleRun {
+  const TriangleBlock* blocks = nullptr;
+  std::uint32_t count = 0;
+  Sides sides = Sides::both;
+};
+/// seen[i] = 1 where some triangle of run i may be seen, else 0. Short runs are asked for together.
+void query_triangles(const DepthTiles& tiles, std::span<const TriangleRun> runs, std::uint8_t* seen) noexcept;
 
 }  // namespace sightline::occlusion
 

@@ -91,8 +91,11 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
     const WideBoxes boxes = moved_boxes(mesh, transform, first);
     const VPoints q = about_eye(tiles.projection, boxes.middle);
     auto in = hn::FirstN(f, mesh.groups.size() - first);
-    for (const Vec4& side : view.sides)
+    for (const Vec4& side : view.sides) {
       in = hn::And(in, hn::Ge(hn::Add(dot_row(side, q), size_along(side, boxes.half)), hn::Zero(f)));
+      if (hn::AllFalse(f, in)) break;
+    }
+    if (hn::AllFalse(f, in)) continue;
     const VF nearest = hn::Sub(dot_row(view.depth, q), size_along(view.depth, boxes.half));
     if (const std::uint32_t those = bits_of(f, in)) append_groups(s, first, boxes, nearest, those);
   }

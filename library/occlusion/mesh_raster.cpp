@@ -235,7 +235,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
 HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) {
   hwy::Prefetch(&mesh.groups[group]);
   for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.corners[(group * 9 + i) * kGroup]);
-  for (std::size_t i = 0; i < 3; ++i) hwy::Prefetch(&mesh.neighbour[(group * 3 + i) * kGroup]);
+  for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.beyond[(group * 9 + i) * kGroup]);
 }
 
 constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together

@@ -57,16 +57,22 @@ HWY_INLINE hn::Mask<F> wide_enough(const DepthTiles& tiles, const OnImage& image
   return hn::Ge(hn::Abs(area), hn::Mul(inset_of(tiles, farthest), longest));
 }
 
+// Which of the corners lie before the near plane.
+using Before = std::array<hn::Mask<F>, 3>;
+
+HWY_INLINE Before before_near(const DepthTiles& tiles, const Corners& corners) {
+  return {before_near(tiles, corners[0]), before_near(tiles, corners[1]), before_near(tiles, corners[2])};
+}
+
 HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image,
-                        std::uint32_t one_sided) {
+                        const Before& before, std::uint32_t one_sided) {
   const F f;
   const VF area = area_of(image);
   const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
   VF facing = hn::IfThenElse(hn::Gt(area, least), one,
                              hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
   if (tiles.margin > 0) facing = hn::IfThenElseZero(wide_enough(tiles, image, area), facing);
-  const auto a = before_near(tiles, corners[0]), b = before_near(tiles, corners[1]),
-             c = before_near(tiles, corners[2]);
+  const auto& [a, b, c] = before;
   const auto whole = hn::And(hn::And(a, b), c), cut = hn::AndNot(whole, hn::Or(hn::Or(a, b), c));
   facing = hn::IfThenElseZero(whole, facing);
   if (!hn::AllFalse(f, cut))
@@ -95,6 +101,7 @@ struct Candidates {
   std::size_t group, lane;
   Corners corners;
   OnImage image;
+  Before before;
   VF facing;
   Rectangles outline;
   hn::Mask<F> drawn;        // as far as is known
@@ -109,7 +116,8 @@ HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& m
   c.group = group, c.lane = lane;
   c.corners = corners_about_eye(e, mesh, transform, group, lane);
   c.image = on_image(e, c.corners);
-  c.facing = facing_of(tiles, c.corners, c.image, mesh.groups[group].one_sided >> lane);
+  c.before = before_near(tiles, c.corners);
+  c.facing = facing_of(tiles, c.corners, c.image, c.before, mesh.groups[group].one_sided >> lane);
   if (hn::Lanes(f) == kGroup && tiles.margin == 0) {
     hn::Store(c.facing, f, &tiles.mesh->facing[group * kGroup]);
     tiles.mesh->known[group] = tiles.mesh->turn;
@@ -277,20 +285,48 @@ HWY_INLINE Edges edges_of(const DepthTiles& tiles, const OccluderTopology& mesh,
           hn::IfThenElse(turned, x[k], x[next]), hn::IfThenElse(turned, y[k], y[next])};
 }
 
-// Edge k of each triangle, moved inwards by `inset` where no other triangle that turns the same way goes on
-// there; what bounds the rows narrows `outline`.
-HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
-                         std::size_t k, VF inset, std::uint32_t shared, Rectangles& outline,
-                         ReadyTriangles& out) {
+// Which way the neighbours at edge k turn on the image, as facing_of() says; where there is none, 0. From
+// what the group itself holds of them, so that no other needs to be looked at.
+HWY_INLINE VF facing_beyond(const DepthTiles& tiles, const OccluderTopology& mesh,
+                            const RowTransform& transform, const Candidates& c, std::size_t k) {
+  const F f;
+  const EyeProjection& e = tiles.projection;
+  const std::size_t next = (k + 1) % 3;
+  const float* from = &mesh.beyond[(c.group * 9 + 3 * k) * kGroup + c.lane];
+  const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
+  const Corners corners{c.corners[next], c.corners[k], about_eye(e, moved(transform, p))};
+  const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, corners[2]));
+  OnImage image;
+  image.x[0] = c.image.x[next], image.x[1] = c.image.x[k];
+  image.y[0] = c.image.y[next], image.y[1] = c.image.y[k];
+  image.x[2] = hn::Mul(dot_row(e.x, corners[2]), over_w),
+  image.y[2] = hn::Mul(dot_row(e.y, corners[2]), over_w);
+  return facing_of(tiles, corners, image, {c.before[next], c.before[k], before_near(tiles, corners[2])},
+                   mesh.groups[c.group].one_sided_beyond[k] >> c.lane);
+}
+
+// The same as far as they count where a pixel's margin does. Facings are known.
+HWY_INLINE VF counted_beyond(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
+                             std::size_t k) {
   const F f;
   const I i32;
+  const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
+  const auto some = hn::RebindMask(f, hn::Gt(other, hn::Set(i32, -1)));
+  return hn::IfThenElseZero(some,
+                            hn::GatherIndex(f, tiles.mesh->facing.data(), hn::Max(other, hn::Zero(i32))));
+}
+
+// Edge k of each triangle, moved inwards by `inset` where no other triangle that turns the same way goes on
+// there; what bounds the rows narrows `outline`.
+HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                         const Candidates& c, std::size_t k, VF inset, std::uint32_t shared,
+                         Rectangles& outline, ReadyTriangles& out) {
+  const F f;
   const VF* y = c.image.y;
   if (mesh.groups[c.group].straight != 0) hn::Store(y[k], f, &out.y[k][c.lane]);
-  const VI other = hn::Load(i32, &mesh.neighbour[(c.group * 3 + k) * kGroup + c.lane]);
-  const auto has_other = hn::Gt(other, hn::Set(i32, -1));
-  const VF others = hn::GatherIndex(f, tiles.mesh->facing.data(), hn::Max(other, hn::Zero(i32)));
-  const auto goes_on = hn::Gt(hn::Mul(others, c.facing), hn::Zero(f));
-  const auto seam = hn::Or(hn::And(hn::RebindMask(f, has_other), goes_on), mask_of(f, shared));
+  const VF others =
+      tiles.margin > 0 ? counted_beyond(tiles, mesh, c, k) : facing_beyond(tiles, mesh, transform, c, k);
+  const auto seam = hn::Or(hn::Gt(hn::Mul(others, c.facing), hn::Zero(f)), mask_of(f, shared));
   out.seam[k] |= bits_of(f, seam) << c.lane;
   const auto falls = hn::Gt(y[(k + 1) % 3], y[k]);
   const auto on_right = hn::Not(hn::Xor(falls, hn::Gt(c.facing, hn::Zero(f))));
@@ -318,12 +354,10 @@ HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, 
 }
 
 // The edges of cut triangles that lie before the near plane from end to end.
-HWY_INLINE void set_whole_edges(const DepthTiles& tiles, const Candidates& c, ReadyTriangles& out) {
+HWY_INLINE void set_whole_edges(const Candidates& c, ReadyTriangles& out) {
   const F f;
-  const std::array<hn::Mask<F>, 3> before{before_near(tiles, c.corners[0]), before_near(tiles, c.corners[1]),
-                                          before_near(tiles, c.corners[2])};
   for (std::size_t k = 0; k < 3; ++k)
-    out.whole[k] |= bits_of(f, hn::And(before[k], before[(k + 1) % 3])) << c.lane;
+    out.whole[k] |= bits_of(f, hn::And(c.before[k], c.before[(k + 1) % 3])) << c.lane;
 }
 
 // Whether others go on all along an edge that has more than one or a row of them. Facings are known.
@@ -352,7 +386,8 @@ inline std::array<std::uint32_t, 3> shared_seams(const DepthTiles& tiles, const 
   return out;
 }
 
-// The groups whose facings tell where the mesh goes on: at the group's edges, or within a margin of it.
+// The groups whose facings tell where the mesh goes on: at the group's shared edges, or within a margin of
+// it.
 inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, const OccluderTopology& mesh,
                                                    std::size_t group) {
   const OccluderTopology::Group& its = mesh.groups[group];
@@ -361,8 +396,9 @@ inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, cons
 }
 
 // A vector of a group's triangles, some of which are drawn if `some`.
-HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
-                       const std::array<std::uint32_t, 3>& shared, bool some, ReadyTriangles& out) {
+HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
+                       Candidates& c, const std::array<std::uint32_t, 3>& shared, bool some,
+                       ReadyTriangles& out) {
   const F f;
   if (some) {
     if (hn::AllFalse(f, c.drawn)) find_nearness(tiles.projection, c);
@@ -371,8 +407,9 @@ HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Ca
   out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << c.lane;
   const VF inset = inset_of(tiles, widest_of(c.outline));
   Rectangles outline = c.outline;
-  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> c.lane, outline, out);
-  if ((out.cut >> c.lane & ((1u << hn::Lanes(f)) - 1)) != 0) set_whole_edges(tiles, c, out);
+  for (std::size_t k = 0; k < 3; ++k)
+    set_edge(tiles, mesh, transform, c, k, inset, shared[k] >> c.lane, outline, out);
+  if ((out.cut >> c.lane & ((1u << hn::Lanes(f)) - 1)) != 0) set_whole_edges(c, out);
   // Where only seams bound a corner of the outline, rounding may carry them beyond it.
   store(outline, out, c.lane);
   out.drawn |= bits_of(f, c.drawn) << c.lane;
@@ -395,11 +432,13 @@ HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Ro
     some |= keep_those_that_show(tiles, c);
   }
   if (!some && out.cut == 0) return;
-  know_facing(tiles, mesh, transform, group);
+  const OccluderTopology::Group& its = mesh.groups[group];
+  if (tiles.margin > 0 || its.first_shared < its.end_shared) know_facing(tiles, mesh, transform, group);
   for (const std::uint32_t other : around_group(tiles, mesh, group))
     know_facing(tiles, mesh, transform, other);
   const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
-  for (std::size_t v = 0; v * lanes < kGroup; ++v) set_up(tiles, mesh, vectors[v], shared, some, out);
+  for (std::size_t v = 0; v * lanes < kGroup; ++v)
+    set_up(tiles, mesh, transform, vectors[v], shared, some, out);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

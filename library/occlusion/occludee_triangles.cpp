@@ -1,5 +1,6 @@
 // Objects' triangles in the blocks that queries read, and the queries.
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,10 @@ struct OccludeeTriangles::State {
     if (object >= triangles.size()) return {};
     return std::span(blocks).subspan(first_block[object], first_block[object + 1] - first_block[object]);
   }
+  [[nodiscard]] occlusion::TriangleRun run(std::uint32_t object) const noexcept {
+    if (object >= triangles.size()) return {};
+    return {blocks.data() + first_block[object], triangles[object], sides[object]};
+  }
 };
 
 OccludeeTriangles::OccludeeTriangles() : state_(new State) {}
@@ -53,7 +58,8 @@ Status OccludeeTriangles::assign(std::span<const Vec3> corners,
   for (const std::uint32_t count : triangles_per_object)
     triangles += count, blocks += (std::uint64_t{count} + kPerBlock - 1) / kPerBlock;
   if (triangles_per_object.size() > kMost || blocks > kMost)
-    return {StatusCode::too_many, "occludees: expected at most 2^32 - 2 objects and blocks of 16 triangles"};
+    return {StatusCode::too_many,
+            "occludees: expected at most 2^32 - 2 objects and blocks of four triangles"};
   if (corners.size() != 3 * triangles) return kExpectedCorners;
   if (sides.size() > 1 && sides.size() != triangles_per_object.size())
     return {StatusCode::bad_mesh, "occludees: expected sides for each object, one for all, or none"};
@@ -90,20 +96,25 @@ std::uint32_t OccludeeTriangles::triangles(std::uint32_t object) const noexcept 
 }
 
 bool OcclusionBuffer::may_see(const OccludeeTriangles& triangles, std::uint32_t object) const noexcept {
-  if (object >= triangles.objects() || !state_->begun) return true;
-  return occlusion::query_triangles(*state_, triangles.state_->of(object),
-                                    triangles.state_->triangles[object], triangles.state_->sides[object]);
+  return keep_seen(triangles, {&object, 1}) == 1;
 }
 
 std::size_t OcclusionBuffer::keep_seen(const OccludeeTriangles& triangles,
                                        std::span<std::uint32_t> objects) const noexcept {
-  constexpr std::size_t kAhead = 3;
+  if (!state_->begun) return objects.size();
+  constexpr std::size_t kAtOnce = 64;
+  std::array<occlusion::TriangleRun, kAtOnce> runs;
+  std::array<std::uint8_t, kAtOnce> seen;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (i + kAhead < objects.size()) occlusion::prefetch(triangles.state_->of(objects[i + kAhead]));
-    const std::uint32_t object = objects[i];
-    objects[kept] = object;
-    kept += may_see(triangles, object);
+  for (std::size_t first = 0; first < objects.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, objects.size() - first);
+    for (std::size_t i = 0; i < count; ++i) runs[i] = triangles.state_->run(objects[first + i]);
+    occlusion::query_triangles(*state_, std::span(runs).first(count), seen.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t object = objects[first + i];
+      objects[kept] = object;
+      kept += seen[i] || object >= triangles.objects();
+    }
   }
   return kept;
 }

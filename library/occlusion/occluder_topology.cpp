@@ -27,6 +27,23 @@ void store_box(OccluderTopology& mesh, std::size_t group, const Bounds& bounds) 
   for (int a = 0; a < 3; ++a) out[48 + 16 * a] = static_cast<float>(half[a]);
 }
 
+// The corner of triangle `other` that lies beyond edge k of `triangle`.
+std::uint32_t corner_beyond(const OccluderTopology& mesh, const std::array<std::uint32_t, 3>& triangle,
+                            std::size_t k, std::uint32_t other) {
+  if (other != OccluderTopology::kNone) {
+    for (const std::uint32_t v : mesh.triangles[other])
+      if (v != triangle[k] && v != triangle[(k + 1) % 3]) return v;
+  }
+  return triangle[k];
+}
+
+void store_corner(geometry::AlignedVector<float>& to, std::size_t g, std::size_t k, std::size_t i,
+                  const Vec3& p) {
+  constexpr std::size_t kGroup = OccluderTopology::kGroup;
+  float* out = &to[(g * 9 + 3 * k) * kGroup + i];
+  out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
+}
+
 // Corners, edges and neighbours of the group's triangle i, which stands for none where `triangle` is beyond
 // the last.
 void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds& bounds) {
@@ -42,15 +59,17 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& p = mesh.positions[at <= last ? triangle[k] : triangle[0]];
-    float* out = &mesh.corners[(g * 9 + 3 * k) * kGroup + i];
-    out[0] = p.x, out[kGroup] = p.y, out[2 * kGroup] = p.z;
+    store_corner(mesh.corners, g, k, i, p);
+    store_corner(mesh.beyond, g, k, i, p);
     bounds.add(p);
     if (at > last) continue;
     group.inner[k] |= (std::uint32_t{mesh.parts[at].inner} >> k & 1) << i;
     group.turned[k] |= std::uint32_t{triangle[k] > triangle[(k + 1) % 3]} << i;
     const std::uint32_t other = mesh.neighbours[at][k];
     mesh.neighbour[(g * 3 + k) * kGroup + i] = static_cast<std::int32_t>(other);
-    if (other != OccluderTopology::kNone && other / kGroup != g) mesh.beside.push_back(other / kGroup);
+    store_corner(mesh.beyond, g, k, i, mesh.positions[corner_beyond(mesh, triangle, k, other)]);
+    if (other != OccluderTopology::kNone)
+      group.one_sided_beyond[k] |= std::uint32_t{mesh.one_sided[other]} << i;
   }
 }
 
@@ -59,7 +78,7 @@ void store_triangle(OccluderTopology& mesh, std::size_t g, std::size_t i, Bounds
 void OccluderTopology::lay_out() {
   const std::size_t count = (triangles.size() + kGroup - 1) / kGroup;
   groups.resize(count);
-  corners.resize(count * 9 * kGroup);
+  corners.resize(count * 9 * kGroup), beyond.resize(count * 9 * kGroup);
   neighbour.assign(count * 3 * kGroup, -1);
   box.assign((count + 15) / 16 * 96, 0);
   std::uint32_t first_shared = 0;

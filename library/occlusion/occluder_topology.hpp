@@ -45,20 +45,21 @@ struct OccluderTopology {
   struct Group {
     /// A bit a triangle and edge: its second corner has the lower number.
     std::array<std::uint32_t, 3> turned{};
-    std::array<std::uint32_t, 3> inner{};            ///< of Part
-    std::uint32_t follows = 0, straight = 0;         ///< the same, a bit a triangle
-    float apart = 0;                                 ///< the most of them
-    std::uint32_t one_sided = 0;                     ///< a bit a triangle
-    std::uint32_t first_beside = 0, end_beside = 0;  ///< in `beside`
-    std::uint32_t first_shared = 0, end_shared = 0;  ///< in `shared`
-    std::uint32_t first_ring = 0, end_ring = 0;      ///< in `rings`
-    std::uint32_t first_rim = 0, end_rim = 0;        ///< in `rim`
-    std::uint32_t first_around = 0, end_around = 0;  ///< in `around`
+    std::array<std::uint32_t, 3> inner{};             ///< of Part
+    std::uint32_t follows = 0, straight = 0;          ///< the same, a bit a triangle
+    float apart = 0;                                  ///< the most of them
+    std::uint32_t one_sided = 0;                      ///< a bit a triangle
+    std::array<std::uint32_t, 3> one_sided_beyond{};  ///< of the neighbours at edge k
+    std::uint32_t first_beside = 0, end_beside = 0;   ///< in `beside`
+    std::uint32_t first_shared = 0, end_shared = 0;   ///< in `shared`
+    std::uint32_t first_ring = 0, end_ring = 0;       ///< in `rings`
+    std::uint32_t first_rim = 0, end_rim = 0;         ///< in `rim`
+    std::uint32_t first_around = 0, end_around = 0;   ///< in `around`
     /// A bit a triangle: at its corners more than kMostAround edges end, which `rim` and `around` leave out.
     std::uint32_t alone = 0;
   };
   std::vector<Group> groups;          ///< group g holds triangles 16·g …
-  std::vector<std::uint32_t> beside;  ///< of each group those that hold its triangles' neighbours
+  std::vector<std::uint32_t> beside;  ///< of each group those that hold the others of its shared edges
   std::vector<std::uint32_t> rings;   ///< and those that hold what `around` names, itself left out
   static constexpr std::size_t kMostAround = 96;
   /// Edges that end at a corner of a group's triangles, or at a corner that lies on one of their edges: where
@@ -84,8 +85,9 @@ struct OccluderTopology {
   /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
   geometry::AlignedVector<float> box;
   /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last
-  /// triangle its first corner three times, no neighbours.
-  geometry::AlignedVector<float> corners;
+  /// triangle its first corner three times, no neighbours. As corners, per edge the neighbour's third one;
+  /// where there is none, an end of the edge.
+  geometry::AlignedVector<float> corners, beyond;
   geometry::AlignedVector<std::int32_t> neighbour;
   /// Fills the arrays from `groups` on out of those before.
   void lay_out();

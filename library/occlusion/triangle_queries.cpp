@@ -16,7 +16,7 @@
 #include <hwy/highway.h>
 
 #include "library/occlusion/depth_query-inl.hpp"
-#include "library/occlusion/spans-inl.hpp"
+#include "library/occlusion/depth_raster-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
@@ -92,36 +92,63 @@ HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF sl
   }
 }
 
+// Whether some of a triangle's pixels in a tile lie nearer than the occluders.
+HWY_INLINE bool seen_in_tile(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i,
+                             std::uint32_t tx, std::uint32_t ty, std::uint64_t pixels) {
+  const F f;
+  const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
+  if (!(tiles.nearest[tile] > -kInfinity)) return true;
+  alignas(64) std::array<float, 64> room;
+  const float* depth = pixels_of_tile(tiles, tile, room);
+  const VF across = hn::Set(f, t.across[i]), down = hn::Set(f, t.down[i]), most = hn::Set(f, t.nearest[i]),
+           x = hn::Set(f, static_cast<float>(tx * kTile) + 0.5f),
+           y = hn::Set(f, static_cast<float>(ty * kTile) + 0.5f);
+  auto open = hn::Lt(most, most);
+  for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
+    const VF column = hn::Add(x, hn::Load(f, kColumn + at)), row = hn::Add(y, hn::Load(f, kRow + at));
+    const VF plane = hn::Add(hn::Add(hn::Set(f, t.at[i]), hn::Mul(across, column)), hn::Mul(down, row));
+    const auto nearer = hn::Ge(hn::Min(plane, most), hn::Load(f, depth + at));
+    open = hn::Or(open, hn::And(nearer, mask_of(f, pixels >> at)));
+  }
+  return !hn::AllFalse(f, open);
+}
+
+// Of a step's tiles those that a triangle may be seen in, a bit each, by what is nearest of both.
+HWY_INLINE std::uint32_t open_tiles(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i,
+                                    const Step& step) {
+  const F f;
+  const float beyond = std::max(0.0f, 7 * t.across[i]) + std::max(0.0f, 7 * t.down[i]);
+  const VF across = hn::Set(f, t.across[i]), down = hn::Set(f, t.down[i]), at = hn::Set(f, t.at[i]),
+           x0 = hn::Set(f, static_cast<float>(step.tx * kTile) + 0.5f),
+           y0 = hn::Set(f, static_cast<float>(step.ty * kTile) + 0.5f);
+  std::uint32_t open = 0;
+  for (std::uint32_t from = 0; from < kStepTiles; from += static_cast<std::uint32_t>(hn::Lanes(f))) {
+    const VF x = hn::Add(x0, hn::Load(f, &kStepOffsets.x[from])),
+             y = hn::Add(y0, hn::Load(f, &kStepOffsets.y[from])),
+             first = hn::Add(hn::Add(at, hn::Mul(across, x)), hn::Mul(down, y)),
+             nearest = hn::Min(hn::Add(first, hn::Set(f, beyond)), hn::Set(f, t.nearest[i]));
+    open |= bits_of(f, hn::Ge(nearest, load_step(tiles, tiles.farthest, step, from))) << from;
+  }
+  return open & step.asked();
+}
+
 // Whether some pixel of triangle i lies nearer than the occluders.
 HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i) {
-  const F f;
   const TileRange range = tiles_of(tiles, t.left[i], t.right[i], t.top[i], t.bottom[i]);
-  const VF across = hn::Set(f, t.across[i]), down = hn::Set(f, t.down[i]), most = hn::Set(f, t.nearest[i]);
-  Spans spans;
-  alignas(64) std::array<float, 64> room;
-  std::array<std::uint64_t, kWords> pixels_at;  // written whole; the first is asked for
-  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {
-    const std::size_t line = (ty - range.begin_y) % 2 * kTile;
-    if (line == 0)
-      spans = spans_of<3>(t, i, static_cast<float>(ty * kTile) + 0.5f, static_cast<float>(tiles.width));
-    for (std::uint32_t tx = range.begin_x; tx < range.end_x; ++tx) {
-      const std::size_t tile = std::size_t{ty} * tiles.stride + tx;
-      if (t.nearest[i] < tiles.farthest[tile]) continue;
-      store_pixels(spans, line, tx * kTile, 1, pixels_at.data());
-      const std::uint64_t pixels = pixels_at[0];
-      if (pixels == 0) continue;
-      if (!(tiles.nearest[tile] > -kInfinity)) return true;
-      const float* depth = pixels_of_tile(tiles, tile, room);
-      const VF x = hn::Set(f, static_cast<float>(tx * kTile) + 0.5f),
-               y = hn::Set(f, static_cast<float>(ty * kTile) + 0.5f);
-      auto open = hn::Lt(most, most);
-      for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
-        const VF column = hn::Add(x, hn::Load(f, kColumn + at)), row = hn::Add(y, hn::Load(f, kRow + at));
-        const VF plane = hn::Add(hn::Add(hn::Set(f, t.at[i]), hn::Mul(across, column)), hn::Mul(down, row));
-        const auto nearer = hn::Ge(hn::Min(plane, most), hn::Load(f, depth + at));
-        open = hn::Or(open, hn::And(nearer, mask_of(f, pixels >> at)));
+  std::array<std::uint64_t, kStepTiles + kWords> pixels;
+  for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
+    const Spans spans =
+        spans_of<3>(t, i, static_cast<float>(ty * kTile) + 0.5f, static_cast<float>(tiles.width));
+    for (std::uint32_t tx = range.begin_x; tx < range.end_x; tx += kStepColumns) {
+      const Step step{tx, ty, std::min(kStepColumns, range.end_x - tx),
+                      std::min(kStepRows, range.end_y - ty)};
+      std::uint32_t open = open_tiles(tiles, t, i, step);
+      if (open == 0) continue;
+      for (open &= store_step_pixels(spans, step, pixels.data()).some; open != 0; open &= open - 1) {
+        const auto at = static_cast<std::uint32_t>(std::countr_zero(open));
+        if (seen_in_tile(tiles, t, i, tx + at % kStepColumns, ty + at / kStepColumns, pixels[at]))
+          return true;
       }
-      if (!hn::AllFalse(f, open)) return true;
     }
   }
   return false;
@@ -191,26 +218,40 @@ HWY_INLINE std::uint32_t turn_surely(const Projected& p) {
   return bits_of(f, hn::And(p.placed, hn::Gt(hn::Abs(area_of(p.image)), play)));
 }
 
-// A vector of triangles, parts of the triangles `whole`; of those beyond `count` nothing is said. Those
-// `away` are turned away, and asked for only where a rasteriser may not see it.
+// Triangles are asked for in pieces of a vector. Of those that belong together one that is seen is enough.
+constexpr std::size_t kPiece = std::min(TriangleBlock::kSize, hn::MaxLanes(F())),
+                      kPieces = hn::MaxLanes(F()) / kPiece;
+
+// A vector of triangles to be asked for, a bit each.
+struct Asked {
+  std::uint32_t those = 0, away = 0;           // turned away, and seen only where a rasteriser may see them
+  std::array<std::uint32_t, kPieces> mates{};  // of a piece, itself counted
+};
+
+// Which of a vector of triangles, parts of the triangles `whole`, may be seen, together with their mates.
 template <bool kMayClip>
-HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole, std::size_t count,
-                          std::uint32_t away) {
+HWY_INLINE std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole,
+                                   const Asked& asked) {
   const F f;
   const VF reach = reach_of(whole);
   const Projected p = project(tiles, q, reach);
-  std::uint32_t asked = (1u << count) - 1;
-  if (away != 0) asked &= ~(away & turn_surely(p));
-  if (asked == 0) return false;
-  std::array<std::uint8_t, 16> visible;
-  answer(tiles, {p.bounds, p.nearest, p.before}, count, visible.data());
-  std::uint32_t rest = 0;
-  for (std::size_t i = 0; i < count; ++i) rest |= std::uint32_t{visible[i]} << i;
-  rest &= asked & ~bits_of(f, p.behind);
-  if (rest == 0) return false;
+  std::uint32_t rest = asked.those & ~bits_of(f, p.behind);
+  if (asked.away != 0) rest &= ~(asked.away & turn_surely(p));
+  if (rest == 0) return 0;
+  const Glance around = glance(tiles, {p.bounds, p.nearest, p.before});
+  rest &= around.seen | around.open;
+  if (rest == 0) return 0;
+  std::uint32_t found = 0;
+  const auto look = [&](std::uint32_t at, const auto& sees) HWY_ATTR {
+    while ((at &= ~found) != 0) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(at));
+      if (sees(i)) found |= asked.mates[i / kPiece];
+      at &= at - 1;
+    }
+  };
   std::uint32_t clipped = rest & ~bits_of(f, p.placed);
   if (clipped != 0) {
-    if (!kMayClip) return true;
+    if (!kMayClip) return asked.those;
     rest &= ~clipped;
     clipped &= ~beyond_a_side(tiles, q, p.error);
   }
@@ -220,15 +261,9 @@ HWY_INLINE bool some_seen(const DepthTiles& tiles, const Corners& q, const Corne
   find_planes(tiles, whole, reach, p.nearest, t);
   store(p.bounds, t, 0);
   hn::Store(p.nearest, f, t.nearest.data());
-  for (; rest != 0; rest &= rest - 1) {
-    if (seen(tiles, t, static_cast<std::size_t>(std::countr_zero(rest)))) return true;
-  }
-  if constexpr (kMayClip) {
-    for (; clipped != 0; clipped &= clipped - 1) {
-      if (clipped_seen(tiles, whole, static_cast<std::size_t>(std::countr_zero(clipped)))) return true;
-    }
-  }
-  return false;
+  look(rest, [&](std::size_t i) HWY_ATTR { return seen(tiles, t, i); });
+  if constexpr (kMayClip) look(clipped, [&](std::size_t i) { return clipped_seen(tiles, whole, i); });
+  return found;
 }
 
 // What of a triangle lies before the near plane, by a thousandth of its distance and what rounding may have
@@ -278,27 +313,92 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) 
                  hn::Load(f, in[3 * k + 2].data())};
     }
     const std::size_t count = std::min(hn::Lanes(f), triangles - first);
-    if (some_seen<false>(tiles, part, its, count, 0)) return true;
+    Asked asked;
+    asked.those = (1u << count) - 1;
+    asked.mates.fill(asked.those);
+    if (find_seen<false>(tiles, part, its, asked) != 0) return true;
   }
   return false;
 }
 
-bool query_all_triangles(const DepthTiles& tiles, const TriangleBlock* blocks, std::size_t triangles,
-                         Sides sides) {
-  const F f;
-  for (std::size_t first = 0; first < triangles; first += hn::Lanes(f)) {
-    const auto& from = blocks[first / TriangleBlock::kSize].corners;
-    const std::size_t lane = first % TriangleBlock::kSize;
+// Pieces of runs that fill a vector.
+struct Pieces {
+  std::array<const float*, kPieces> first;  // of the corners of each its first triangle
+  std::array<std::size_t, kPieces> run;
+  std::size_t count = 0;
+  std::uint32_t fronts = 0;  // that may be seen from there alone
+  Asked asked;
+
+  void add(const TriangleRun& from, std::size_t which, std::uint32_t triangle) {
+    const std::size_t lane = count * kPiece;
+    const std::uint32_t size = std::min<std::uint32_t>(kPiece, from.count - triangle),
+                        those = ((1u << size) - 1) << lane;
+    first[count] =
+        &from.blocks[triangle / TriangleBlock::kSize].corners[0][0][triangle % TriangleBlock::kSize];
+    run[count] = which;
+    asked.those |= those;
+    if (from.sides == Sides::front) fronts |= those;
+    const bool goes_on = count > 0 && run[count - 1] == which;
+    const std::uint32_t mates = those | (goes_on ? asked.mates[count - 1] : 0);
+    for (std::size_t i = ++count; i > 0 && run[i - 1] == which; --i) asked.mates[i - 1] = mates;
+  }
+};
+
+// As many pieces side by side.
+template <class D, class At>
+HWY_INLINE hn::Vec<D> load_pieces(D d, std::size_t first, const At& at) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(D()) > kPiece) {
+    const hn::Half<D> half;
+    return hn::Combine(d, load_pieces(half, first + hn::MaxLanes(half) / kPiece, at),
+                       load_pieces(half, first, at));
+  }
+#endif
+  return hn::LoadU(d, at(first));
+}
+
+// A row of their corners, as TriangleBlock has them.
+HWY_INLINE VF load_row(const Pieces& pieces, std::size_t row) {
+  return load_pieces(
+      F(), 0, [&](std::size_t piece) HWY_ATTR { return pieces.first[piece] + row * TriangleBlock::kSize; });
+}
+
+// Asks for the memory of what soon comes to be asked for, as far as a vector or two read it.
+HWY_INLINE void prefetch(const TriangleRun& run) {
+  constexpr std::size_t kMost = 4 * sizeof(TriangleBlock), kLine = 64;
+  const auto* const bytes = reinterpret_cast<const std::byte*>(run.blocks);
+  const std::size_t size = std::min(kMost, run.count * (sizeof(TriangleBlock) / TriangleBlock::kSize));
+  for (std::size_t at = 0; at < size; at += kLine) hwy::Prefetch(bytes + at);
+}
+
+void query_runs(const DepthTiles& tiles, std::span<const TriangleRun> runs, std::uint8_t* seen) {
+  constexpr std::size_t kAhead = 4;
+  std::fill_n(seen, runs.size(), std::uint8_t{0});
+  for (std::size_t i = 0; i < std::min(kAhead, runs.size()); ++i) prefetch(runs[i]);
+  std::size_t run = 0;
+  std::uint32_t triangle = 0;  // of the run, the next
+  for (;;) {
+    Pieces pieces;
+    while (pieces.count < kPieces && run < runs.size()) {
+      if (triangle >= runs[run].count || seen[run]) {
+        if (++run + kAhead <= runs.size()) prefetch(runs[run + kAhead - 1]);
+        triangle = 0;
+        continue;
+      }
+      pieces.add(runs[run], run, triangle);
+      triangle += kPiece;
+    }
+    if (pieces.count == 0) return;
+    for (std::size_t i = pieces.count; i < kPieces; ++i) pieces.first[i] = pieces.first[0];
     Corners q;
     for (std::size_t k = 0; k < 3; ++k) {
-      q[k] = about_eye(tiles.projection, {hn::Load(f, &from[k][0][lane]), hn::Load(f, &from[k][1][lane]),
-                                          hn::Load(f, &from[k][2][lane])});
+      q[k] = about_eye(tiles.projection,
+                       {load_row(pieces, 3 * k), load_row(pieces, 3 * k + 1), load_row(pieces, 3 * k + 2)});
     }
-    const std::size_t count = std::min(hn::Lanes(f), triangles - first);
-    const std::uint32_t away = sides == Sides::front ? turned_away(tiles, q) : 0;
-    if (some_seen<true>(tiles, q, q, count, away)) return true;
+    if (pieces.fronts != 0) pieces.asked.away = pieces.fronts & turned_away(tiles, q);
+    const std::uint32_t found = find_seen<true>(tiles, q, q, pieces.asked);
+    for (std::size_t i = 0; i < pieces.count; ++i) seen[pieces.run[i]] |= found >> i * kPiece & 1;
   }
-  return false;
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE
@@ -306,7 +406,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::occlusion {
-HWY_EXPORT(query_all_triangles);
+HWY_EXPORT(query_runs);
 
 void TriangleBlock::take(std::span<const Vec3> triangles, std::size_t first) noexcept {
   const std::size_t last = triangles.size() / 3 - 1;
@@ -318,24 +418,23 @@ void TriangleBlock::take(std::span<const Vec3> triangles, std::size_t first) noe
   }
 }
 
-void prefetch(std::span<const TriangleBlock> blocks) noexcept {
-  const std::span<const std::byte> bytes =
-      std::as_bytes(blocks.first(std::min<std::size_t>(blocks.size(), 1)));
-  for (std::size_t at = 0; at < bytes.size(); at += 64) hwy::Prefetch(&bytes[at]);
-}
-
-bool query_triangles(const DepthTiles& tiles, std::span<const TriangleBlock> blocks, std::size_t count,
-                     Sides sides) noexcept {
-  return HWY_DYNAMIC_DISPATCH(query_all_triangles)(tiles, blocks.data(), count, sides);
+void query_triangles(const DepthTiles& tiles, std::span<const TriangleRun> runs,
+                     std::uint8_t* seen) noexcept {
+  HWY_DYNAMIC_DISPATCH(query_runs)(tiles, runs, seen);
 }
 
 bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noexcept {
+  constexpr std::size_t kAtOnce = 16;
   const std::size_t triangles = corners.size() / 3;
-  TriangleBlock block;
-  for (std::size_t first = 0; first < triangles; first += TriangleBlock::kSize) {
-    block.take(corners, first);
-    if (query_triangles(tiles, {&block, 1}, std::min(TriangleBlock::kSize, triangles - first), Sides::both))
-      return true;
+  std::array<TriangleBlock, kAtOnce / TriangleBlock::kSize> blocks;
+  for (std::size_t first = 0; first < triangles; first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, triangles - first);
+    for (std::size_t i = 0; i < count; i += TriangleBlock::kSize)
+      blocks[i / TriangleBlock::kSize].take(corners, first + i);
+    const TriangleRun run{blocks.data(), static_cast<std::uint32_t>(count), Sides::both};
+    std::uint8_t seen = 0;
+    query_triangles(tiles, {&run, 1}, &seen);
+    if (seen) return true;
   }
   return false;
 }

@@ -171,44 +171,55 @@ private:
     keep_seen();
   }
 
+  static constexpr std::size_t kAtOnce = 64;  // objects
+
   static void ask_part(void* data, std::uint32_t part) {
     const auto& self = *static_cast<const Try*>(data);
     Memory& memory = self.memory_;
     const std::size_t count = memory.asking, first = count * part / memory.parts,
                       end = count * (part + 1) / memory.parts;
-    constexpr std::size_t kAhead = 3;
-    const WorldOccluders& o = *self.state_.world->occluders;
-    for (std::size_t i = first; i < end; ++i) {
-      if (i + kAhead < end) {
-        const std::uint32_t next = o.triangle_set(self.state_.out[i + kAhead]);
-        if (next != kNothing) occlusion::prefetch(o.triangles[next].blocks);
-      }
-      memory.seen[i] = self.views_that_see(i);
+    for (std::size_t at = first; at < end; at += kAtOnce)
+      self.find_views_that_see(at, std::min(kAtOnce, end - at));
+  }
+
+  // Of objects from the first on: bits of the masks that their triangles leave; without masks, any or none.
+  void find_views_that_see(std::size_t first, std::size_t count) const {
+    std::uint8_t* const seen = &memory_.seen[first];
+    std::array<std::uint8_t, kAtOnce> all;
+    std::uint8_t asked = 0;
+    for (std::size_t d = 0; d < different_.count; ++d) asked |= different_.bits[d];
+    for (std::size_t i = 0; i < count; ++i) seen[i] = all[i] = masks_ ? masks_[first + i] & asked : asked;
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      if (drawn_[d]) ask_of_view(d, first, count, seen);
+    }
+    // Found last, for most are seen: whether the triangles are where the object is.
+    const WorldOccluders& o = *state_.world->occluders;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (seen[i] == all[i]) continue;
+      const ObjectId id = state_.out[first + i];
+      if (!stands_in(o.triangles[o.triangle_set(id)].bounds, stored_box(*state_.world, id))) seen[i] = all[i];
     }
   }
 
-  // Bits of the mask of the i-th object that its triangles leave; without masks, any or none.
-  [[nodiscard]] std::uint8_t views_that_see(std::size_t i) const {
-    const std::uint8_t before = masks_ ? masks_[i] : std::uint8_t{0xff};
-    const ObjectId id = state_.out[i];
+  void ask_of_view(std::size_t d, std::size_t first, std::size_t count, std::uint8_t* seen) const {
     const WorldOccluders& o = *state_.world->occluders;
-    const std::uint32_t at = o.triangle_set(id);
-    if (at == kNothing) return before;
-    const ObjectTriangles& set = o.triangles[at];
-    std::uint8_t seen = before, asked = 0;
-    for (std::size_t d = 0; d < different_.count; ++d) {
-      asked |= different_.bits[d];
-      const std::size_t place = different_.first[d];
-      if ((before & different_.bits[d]) == 0 || !drawn_[d] || !(set.origin == views_[place].view.origin))
-        continue;
-      const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
-      if (!occlusion::query_triangles(tiles, set.blocks, set.count, set.sides))
-        seen &= static_cast<std::uint8_t>(~different_.bits[d]);
+    const std::size_t place = different_.first[d];
+    std::array<occlusion::TriangleRun, kAtOnce> runs;
+    std::array<std::uint8_t, kAtOnce> whose, sees;
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t at = o.triangle_set(state_.out[first + i]);
+      if (at == kNothing || (seen[i] & different_.bits[d]) == 0) continue;
+      const ObjectTriangles& set = o.triangles[at];
+      if (!(set.origin == views_[place].view.origin)) continue;
+      whose[size] = static_cast<std::uint8_t>(i);
+      runs[size++] = {set.blocks.data(), set.count, set.sides};
     }
-    seen &= asked;
-    // Found last, for most are seen: whether the triangles are where the object is.
-    const bool all = seen == (before & asked);
-    return all || stands_in(set.bounds, stored_box(*state_.world, id)) ? seen : before;
+    const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(memory_.picks[place].buffer());
+    occlusion::query_triangles(tiles, std::span(runs).first(size), sees.data());
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!sees[i]) seen[whose[i]] &= static_cast<std::uint8_t>(~different_.bits[d]);
+    }
   }
 
   void keep_seen() {

@@ -34,8 +34,10 @@ TEST(OccludeeTriangles, AreSeenWhereTheirTrianglesAreOneByOneAndInBatches) {
     for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, 6.0f));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
 
-    // Whole blocks, parts of blocks, and nothing.
-    const std::vector<std::uint32_t> counts{1, 0, 16, 17, 5, 48, 2};
+    // Whole blocks, parts of blocks, and nothing; of few triangles, which share a vector; and more than are
+    // asked for at once.
+    std::vector<std::uint32_t> counts{1, 0, 16, 17, 5, 48, 2};
+    while (counts.size() < 70) counts.push_back(random.below(7));
     std::vector<std::vector<Vec3>> its;
     std::vector<Vec3> all;
     for (const std::uint32_t count : counts) {

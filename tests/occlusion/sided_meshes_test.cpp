@@ -63,6 +63,23 @@ TEST(SidedMeshes, WhatTheNearPlaneCutsHasSidesToo) {
   }
 }
 
+TEST(SidedMeshes, EndWhereANeighbourIsSeenFromBehind) {
+  // Seen from behind, a metre a pixel; where the two meet lie pixels' centres.
+  const std::array corners{Vec3{-20, -20, -5}, Vec3{0.5f, -20, -5}, Vec3{0.5f, 20, -5}, Vec3{20, 0, -5}};
+  const std::array<std::uint32_t, 6> indices{2, 1, 0, 1, 2, 3};
+  for (const bool alone : {false, true}) {
+    const std::array sides{Sides::both, alone ? Sides::front : Sides::both};
+    OcclusionBuffer buffer;
+    ASSERT_TRUE(buffer.begin({*make_view(Camera{.orthographic_height = 64}, 64, 64), {}}));
+    ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(corners, indices, sides)));
+    std::vector<float> nearness(64 * 64);
+    ASSERT_TRUE(buffer.read_nearness(nearness));
+    EXPECT_GT(nearness[32 * 64 + 31], ExactRays::kMiss);
+    EXPECT_EQ(nearness[32 * 64 + 32] > ExactRays::kMiss, !alone);
+    EXPECT_EQ(nearness[32 * 64 + 34] > ExactRays::kMiss, !alone);
+  }
+}
+
 // Whether the ray through a pixel's centre meets the triangle's front.
 bool faces(const View& view, const Triangle& t) {
   using namespace geometry;

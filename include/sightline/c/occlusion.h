@@ -100,8 +100,8 @@ SIGHTLINE_API sightline_occludees* sightline_occludees_create(void);
 SIGHTLINE_API void sightline_occludees_destroy(sightline_occludees* occludees);
 /** Takes all objects anew: of object o the next triangles_per_object[o] triangles of `corners`, three points
  * of three floats each, about the origin of the views that will ask. `corner_count` is in points. Errors:
- * BAD_ARGUMENT; BAD_MESH where it is not three times the sum; TOO_MANY. Cost: a copy. Allocates: 576 bytes
- * for every 16 triangles begun of an object. */
+ * BAD_ARGUMENT; BAD_MESH where it is not three times the sum; TOO_MANY. Cost: a copy. Allocates: 144 bytes
+ * for every four triangles begun of an object. */
 SIGHTLINE_API sightline_status sightline_occludees_assign(sightline_occludees* occludees,
                                                           const float* corners, size_t corner_count,
                                                           const uint32_t* triangles_per_object,

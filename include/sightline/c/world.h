@@ -139,7 +139,7 @@ SIGHTLINE_API sightline_status sightline_world_set_occluding(sightline_world* wo
  * world's), which are asked for where its box may be seen, by views of the same origin; none takes them away.
  * Call it again when the object has moved. `corner_count` is in points, `sides` those from which every
  * view draws them, shadow maps too. Errors: BAD_ARGUMENT, BAD_MESH, STALE_HANDLE, TOO_MANY. Cost: a copy.
- * Allocates: 576 bytes for every 16 triangles begun, 4 an id. */
+ * Allocates: 144 bytes for every four triangles begun, 4 an id. */
 SIGHTLINE_API sightline_status sightline_world_set_triangles(sightline_world* world, sightline_handle handle,
                                                              const float* corners, size_t corner_count,
                                                              const double* origin, uint8_t sides);
