@@ -54,25 +54,38 @@ HWY_INLINE bool hidden_in_few(const DepthTiles& tiles, const PixelRange& range, 
   return hn::AllFalse(f, hn::Le(least, hn::Set(f, nearness)));
 }
 
-// The same of many tiles.
+// The same of those in row ty of tiles, some of which do not lie nearer as a whole.
+HWY_INLINE bool hidden_in_row(const DepthTiles& tiles, const PixelRange& range, std::uint32_t ty, VF limit) {
+  const F f;
+  const std::uint32_t tx0 = range.x0 / kTile, tx1 = range.x1 / kTile;
+  const float* farthest = &tiles.farthest[std::size_t{ty} * tiles.stride];
+  const float* nearest = &tiles.nearest[std::size_t{ty} * tiles.stride];
+  for (std::uint32_t tx = tx0; tx <= tx1; tx += static_cast<std::uint32_t>(hn::Lanes(f))) {
+    const auto wanted = hn::FirstN(f, tx1 - tx + 1);
+    const auto open = hn::And(wanted, hn::Le(hn::LoadU(f, farthest + tx), limit));
+    // A tile of which nothing lies nearer shows what stands there.
+    if (!hn::AllFalse(f, hn::And(open, hn::Lt(hn::LoadU(f, nearest + tx), limit)))) return false;
+    for (std::uint32_t bits = bits_of(f, open); bits != 0; bits &= bits - 1) {
+      const std::uint32_t t = tx + static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (!hn::AllFalse(f, hn::Le(least_in_tile(tiles, range, t, ty), limit))) return false;
+    }
+  }
+  return true;
+}
+
+// The same of many tiles: most of what is asked for is hidden, and most tiles lie nearer as a whole.
 HWY_INLINE bool hidden_in_many(const DepthTiles& tiles, const PixelRange& range, float nearness) {
   const F f;
-  const std::uint32_t tx0 = range.x0 / kTile, tx1 = range.x1 / kTile, ty0 = range.y0 / kTile,
-                      ty1 = range.y1 / kTile;
-  const VF limit = hn::Set(f, nearness);
-  for (std::uint32_t ty = ty0; ty <= ty1; ++ty) {
-    const float* farthest = &tiles.farthest[std::size_t{ty} * tiles.stride];
-    const float* nearest = &tiles.nearest[std::size_t{ty} * tiles.stride];
-    for (std::uint32_t tx = tx0; tx <= tx1; tx += static_cast<std::uint32_t>(hn::Lanes(f))) {
-      const auto wanted = hn::FirstN(f, tx1 - tx + 1);
-      const auto open = hn::And(wanted, hn::Le(hn::LoadU(f, farthest + tx), limit));
-      // A tile of which nothing lies nearer shows what stands there.
-      if (!hn::AllFalse(f, hn::And(open, hn::Lt(hn::LoadU(f, nearest + tx), limit)))) return false;
-      for (std::uint32_t bits = bits_of(f, open); bits != 0; bits &= bits - 1) {
-        const std::uint32_t t = tx + static_cast<std::uint32_t>(std::countr_zero(bits));
-        if (!hn::AllFalse(f, hn::Le(least_in_tile(tiles, range, t, ty), limit))) return false;
-      }
-    }
+  const VF limit = hn::Set(f, nearness), far = hn::Set(f, kInfinity);
+  const std::uint32_t tx0 = range.x0 / kTile, columns = range.x1 / kTile + 1 - tx0,
+                      lanes = static_cast<std::uint32_t>(hn::Lanes(f)), last = (columns - 1) / lanes * lanes;
+  const auto wanted = hn::FirstN(f, columns - last);
+  const float* row = &tiles.farthest[range.y0 / kTile * std::size_t{tiles.stride} + tx0];
+  for (std::uint32_t ty = range.y0 / kTile; ty <= range.y1 / kTile; ++ty, row += tiles.stride) {
+    VF least = hn::IfThenElse(wanted, hn::LoadU(f, row + last), far);
+    for (std::uint32_t at = 0; at < last; at += lanes) least = hn::Min(least, hn::LoadU(f, row + at));
+    if (hn::AllFalse(f, hn::Le(least, limit))) continue;
+    if (!hidden_in_row(tiles, range, ty, limit)) return false;
   }
   return true;
 }
