@@ -21,11 +21,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-void draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
+std::uint32_t draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
+  const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
   TileList<1> list;
-  list_polygon(tiles, polygon, tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom),
-               without, kNoPixels, list);
+  list_polygon(tiles, polygon, range, without, kNoPixels, list);
   draw_listed(tiles, list);
+  return range.count();
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE
@@ -136,17 +137,17 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
 }
 
 // A polygon that lies on the plane, if it turns that way; 0: whichever way it turns. Seams by the numbers of
-// its edges.
-void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way,
-                  const Surroundings& around) {
+// its edges. Returns how many tiles lie around what was drawn.
+std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way,
+                           const Surroundings& around) {
   const std::array<SeamLine, 3>& seams = around.seams;
-  if (!clip_to_view(tiles, 0, polygon)) return;
-  if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return;
+  if (!clip_to_view(tiles, 0, polygon)) return 0;
+  if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return 0;
   const Outline outline = outline_of(tiles.projection, polygon);
   const float area = area_of(outline);
-  if (way * area < 0) return;
+  if (way * area < 0) return 0;
   Convex out;
-  if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return;
+  if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return 0;
   const float inset =
       kInset + tiles.margin + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
   out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
@@ -158,7 +159,7 @@ void draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, fl
       add_edge(outline, i, area > 0, inset, out);
   }
   out.at -= tiles.margin * std::max(0.0f, around.slant - (std::fabs(out.across) + std::fabs(out.down)));
-  HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, around.without);
+  return HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, around.without);
 }
 
 }  // namespace
@@ -184,8 +185,8 @@ void draw_clipped_box(DepthTiles& tiles, const std::array<float, 3>& low,
   }
 }
 
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
-                           const Surroundings& around) noexcept {
+std::uint32_t draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
+                                    const Surroundings& around) noexcept {
   Polygon polygon;
   for (const glm::dvec3& c : corners) {
     polygon.edge[polygon.count] = static_cast<std::uint8_t>(polygon.count);
@@ -199,7 +200,8 @@ void draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& c
   const glm::dvec3 &p = polygon.points[0], &q = polygon.points[1], &r = polygon.points[2];
   const glm::dvec3 normal = glm::cross(q - p, r - p);
   const double length = glm::length(normal);
-  if (length > 0) draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way, its);
+  if (!(length > 0)) return 0;
+  return draw_clipped(tiles, polygon, {normal / length, glm::dot(normal / length, p)}, way, its);
 }
 
 }  // namespace sightline::occlusion

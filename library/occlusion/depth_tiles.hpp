@@ -125,9 +125,9 @@ struct Surroundings {
   float slant = 0;
 };
 /// A triangle that crosses the near plane, about the eye; drawn only if it turns that way on the image, 1 or
-/// -1, or whichever way it turns for 0.
-void draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
-                           const Surroundings& around) noexcept;
+/// -1, or whichever way it turns for 0. Returns how many tiles lie around what was drawn.
+std::uint32_t draw_clipped_triangle(DepthTiles& tiles, const std::array<glm::dvec3, 3>& corners, float way,
+                                    const Surroundings& around) noexcept;
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept;
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// What drawing may cost of a mesh that is drawn in parts: groups of 16 triangles, near ones first, those
@@ -135,12 +135,14 @@ void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 struct MeshBudget {
   double look = 0;      ///< a group, whether it is in view
   double query = 0;     ///< a group in view, whether it is hidden
-  double triangle = 0;  ///< one of a group that is drawn
-  double tile = 0;      ///< a tile around such a group
+  double triangle = 0;  ///< one of a group that is set up
+  double polygon = 0;   ///< one that is drawn: a triangle, or some that are flat together
+  double tile = 0;      ///< a tile of the rectangle around it
   double left = 0;      ///< what may still be spent
 
+  [[nodiscard]] bool affords(double cost) const noexcept { return cost <= left; }
   bool pay(double cost) noexcept {
-    if (!(cost <= left)) return false;
+    if (!affords(cost)) return false;
     left -= cost;
     return true;
   }

@@ -7,8 +7,6 @@
 #include <numeric>
 #include <span>
 
-#include <sightline/projection.hpp>
-
 #include "library/occlusion/depth_tiles.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -96,9 +94,10 @@ HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& read
 }
 
 HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim, const Piece& piece,
-                           const Convex& polygon, float nearest, TileList<1>& list) {
+                           const Convex& polygon, float nearest, MeshBudget* budget, TileList<1>& list) {
   const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
   if (hidden_tiles(tiles, range, nearest)) return;
+  if (budget && !budget->pay(budget->polygon + range.count() * budget->tile)) return;
   if (tiles.margin > 0)
     draw_with_margin(tiles, ready, rim, piece, polygon, range, list);
   else
@@ -184,9 +183,10 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
 }
 
 // Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
-// draw_with_margin() has it.
-HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group, const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
+// draw_with_margin() has it. Returns how many tiles lie around what was drawn.
+HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& mesh,
+                                    const RowTransform& transform, std::size_t group,
+                                    const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
   const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, group, i);
   const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh->front : 0;
   if (tiles.margin == 0) return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), {}, 0});
@@ -194,13 +194,17 @@ HWY_NOINLINE void draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, cons
   image.right = static_cast<float>(tiles.width), image.bottom = static_cast<float>(tiles.height);
   Bands bands;
   const bool known = bands_in(rim, 1u << i, image, bands);
-  if (known) draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
+  std::uint32_t around = 0;
+  if (known) around = draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
   if (!known || bands.count > 0 || rim.slant[i] > tiles.mesh->slant[group * kGroup + i])
-    draw_clipped_triangle(tiles, corners, way, {});
+    around += draw_clipped_triangle(tiles, corners, way, {});
+  return around;
 }
 
+// What a budget does not pay for is left out, and hides nothing; seams beside it stay as true as they are:
+// the mesh goes on there.
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group, TileList<1>& list) {
+                           std::size_t group, MeshBudget* budget, TileList<1>& list) {
   ReadyTriangles ready;
   if (tiles.margin > 0) prefetch_rim(mesh, group);
   set_up(tiles, mesh, transform, group, ready);
@@ -209,7 +213,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   if (tiles.margin > 0) find_rim(tiles, mesh, transform, group, ready.drawn | ready.cut, rim);
   const OccluderTopology::Group& its = mesh.groups[group];
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
-                        HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, list); };
+                        HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, budget, list); };
   const float apart = its.apart * tiles.mesh->stretch;
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t leads = its.follows >> 1 & ~its.follows; leads != 0; leads &= leads - 1) {
@@ -228,7 +232,10 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   }
   for (rest = ready.cut; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    draw_cut(tiles, mesh, transform, group, ready, rim, i);
+    // How much of the image it covers shows once it is clipped.
+    if (budget && !budget->affords(budget->polygon + tiles.columns * tiles.rows * budget->tile)) break;
+    const std::uint32_t around = draw_cut(tiles, mesh, transform, group, ready, rim, i);
+    if (budget) budget->pay(budget->polygon + around * budget->tile);
   }
 }
 
@@ -240,25 +247,9 @@ HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) 
 
 constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together
 
-// Pays for a group whose box stands at `place`. What is left out hides nothing, and leaves the seams beside
-// it as true as they are: the mesh goes on there.
-inline bool affords_group(const DepthTiles& tiles, std::size_t place, const Projector& projector,
-                          MeshBudget& budget) {
-  const auto& box = tiles.mesh->box;
-  const auto half = [&](std::size_t axis) { return 0.5f * (box[axis + 3][place] - box[axis][place]); };
-  const Vec3 size{half(0), half(1), half(2)};
-  const Sphere around{{box[0][place] + size.x, box[1][place] + size.y, box[2][place] + size.z},
-                      std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z)};
-  const float image = projector.width * projector.height;
-  const double in_tiles = double{std::min(projected_area(projector, around), image)} / (kTile * kTile);
-  return budget.pay(static_cast<double>(kGroup) * budget.triangle +
-                    (in_tiles / (tiles.scale * tiles.scale) + 1) * budget.tile);
-}
-
 void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
                     MeshBudget* budget) {
   if (budget && !budget->pay(static_cast<double>(mesh.groups.size()) * budget->look)) return;
-  const Projector projector = budget ? make_projector(tiles.view.view, {}) : Projector{};
   find_groups(tiles, mesh, transform);
   const MeshScratch& s = *tiles.mesh;
   TileList<1> list;
@@ -277,11 +268,11 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
         {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
         visible.data());
     for (std::size_t i = 0; i < count; ++i) {
-      if (budget && visible[i]) visible[i] = affords_group(tiles, place(i), projector, *budget);
+      if (budget && visible[i]) visible[i] = budget->pay(static_cast<double>(kGroup) * budget->triangle);
       if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)], list);
+      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)], budget, list);
     }
     draw_listed(tiles, list);
   }

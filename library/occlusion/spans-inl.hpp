@@ -21,6 +21,8 @@ alignas(64) constexpr float kLine[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 1
 // Tiles [begin_x, end_x) × [begin_y, end_y).
 struct TileRange {
   std::uint32_t begin_x, end_x, begin_y, end_y;
+
+  [[nodiscard]] std::uint32_t count() const { return (end_x - begin_x) * (end_y - begin_y); }
 };
 
 // The tiles that hold the pixel centres of a rectangle, in pixels; none where there is no such centre.

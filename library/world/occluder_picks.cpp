@@ -118,11 +118,25 @@ struct OccluderPicks::Sight {
            static_cast<double>(shape.spheres.size()) * double{costs.shape};
   }
 
-  // What is drawn in parts: `triangles` of it, in groups that each cover a little of the image.
+  // What may be spent on a mesh that is drawn in parts. Measured in levels: of a group of sixteen triangles
+  // that is set up four are drawn, as one polygon and a half.
+  [[nodiscard]] occlusion::MeshBudget parts_budget(double left) const {
+    constexpr double kLook = 2, kSetUp = 1.5, kPolygon = 6;
+    return {.look = kLook * double{costs.test},
+            .query = double{costs.query},
+            .triangle = kSetUp * triangle,
+            .polygon = kPolygon * triangle,
+            .tile = tile,
+            .left = left};
+  }
+
+  // What it takes to set up `triangles` of it, in groups that each cover a little of the image.
   [[nodiscard]] double parts_cost(const OccluderShape& shape, std::size_t triangles) const {
-    constexpr double kGroup = 16;
-    const double look = static_cast<double>(shape.all.triangles()) / kGroup * double{costs.test};
-    return look + static_cast<double>(triangles) * (triangle + (double{costs.query} + 4 * tile) / kGroup);
+    constexpr double kGroup = 16, kPolygons = 1.5, kTiles = 4;
+    const occlusion::MeshBudget each = parts_budget(0);
+    const double look = static_cast<double>(shape.all.triangles()) / kGroup * each.look,
+                 group = kGroup * each.triangle + each.query + kPolygons * each.polygon + kTiles * each.tile;
+    return look + static_cast<double>(triangles) / kGroup * group;
   }
 
   // Whether distances surely leave an object of this box.
@@ -217,8 +231,10 @@ bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
   const Vec3& e = sight.projector.eye;
   const Vec3 to{sphere.centre.x - e.x, sphere.centre.y - e.y, sphere.centre.z - e.z};
   const OccluderShape& shape = sight.world.occluders->shapes[brief.occluder];
-  const double whole = sight.shape_cost(shape, brief.along_axes) + sight.tile * double{area / kTileArea};
-  const bool parts = in_parts(shape);
+  // What is drawn in parts pays for its tiles by itself.
+  const bool parts = in_parts(shape), solids = !shape.boxes.empty() || !shape.spheres.empty();
+  const double tiles = parts && !solids ? 0 : sight.tile * double{area / kTileArea},
+               whole = sight.shape_cost(shape, brief.along_axes) + tiles;
   const double claim = whole + (parts ? sight.parts_cost(shape, kLeastPart) : 0),
                most = whole + (parts ? sight.parts_cost(shape, shape.all.triangles()) : 0);
   picks_.push_back({area / static_cast<float>(claim), to.x * to.x + to.y * to.y + to.z * to.z, carrier, parts,
@@ -276,8 +292,7 @@ double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mes
     static_cast<void>(buffer_.draw_mesh(mesh, transform));
     return spare;
   }
-  occlusion::MeshBudget budget{double{sight.costs.test}, double{sight.costs.query}, sight.triangle,
-                               sight.tile, pick.claim - pick.whole + spare};
+  occlusion::MeshBudget budget = sight.parts_budget(pick.claim - pick.whole + spare);
   occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh),
                        geometry::row_transform(transform), budget);
   return budget.left;

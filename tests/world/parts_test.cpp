@@ -78,11 +78,11 @@ struct Level {
     const OccluderPlacement placement{*name};
     EXPECT_TRUE(world.set_occluders(std::span(handles).last(1), {&placement, 1}));
   }
-  [[nodiscard]] static View from(Random& random) {
+  [[nodiscard]] static View from(Random& random, std::uint32_t width = 160, std::uint32_t height = 90) {
     const float x = 10.0f * static_cast<float>(random.below(kRooms)) + random.between(1, 9),
                 z = 10.0f * static_cast<float>(random.below(kRooms)) + random.between(1, 9);
     const float angle = random.between(0, 6.28f);
-    return looking({x, 1.7f, z}, {std::sin(angle), 0, -std::cos(angle)}, 160, 90);
+    return looking({x, 1.7f, z}, {std::sin(angle), 0, -std::cos(angle)}, width, height);
   }
 
   std::vector<Box> walls, things;
@@ -117,6 +117,22 @@ TEST(Parts, OfALevelAreDrawnAsFarAsTheAccountGoes) {
     EXPECT_LT(fewer * kept, in_view) << object;
     EXPECT_LT(cost, most_cost * frustum_cost) << object;
   }
+}
+
+TEST(Parts, OfALevelAreDrawnOnLargeImagesToo) {
+  // Walls around the eye cover all of the image each, most of their triangles little of it.
+  const Level level;
+  Culler culler, plain;
+  Random random(6);
+  std::size_t kept = 0, in_view = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    const CullView view{.view = {Level::from(random, 1280, 720), {}}};
+    const Culled seen = cull_with(culler, level.world, {&view, 1}, automatic(10000));
+    ASSERT_LE(seen.result.cost, 1.05 * seen.result.frustum_cost);
+    kept += seen.result.count;
+    in_view += cull_with(plain, level.world, {&view, 1}, {}).result.count;
+  }
+  EXPECT_LT(60 * kept, in_view);
 }
 
 TEST(Parts, LoseNothingThatARayMeets) {
@@ -178,7 +194,8 @@ TEST(Parts, AreTheSameForAnyNumberOfJobs) {
 std::vector<float> drawn(const OccluderMesh& mesh, const View& view, double* left) {
   OcclusionBuffer buffer;
   EXPECT_TRUE(buffer.begin({view, {}}));
-  occlusion::MeshBudget budget{1, 12, 15, 2, left ? *left : 0};
+  occlusion::MeshBudget budget{
+      .look = 1, .query = 12, .triangle = 15, .polygon = 100, .tile = 2, .left = left ? *left : 0};
   if (!left) {
     EXPECT_TRUE(buffer.draw_mesh(mesh));
   } else {
