@@ -123,6 +123,8 @@ HWY_INLINE std::uint32_t open_tiles(const DepthTiles& tiles, const GrownTriangle
            y0 = hn::Set(f, static_cast<float>(step.ty * kTile) + 0.5f);
   std::uint32_t open = 0;
   for (std::uint32_t from = 0; from < kStepTiles; from += static_cast<std::uint32_t>(hn::Lanes(f))) {
+    // Beyond the image's last row there is none to be read; whole steps repeat the first.
+    if (from >= step.rows * kStepColumns) break;
     const VF x = hn::Add(x0, hn::Load(f, &kStepOffsets.x[from])),
              y = hn::Add(y0, hn::Load(f, &kStepOffsets.y[from])),
              first = hn::Add(hn::Add(at, hn::Mul(across, x)), hn::Mul(down, y)),

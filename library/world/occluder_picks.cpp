@@ -21,8 +21,9 @@ constexpr float kTileArea = 64, kLeastArea = 16;  // px²
 // for so many at the least, and for no more than its share of what is left for drawing.
 constexpr std::size_t kWhole = 512, kLeastPart = 256;
 constexpr double kPartShare = 0.5;
-// Where all of a pixel counts, what goes on beside a triangle is looked at, too.
-constexpr double kMarginCost = 3;
+// Where all of a pixel counts, what goes on beside a triangle is looked at, too, and much of it is drawn
+// twice.
+constexpr double kMarginCost = 3, kMarginTiles = 2;
 
 bool in_parts(const OccluderShape& shape) noexcept {
   return shape.all.triangles() > kWhole;
@@ -82,8 +83,8 @@ struct OccluderPicks::Sight {
         view(culled),
         distance_eye(measured_from),
         costs(at_costs),
-        triangle(double{at_costs.triangle} *
-                 (drawn.coverage == Coverage::area || drawn.scale > 1 ? kMarginCost : 1)),
+        margin(drawn.coverage == Coverage::area || drawn.scale > 1),
+        triangle(double{at_costs.triangle} * (margin ? kMarginCost : 1)),
         tile(double{at_costs.tile} / (drawn.scale * drawn.scale)),
         projector(make_projector(culled.view.view, {})),
         frustum(make_frustum(culled.view.view)),
@@ -126,7 +127,7 @@ struct OccluderPicks::Sight {
             .query = double{costs.query},
             .triangle = kSetUp * triangle,
             .polygon = kPolygon * triangle,
-            .tile = tile,
+            .tile = tile * (margin ? kMarginTiles : 1),
             .left = left};
   }
 
@@ -166,6 +167,7 @@ struct OccluderPicks::Sight {
   const CullView& view;
   const WorldPoint& distance_eye;
   const CullCosts& costs;
+  bool margin;            // that of a pixel counts
   double triangle, tile;  // what a triangle and 8 × 8 pixels of the view cost to draw
   Projector projector;
   Frustum frustum;
