@@ -183,7 +183,7 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
 }
 
 // Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
-// draw_with_margin() has it. Returns how many tiles lie around what was drawn.
+// draw_with_margin() has it. Returns how many tiles lie around it.
 HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& mesh,
                                     const RowTransform& transform, std::size_t group,
                                     const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
@@ -197,7 +197,7 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   std::uint32_t around = 0;
   if (known) around = draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
   if (!known || bands.count > 0 || rim.slant[i] > tiles.mesh->slant[group * kGroup + i])
-    around += draw_clipped_triangle(tiles, corners, way, {});
+    around = std::max(around, draw_clipped_triangle(tiles, corners, way, {}));
   return around;
 }
 

@@ -1,6 +1,8 @@
 // Large occluders, as the walls of a level are: drawn in parts, for as much as there is to spend.
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
@@ -191,9 +193,10 @@ TEST(Parts, AreTheSameForAnyNumberOfJobs) {
   }
 }
 
-std::vector<float> drawn(const OccluderMesh& mesh, const View& view, double* left) {
+std::vector<float> drawn(const OccluderMesh& mesh, const View& view, double* left,
+                         Coverage coverage = Coverage::centres) {
   OcclusionBuffer buffer;
-  EXPECT_TRUE(buffer.begin({view, {}}));
+  EXPECT_TRUE(buffer.begin({view, {}}, {.coverage = coverage}));
   occlusion::MeshBudget budget{
       .look = 1, .query = 12, .triangle = 15, .polygon = 100, .tile = 2, .left = left ? *left : 0};
   if (!left) {
@@ -233,6 +236,56 @@ TEST(Parts, OfAMeshCostNoMoreThanTheBudgetAndHideNoMoreThanTheWhole) {
     if (most == 1e9) {
       EXPECT_EQ(part, whole);
       EXPECT_GT(pixels, 5000u);
+    }
+  }
+}
+
+TEST(Parts, ArePaidForWhereTheNearPlaneCutsThem) {
+  // Two slopes under the eye that meet aslant across the image, each cut by the near plane. Where all of a
+  // pixel counts, one is drawn twice.
+  const std::array corners{Vec3{-60, -1, -60}, Vec3{60, -1, 60}, Vec3{60, -40, -60}, Vec3{-60, -9, 60}};
+  const std::array<std::uint32_t, 6> indices{0, 1, 2, 1, 0, 3};
+  const auto mesh = OccluderMesh::make(corners, indices);
+  ASSERT_TRUE(mesh);
+  const View view = *make_view({.forward = {0, -1, -0.2f}}, 128, 128);
+  constexpr double kNone = -std::numeric_limits<double>::infinity(), kTile = 2;
+  for (const Coverage coverage : {Coverage::centres, Coverage::area}) {
+    std::size_t before = 0;
+    for (double most = 0; most < 3000; most += 50) {
+      double left = most;
+      const std::vector<float> part = drawn(*mesh, view, &left, coverage);
+      std::array<std::uint8_t, 256> covered{};
+      for (std::size_t i = 0; i < part.size(); ++i)
+        if (double{part[i]} > kNone) covered[i / 128 / 8 * 16 + i % 128 / 8] = 1;
+      const auto tiles = static_cast<std::size_t>(std::count(covered.begin(), covered.end(), 1));
+      EXPECT_GE(left, 0) << most;
+      EXPECT_GE(most - left, kTile * static_cast<double>(tiles)) << most;
+      EXPECT_GE(tiles, before) << most;
+      before = tiles;
+    }
+    EXPECT_GT(before, 200u);
+  }
+}
+
+TEST(Parts, CostTheSameForAnyWidthOfVectors) {
+  const Occluder walls = mesh_of(walls_of(Level::kRooms));
+  const auto mesh = OccluderMesh::make(walls.positions, walls.indices, walls.sides);
+  ASSERT_TRUE(mesh);
+  for (const Coverage coverage : {Coverage::centres, Coverage::area}) {
+    for (const double most : {3000.0, 10000.0, 30000.0}) {
+      Random random(10);
+      for (int round = 0; round < 4; ++round) {
+        const View view = Level::from(random, 320, 180);
+        double left = most;
+        const std::vector<float> best = drawn(*mesh, view, &left, coverage);
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+          hwy::SetSupportedTargetsForTest(target);
+          double its = most;
+          EXPECT_EQ(drawn(*mesh, view, &its, coverage), best) << hwy::TargetName(target);
+          EXPECT_EQ(its, left) << hwy::TargetName(target);
+        }
+        hwy::SetSupportedTargetsForTest(0);
+      }
     }
   }
 }
