@@ -2,10 +2,10 @@
 # The second command, test.sh [--full]: installs what is missing, builds with every warning an error, and passes every
 # test: the suite in a release build (g++), what others feed under AddressSanitizer and UndefinedBehaviorSanitizer (clang),
 # faults planted there that some test must find, what uses threads under ThreadSanitizer, a short run of each fuzz target,
-# the structure, layout, clones (jscpd) and clang-tidy's findings, what the documents show, the installed packages as their
-# users see them, the npm package, and what the library answers on ARM and WebAssembly. --full adds what takes longer:
-# every test under the sanitizers, a thousand views of more scenes, the library's tests on the ports, and its build on a
-# bare Debian; and writes build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
+# the structure, layout, clones (jscpd), the kernels by clang and clang-tidy's findings, what the documents show, the
+# installed packages as their users see them, the npm package, and what the library answers on ARM and WebAssembly. --full
+# adds what takes longer: every test under the sanitizers, a thousand views of more scenes, the library's tests on the
+# ports, and its build on a bare Debian; and writes build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -40,7 +40,8 @@ cmake --build --preset release
 ctest --preset release --show-only | grep ' python[.]module$' # which once stood in no list
 ctest --preset release -j"$(nproc)"
 
-stage "clang-tidy"
+stage "clang and clang-tidy"
+scripts/check-clang.sh
 scripts/check-tidy.sh build/release
 
 stage "command line"

@@ -33,9 +33,10 @@ struct ProjectedBoxes {
   std::uint32_t drawn, cut;  // a bit a box: to be drawn as it stands; face by face
 };
 
-// Which faces surely look at the eye, by axis: the one of the lesser coordinate, or of the greater.
+// Which faces surely look at the eye, by axis: the one of the lesser coordinate, or of the greater. A bit a
+// box, and no masks: clang 19 never ends with what find_edges() makes of those of AVX-512.
 struct Facing {
-  std::array<hn::Mask<F>, 3> low, high;
+  std::array<std::uint32_t, 3> low, high;
 };
 
 // The faces and their planes; `grazing` is set where one looks at the eye, but not surely.
@@ -45,19 +46,21 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
   const PixelRays& rays = tiles.rays;
   const bool orthographic = tiles.projection.orthographic;
   const VF zero = hn::Zero(f);
-  Facing facing;
+  Facing facing{};
   grazing = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const VF low = hn::Load(f, out.sides[a].data()), high = hn::Load(f, out.sides[a + 3].data());
     const VF margin = hn::Add(hn::Set(f, kFaceDistance),
                               hn::Mul(hn::Set(f, kFacePart), hn::Max(hn::Abs(low), hn::Abs(high))));
     const VF forward = hn::Set(f, rays.forward[a]);
-    facing.low[a] = orthographic ? hn::Gt(forward, hn::Set(f, kFaceSine)) : hn::Gt(low, margin);
-    facing.high[a] = orthographic ? hn::Lt(forward, hn::Set(f, -kFaceSine)) : hn::Lt(high, hn::Neg(margin));
+    const auto low_looks = orthographic ? hn::Gt(forward, hn::Set(f, kFaceSine)) : hn::Gt(low, margin);
+    const auto high_looks =
+        orthographic ? hn::Lt(forward, hn::Set(f, -kFaceSine)) : hn::Lt(high, hn::Neg(margin));
+    facing.low[a] = bits_of(f, low_looks), facing.high[a] = bits_of(f, high_looks);
     const auto any = orthographic ? hn::Ne(forward, zero) : hn::Or(hn::Gt(low, zero), hn::Lt(high, zero));
-    const auto sure = hn::Or(facing.low[a], facing.high[a]);
+    const auto sure = hn::Or(low_looks, high_looks);
     grazing |= bits_of(f, hn::AndNot(sure, any));
-    const VF at = hn::IfThenElse(facing.low[a], low, high);
+    const VF at = hn::IfThenElse(low_looks, low, high);
     const VF scale = hn::Div(hn::Set(f, 1.0f), orthographic ? forward : at);
     const VF across = hn::Mul(hn::Set(f, rays.across[a]), scale),
              along = hn::Mul(hn::Set(f, rays.down[a]), scale);
@@ -68,7 +71,7 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
     hn::Store(hn::IfThenElseZero(sure, along), f, out.down[a].data());
     hn::Store(hn::IfThenElse(sure, moved, hn::Set(f, kInfinity)), f, out.at[a].data());
   }
-  if (SIGHTLINE_MUTANT(occluders_without_a_face)) facing.high[1] = hn::Lt(zero, zero);
+  if (SIGHTLINE_MUTANT(occluders_without_a_face)) facing.high[1] = 0;
   return facing;
 }
 
@@ -117,21 +120,20 @@ HWY_INLINE Bounded store_edges(const EdgePlace& place, hn::Mask<F> looks, hn::Ma
 HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF inset, ProjectedBoxes& out) {
   const F f;
   Bounded all;
-  const auto turns = hn::MaskFromVec(hn::BitCast(f, hn::Set(I(), turns_right ? -1 : 0)));
+  const std::uint32_t turns = turns_right ? ~0u : 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-    const auto looks_b = hn::Or(facing.low[b], facing.high[b]),
-               looks_c = hn::Or(facing.low[c], facing.high[c]), looks = hn::Or(looks_b, looks_c);
+    const std::uint32_t looks_b = facing.low[b] | facing.high[b], looks_c = facing.low[c] | facing.high[c];
     for (std::size_t e = 0; e < 2; ++e) {
       // The first edge lies at the face of b that looks and away from that of c, the second the other way
       // round; where only one of both looks, both edges lie at it.
-      const auto j = e == 0 ? facing.high[b] : hn::Xor(facing.high[b], looks_c);
-      const auto k = e == 0 ? hn::Or(hn::And(looks_b, facing.low[c]), hn::AndNot(looks_b, facing.high[c]))
-                            : hn::Or(facing.high[c], hn::Not(looks_c));
+      const std::uint32_t j = e == 0 ? facing.high[b] : facing.high[b] ^ looks_c,
+                          k = e == 0 ? (looks_b & facing.low[c]) | (~looks_b & facing.high[c])
+                                     : facing.high[c] | ~looks_c;
       // Counterclockwise round the face that looks, the outline runs up the axis at one side of it.
-      const auto by_b = e == 0 ? looks_b : hn::Not(looks_c);
-      const auto up = hn::Xor(hn::Xor(by_b, hn::Xor(j, k)), turns);
-      const Bounded its = store_edges({a, b, c, j, k}, looks, up, inset, 2 * a + e, out);
+      const std::uint32_t by_b = e == 0 ? looks_b : ~looks_c, up = by_b ^ j ^ k ^ turns;
+      const Bounded its = store_edges({a, b, c, mask_of(f, j), mask_of(f, k)}, mask_of(f, looks_b | looks_c),
+                                      mask_of(f, up), inset, 2 * a + e, out);
       all.right |= its.right, all.left |= its.left;
     }
   }
