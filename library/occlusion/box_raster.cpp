@@ -46,7 +46,7 @@ HWY_INLINE Facing find_faces(const DepthTiles& tiles, VF nearest, std::uint32_t&
   const PixelRays& rays = tiles.rays;
   const bool orthographic = tiles.projection.orthographic;
   const VF zero = hn::Zero(f);
-  Facing facing{};
+  Facing facing;
   grazing = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const VF low = hn::Load(f, out.sides[a].data()), high = hn::Load(f, out.sides[a + 3].data());
