@@ -149,7 +149,7 @@ inline void append_near_edge(const DepthTiles& tiles, const OccluderTopology& me
                              const RowTransform& transform, const OccluderTopology::AroundTriangles& those,
                              std::size_t place, std::uint32_t drawn, Rim& out) {
   std::uint32_t of = 0;
-  for (std::size_t i = 0; i < kGroup; ++i) of |= std::uint32_t{those.beside[i]} >> place & 1u << i;
+  for (std::size_t i = 0; i < kGroup; ++i) of |= (std::uint32_t{those.beside[i]} >> place & 1u) << i;
   if ((of & drawn) == 0) return;
   const auto t = static_cast<std::size_t>(those.triangle[place]);
   const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, t / kGroup, t % kGroup);

@@ -261,6 +261,31 @@ TEST(Coverage, OfMeshesThatTheNearPlaneCutsIsSafeAtAnyPlaceAndClosed) {
   }
 }
 
+// From outside, so near that the plane cuts a hole into the shape: around it some triangles are cut, and
+// others that only touch them at a corner are not.
+TEST(Coverage, OfMeshesThatTheNearPlaneOpensIsSafeAtAnyPlace) {
+  const scene::Shape shapes[] = {scene::sphere(2), test::fine_box({{-1, -1, -1}, {1, 1, 1}}, 3)};
+  Random random(37);
+  Held held;
+  for (int round = 0; round < 24; ++round) {
+    const scene::Shape& shape = shapes[round % 2];
+    const Vec3 away = random.direction();
+    Camera camera;
+    camera.eye = {1.2f * away.x, 1.2f * away.y, 1.2f * away.z};
+    camera.forward = {-away.x, -away.y, -away.z};
+    camera.near_plane = random.between(0.3f, 0.6f);
+    if (round % 4 >= 2) camera.orthographic_height = 2.5f;
+    const View view = *make_view(camera, 48, 40);
+    const ExactRays rays(view);
+    OcclusionBuffer buffer;
+    ASSERT_TRUE(buffer.begin({view, {}}, round % 3 == 0 ? kHalf : kArea));
+    ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(shape.positions, shape.indices, Sides::both)));
+    hold_pixels(
+        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape); }, held);
+  }
+  EXPECT_GT(static_cast<double>(held.drawn), 0.7 * static_cast<double>(held.whole));
+}
+
 // Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
 scene::Shape loose_triangles(Random& random, std::uint32_t corners, std::uint32_t triangles) {
   scene::Shape out;
