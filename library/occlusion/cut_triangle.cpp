@@ -18,24 +18,26 @@ Homogeneous on_image(const EyeProjection& e, const glm::dvec3& q) {
   return {dot(e.x, q), dot(e.y, q), dot(e.w, q)};
 }
 
-bool before_near(const DepthTiles& tiles, const glm::dvec3& q) {
-  return dot(tiles.rays.near_plane, q) >= 0;
-}
-
-// Whether each corner before the near plane lies that far from the line of the opposite edge, along x or y;
-// an edge that is not before it at all is never reached.
+// Whether each corner of what lies before the near plane is that far from the lines of the edges that it does
+// not end, along x or y; an edge that is not before the plane at all is never reached.
 bool wide_enough(const DepthTiles& tiles, const ExactCorners& corners, double inset) {
   std::array<Homogeneous, 3> at;
-  std::array<bool, 3> before;
-  for (std::size_t k = 0; k < 3; ++k)
-    at[k] = on_image(tiles.projection, corners[k]), before[k] = before_near(tiles, corners[k]);
+  std::array<double, 3> before;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = on_image(tiles.projection, corners[k]);
+    before[k] = dot(tiles.rays.near_plane, corners[k]);
+  }
+  const auto far_from = [&](const Homogeneous& corner, std::size_t p, std::size_t q) {
+    if (!(before[p] >= 0) && !(before[q] >= 0)) return true;
+    const glm::dvec3 line = glm::cross(at[p], at[q]);
+    return std::fabs(glm::dot(line, corner)) >= inset * corner.z * (std::fabs(line.x) + std::fabs(line.y));
+  };
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t p = (k + 1) % 3, q = (k + 2) % 3;
-    if (!before[k] || (!before[p] && !before[q])) continue;
-    const glm::dvec3 line = glm::cross(at[p], at[q]);
-    const double off = std::fabs(glm::dot(line, at[k])),
-                 least = inset * at[k].z * (std::fabs(line.x) + std::fabs(line.y));
-    if (!(off >= least)) return false;
+    if (before[k] >= 0 && !far_from(at[k], p, q)) return false;
+    if ((before[p] >= 0) == (before[q] >= 0)) continue;
+    const Homogeneous cut = at[p] + (at[q] - at[p]) * (before[p] / (before[p] - before[q]));
+    if (!far_from(cut, k, p) || !far_from(cut, k, q)) return false;
   }
   return true;
 }

@@ -286,6 +286,26 @@ TEST(Coverage, OfMeshesThatTheNearPlaneOpensIsSafeAtAnyPlace) {
   EXPECT_GT(static_cast<double>(held.drawn), 0.7 * static_cast<double>(held.whole));
 }
 
+// Three triangles about a corner, seen from above; metres are pixels. The near plane cuts off the far ends of
+// all three, and leaves the middle one a tenth of a pixel wide: a pixel of the first reaches across it, and
+// beyond the edge at which the mesh ends.
+TEST(Coverage, OfANarrowBladeThatTheNearPlaneCutsIsSafeAtAnyPlace) {
+  scene::Shape shape;
+  shape.positions = {{26, 16, 0}, {27, 9, 51}, {24, 10.6f, 51}, {23.9f, 10.7f, 51}, {24.7f, 16, 40}};
+  shape.indices = {0, 2, 1, 0, 3, 2, 0, 4, 3};
+  const Camera camera{.eye = {16, 16, 100}, .orthographic_height = 32, .near_plane = 50, .far_plane = 200};
+  const View view = *make_view(camera, 32, 32);
+  const ExactRays rays(view);
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin({view, {}}, kArea));
+  ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(shape.positions, shape.indices, Sides::both)));
+  Random random(38);
+  Held held;
+  hold_pixels(
+      random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape); }, held);
+  EXPECT_GE(held.drawn, 2u);
+}
+
 // Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
 scene::Shape loose_triangles(Random& random, std::uint32_t corners, std::uint32_t triangles) {
   scene::Shape out;
