@@ -88,11 +88,13 @@ HWY_NOINLINE inline void append_band(const DepthTiles& tiles, const std::optiona
                hn::FirstN(f, 1), &of, out);
 }
 
-// Bands of what the image shows of the edges.
+// Bands of what the image shows of the edges: of those before the near plane first, whatever a vector's
+// width, for there may be too many.
 HWY_NOINLINE void flush_ends(const DepthTiles& tiles, const RowTransform& transform, RimEnds& ends,
                              Rim& out) {
   const F f;
   const EyeProjection& e = tiles.projection;
+  std::uint32_t cut = 0;
   for (std::size_t first = 0; first < ends.count; first += hn::Lanes(f)) {
     const auto those = hn::FirstN(f, ends.count - first);
     const auto load = [&](const std::array<std::array<float, kGroup>, 3>& p) HWY_ATTR {
@@ -106,13 +108,14 @@ HWY_NOINLINE void flush_ends(const DepthTiles& tiles, const RowTransform& transf
     append_bands(tiles, hn::Mul(dot_row(e.x, a), a_over_w), hn::Mul(dot_row(e.y, a), a_over_w),
                  hn::Mul(dot_row(e.x, b), b_over_w), hn::Mul(dot_row(e.y, b), b_over_w),
                  hn::And(whole, those), &ends.of[first], out);
-    for (std::uint32_t cut = bits_of(f, hn::AndNot(whole, those)); cut != 0; cut &= cut - 1) {
-      const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(cut));
-      const auto end = [&](const std::array<std::array<float, kGroup>, 3>& p) {
-        return about_eye(e, transform, {p[0][i], p[1][i], p[2][i]});
-      };
-      append_band(tiles, in_view(tiles, end(ends.a), end(ends.b)), ends.of[i], out);
-    }
+    cut |= bits_of(f, hn::AndNot(whole, those)) << first;
+  }
+  for (; cut != 0; cut &= cut - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(cut));
+    const auto end = [&](const std::array<std::array<float, kGroup>, 3>& p) {
+      return about_eye(e, transform, {p[0][i], p[1][i], p[2][i]});
+    };
+    append_band(tiles, in_view(tiles, end(ends.a), end(ends.b)), ends.of[i], out);
   }
   ends.count = 0;
 }
