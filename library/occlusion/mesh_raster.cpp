@@ -201,6 +201,20 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   return around;
 }
 
+// How far rounding may carry a group's corners when they are moved.
+HWY_INLINE float moved_by_rounding(const OccluderTopology& mesh, const RowTransform& transform,
+                                   std::size_t group) {
+  if (transform.in_place) return 0;
+  const float* box = &mesh.box[group / 16 * 96 + group % 16];  // middle, half
+  const auto reach = [&](std::size_t axis) { return std::fabs(box[16 * axis]) + box[16 * (axis + 3)]; };
+  float largest = 0;
+  for (const Vec4& r : transform.rows) {
+    largest = std::max(largest, std::fabs(r.x) * reach(0) + std::fabs(r.y) * reach(1) +
+                                    std::fabs(r.z) * reach(2) + std::fabs(r.w));
+  }
+  return kMoveRounding * largest;
+}
+
 // What a budget does not pay for is left out, and hides nothing; seams beside it stay as true as they are:
 // the mesh goes on there.
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
@@ -214,7 +228,8 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
   const OccluderTopology::Group& its = mesh.groups[group];
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
                         HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, budget, list); };
-  const float apart = its.apart * tiles.mesh->stretch;
+  const float apart =
+      its.follows == 0 ? 0 : its.apart * tiles.mesh->stretch + moved_by_rounding(mesh, transform, group);
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t leads = its.follows >> 1 & ~its.follows; leads != 0; leads &= leads - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(leads));

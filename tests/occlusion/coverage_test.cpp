@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "library/geometry/linear.hpp"
 #include "support/exact_rays.hpp"
 #include "support/occluder_meshes.hpp"
 #include "support/small_scenes.hpp"
@@ -322,6 +323,37 @@ TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
     const scene::Shape shape = loose_triangles(random, 14, 30);
     share_drawn(shape, round % 2 == 0 ? Sides::both : Sides::front, TJunctions::closed, kArea);
   }
+}
+
+// A small box far from the origin, close before the eye: moving the corners of its walls there bends them by
+// more than they were ever apart.
+TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
+  const scene::Shape shape = test::fine_box({{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}}, 2);
+  const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
+  Random random(40);
+  Held held;
+  for (int round = 0; round < 80; ++round) {
+    const float turn = random.between(0, 6.28f), c = std::cos(turn), s = std::sin(turn);
+    const Vec3 at = random.inside({{-600, -600, -600}, {600, 600, 600}});
+    const Mat4 to{
+        {c, 0, -s, 0, 0.6f * s, 0.8f, 0.6f * c, 0, 0.8f * s, -0.6f, 0.8f * c, 0, at.x, at.y, at.z, 1}};
+    const auto moved = [&](const Vec3& p) {
+      return geometry::transform_point(geometry::row_transform(to), p);
+    };
+    scene::Shape there = shape;
+    for (Vec3& p : there.positions) p = moved(p);
+    Camera camera{.near_plane = 0.0001f};
+    camera.eye = moved(random.inside({{-0.04f, -0.04f, 0.053f}, {0.04f, 0.04f, 0.08f}}));
+    camera.forward = {at.x - camera.eye.x, at.y - camera.eye.y, at.z - camera.eye.z};
+    const View view = *make_view(camera, 32, 24);
+    const ExactRays rays(view);
+    OcclusionBuffer buffer;
+    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.draw_mesh(mesh, to));
+    hold_pixels(
+        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, there); }, held);
+  }
+  EXPECT_GT(static_cast<double>(held.drawn), 0.8 * static_cast<double>(held.whole));
 }
 
 // More ends around triangles than there is room for, some of them behind the near plane: which are left out
