@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # check-automatic.sh BUILD [--full]: the method `world`, occlusion in one call, loses nothing in generated worlds, an open field
-# and a level, judged by rays and by a device's item buffer, at pixel centres and, with Coverage::area, anywhere in a pixel,
-# nor along the paths near, far and rising, and walks through levels. A few views each; with --full 1,000 of larger worlds and
-# ten levels.
+# and a level: judged by rays at pixel centres, and with Coverage::area by rays anywhere in a pixel and by a device's item
+# buffer, which shows single pixels of what lies behind T-junctions; nor along the paths near, far and rising, and walks
+# through levels. A few views each; with --full 1,000 of larger worlds and ten levels.
 . "$(dirname "$0")/scene-check.sh" automatic "$@"
 
 scenes=('world:regular?columns=40&rows=40&detail=0' 'world:irregular?spheres=2000&detail=0'
@@ -22,8 +22,8 @@ fi
 
 area='world?coverage=area,world?coverage=area&resolution=half'
 printf '%s\n' "${scenes[@]}" "${levels[@]}" |
-  scripts/verify-each.sh "$build" "$folder" "--methods world --views $views" "--methods world --views $views --device any" \
-    "--methods $area --views $views --samples 8"
+  scripts/verify-each.sh "$build" "$folder" "--methods world --views $views" \
+    "--methods world?coverage=area --views $views --device any" "--methods $area --views $views --samples 8"
 printf '%s\n' "${scenes[@]}" | scripts/verify-each.sh "$build" "$folder" "--methods world --views $views --moving 0.1"
 
 # One camera, frame after frame: what was seen in one is drawn in the next.
