@@ -8,6 +8,7 @@
 #include "device/fixtures.hpp"
 #include "workbench/camera/random_views.hpp"
 #include "workbench/oracle/embree_judge.hpp"
+#include "workbench/oracle/oracle.hpp"
 
 namespace sightline {
 namespace {
@@ -98,6 +99,29 @@ TEST_F(RendererTest, MovedObjectsAreDrawnWhereTheyStand) {
   renderer.update(moved);
   device::Renderer fresh(device(), scene);
   EXPECT_TRUE(draw_all(renderer, view) == draw_all(fresh, view));
+}
+
+// With a near plane at 1 cm, depth a kilometre away tells apart what lies 6 m from each other, and no less.
+TEST_F(ItemBufferTest, CountsNoLossThatDepthOfTooFewDigitsShows) {
+  Scene scene;
+  const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::uint32_t mesh =
+      scene.add_mesh(corners, std::vector<Vec3>(3, Vec3{0, 0, 1}), std::vector<std::uint32_t>{0, 1, 2});
+  const auto add = [&](float size, float away) {
+    scene.add_object(mesh, Affine{{Vec4{size, 0, 0, 0}, Vec4{0, size, 0, 0}, Vec4{0, 0, 1, -away}}});
+  };
+  add(200, 1000), add(50, 1000.5f);
+  device::Renderer renderer(device(), scene);
+  const auto oracle = oracle::make_raster_oracle(renderer);
+  const View view = view_of({.near_plane = 0.01f, .far_plane = 5000}, 64, 64);
+  EXPECT_TRUE(oracle->look(view).sees(1)) << "depth shows what lies behind";
+  Frame frame;
+  frame.visible = {0};
+  EXPECT_TRUE(oracle->judge(view, {frame}).loss.lost.empty());
+  frame.visible = {1};
+  const oracle::Loss loss = oracle->judge(view, {frame}).loss;
+  EXPECT_EQ(loss.lost, std::vector<ObjectId>{0});
+  EXPECT_GT(loss.lost_pixels, 100u);
 }
 
 // With a near plane at 1 cm, depth in single precision ends some 2 km before or after a far plane at 18 km.

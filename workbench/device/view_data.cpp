@@ -15,6 +15,18 @@ bool has_reversed_depth(const View& view) noexcept {
   return slope > 0;
 }
 
+std::optional<View> with_denser_depth(const View& view) noexcept {
+  const auto& m = view.eye_to_clip.m;
+  const bool by_distance = m[2] == 0 && m[6] == 0 && m[3] == 0 && m[7] == 0 && m[10] != 0;
+  if (has_reversed_depth(view) || !by_distance || m[11] == 0) return {};
+  // w where z is 0: at the near plane.
+  const double near = double{m[15]} - double{m[11]} * m[14] / m[10];
+  if (!(near > 0)) return {};
+  View out = view;
+  out.eye_to_clip.m[10] = 0, out.eye_to_clip.m[14] = static_cast<float>(near);
+  return out;
+}
+
 namespace {
 
 // How far one plane may lie before another within `extent`: of a linear function the farthest corner's.

@@ -1,5 +1,6 @@
 #include "workbench/oracle/loss.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <sightline/workbench/error.hpp>
@@ -25,6 +26,15 @@ Loss compare_to_truth(const ItemBuffer& truth, std::span<const ObjectId> visible
       loss.excess.push_back(object);
     }
   }
+  return loss;
+}
+
+Loss confirmed_loss(const ItemBuffer& truth, const ItemBuffer& again, std::span<const ObjectId> visible) {
+  Loss loss = compare_to_truth(truth, visible);
+  loss.lost_pixels = 0;
+  std::erase_if(loss.lost, [&](ObjectId object) { return !again.sees(object); });
+  for (const ObjectId object : loss.lost)
+    loss.lost_pixels += std::min(truth.pixels[object], again.pixels[object]);
   return loss;
 }
 

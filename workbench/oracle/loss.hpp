@@ -22,6 +22,10 @@ struct Loss {
 /// that is not in the scene, which no method may.
 Loss compare_to_truth(const ItemBuffer& truth, std::span<const ObjectId> visible);
 
+/// The same, counting as lost only objects that a second look at the view sees, too, and of their pixels no
+/// more than it does.
+Loss confirmed_loss(const ItemBuffer& truth, const ItemBuffer& again, std::span<const ObjectId> visible);
+
 /// The same, counting as lost only pixels that double precision confirms (EmbreeJudge::confirmed_pixels).
 Loss confirmed_loss(const EmbreeJudge& judge, const View& view, const ItemBuffer& truth,
                     std::span<const ObjectId> visible);

@@ -63,7 +63,8 @@ public:
 /// judged. The scene outlives it.
 std::unique_ptr<Oracle> make_ray_oracle(const Scene& scene, std::uint32_t samples = 0);
 
-/// The rasteriser's item buffer, and pictures to compare with. The renderer outlives it.
+/// The rasteriser's item buffer, and pictures to compare with; losses confirmed with a depth that is dense
+/// wherever the view's own is not. The renderer outlives it.
 std::unique_ptr<Oracle> make_raster_oracle(device::Renderer& renderer);
 
 }  // namespace sightline::oracle

@@ -1,7 +1,9 @@
 // The oracle of the rasteriser: what a device draws when it is told to draw everything.
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "workbench/device/view_data.hpp"
 #include "workbench/oracle/all_triangles.hpp"
 #include "workbench/oracle/oracle.hpp"
 #include "workbench/oracle/raster_item_buffer.hpp"
@@ -48,11 +50,10 @@ public:
   Judgement judge(const View& view, const Answer& answer) override {
     Judgement out;
     if (answer.geometry) {
-      const ItemBuffer truth = triangles_of(*answer.geometry).look(view);
-      out = {compare_to_truth(truth, answer.frame.visible), truth.visible_count()};
+      AllTriangles& all = triangles_of(*answer.geometry);
+      out = hold(all.look(view), view, answer, [&](const View& again) { return all.look(again); });
     } else {
-      const ItemBuffer& truth = look(view);
-      out = {compare_to_truth(truth, answer.frame.visible), truth.visible_count()};
+      out = hold(look(view), view, answer, [&](const View& again) { return objects_.render(again); });
     }
     if (answer.picture)
       out.different_pixels =
@@ -68,6 +69,17 @@ public:
   }
 
 private:
+  // What is lost is looked at again with a depth that tells surfaces apart: where the view's own rounds what
+  // stands behind a wall and the wall to one, the rasteriser may show either.
+  template <class Look>
+  static Judgement hold(const ItemBuffer& truth, const View& view, const Answer& answer,
+                        const Look& look_at) {
+    Loss loss = compare_to_truth(truth, answer.frame.visible);
+    if (const auto denser = loss.lost.empty() ? std::nullopt : device::with_denser_depth(view))
+      loss = confirmed_loss(truth, look_at(*denser), answer.frame.visible);
+    return {std::move(loss), truth.visible_count()};
+  }
+
   AllTriangles& triangles_of(const TriangleGeometry& geometry) {
     return triangles_.try_emplace(&geometry, renderer_, geometry).first->second;
   }
