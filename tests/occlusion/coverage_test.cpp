@@ -20,6 +20,7 @@ namespace {
 
 using scene::Random;
 using test::ExactRays;
+using test::places_in;
 
 constexpr OcclusionOptions kArea{Coverage::area}, kHalf{Coverage::area, 2}, kQuarter{Coverage::area, 4},
     kHalfCentres{Coverage::centres, 2};
@@ -28,18 +29,6 @@ std::vector<float> pixels_of(const OcclusionBuffer& buffer) {
   const View view = buffer.view().view;
   std::vector<float> out(std::size_t{view.width} * view.height);
   EXPECT_TRUE(buffer.read_nearness(out));
-  return out;
-}
-
-// Places of pixel i that the options speak of: its centre; some within it, those at its corners among them.
-std::vector<glm::dvec2> places_in(Random& random, const View& view, std::size_t i, Coverage coverage) {
-  const glm::dvec2 at(static_cast<double>(i % view.width), static_cast<double>(i / view.width));
-  if (coverage == Coverage::centres) return {at + 0.5};
-  std::vector<glm::dvec2> out;
-  for (const double x : {1e-4, 1 - 1e-4}) {
-    for (const double y : {1e-4, 1 - 1e-4}) out.push_back(at + glm::dvec2(x, y));
-  }
-  for (int k = 0; k < 4; ++k) out.push_back(at + glm::dvec2{random.between(0, 1), random.between(0, 1)});
   return out;
 }
 

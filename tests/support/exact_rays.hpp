@@ -8,9 +8,11 @@
 #include <span>
 #include <vector>
 
+#include <sightline/occlusion.hpp>
 #include <sightline/view.hpp>
 
 #include "library/geometry/linear.hpp"
+#include "workbench/scene/random.hpp"
 
 namespace sightline::test {
 
@@ -114,5 +116,18 @@ private:
   glm::dvec3 eye_, forward_;
   glm::dvec4 near_;
 };
+
+/// Places of pixel i that are answered for: its centre; some within it, those at its corners among them.
+inline std::vector<glm::dvec2> places_in(scene::Random& random, const View& view, std::size_t i,
+                                         Coverage coverage) {
+  const glm::dvec2 at(static_cast<double>(i % view.width), static_cast<double>(i / view.width));
+  if (coverage == Coverage::centres) return {at + 0.5};
+  std::vector<glm::dvec2> out;
+  for (const double x : {1e-4, 1 - 1e-4}) {
+    for (const double y : {1e-4, 1 - 1e-4}) out.push_back(at + glm::dvec2(x, y));
+  }
+  for (int k = 0; k < 4; ++k) out.push_back(at + glm::dvec2{random.between(0, 1), random.between(0, 1)});
+  return out;
+}
 
 }  // namespace sightline::test
