@@ -297,19 +297,10 @@ TEST(Coverage, OfANarrowBladeThatTheNearPlaneCutsIsSafeAtAnyPlace) {
   EXPECT_GE(held.drawn, 2u);
 }
 
-// Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
-scene::Shape loose_triangles(Random& random, std::uint32_t corners, std::uint32_t triangles) {
-  scene::Shape out;
-  for (std::uint32_t i = 0; i < corners; ++i)
-    out.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
-  for (std::uint32_t i = 0; i < 3 * triangles; ++i) out.indices.push_back(random.below(corners));
-  return out;
-}
-
 TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   Random random(34);
   for (int round = 0; round < 25; ++round) {
-    const scene::Shape shape = loose_triangles(random, 14, 30);
+    const scene::Shape shape = test::loose_triangles(random, 14, 30);
     share_drawn(shape, round % 2 == 0 ? Sides::both : Sides::front, TJunctions::closed, kArea);
   }
 }
@@ -350,7 +341,7 @@ TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
 TEST(Coverage, OfTrianglesWithTooManyEndsIsAlikeToTheBit) {
   for (const std::uint32_t seed : {485, 904, 926, 953, 1939, 3734}) {
     Random random(seed);
-    const scene::Shape shape = loose_triangles(random, 20, 48);
+    const scene::Shape shape = test::loose_triangles(random, 20, 48);
     const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
     Camera camera{.eye = random.inside({{-1, -1, -1}, {1, 1, 1}}), .near_plane = 0.02f};
     camera.forward = random.direction();
@@ -376,7 +367,7 @@ TEST(Coverage, OfATriangleAmongOthersIsNoLessThanAlone) {
   Random random(36);
   std::size_t held = 0;
   for (int round = 0; round < 20; ++round) {
-    const scene::Shape shape = loose_triangles(random, 12, 16);
+    const scene::Shape shape = test::loose_triangles(random, 12, 16);
     const View view = looking_at(random, shape);
     const auto draw = [&](std::span<const std::uint32_t> indices) {
       OcclusionBuffer buffer;

@@ -98,11 +98,8 @@ Shape ground(Random& random) {
 }
 
 Shape loose(Random& random) {
-  Shape out;
-  const std::uint32_t corners = 4 + random.below(24);
-  for (std::uint32_t i = 0; i < corners; ++i) out.positions.push_back(random.inside(kUnit));
-  for (std::uint32_t i = 3 * (2 + random.below(40)); i > 0; --i) out.indices.push_back(random.below(corners));
-  return out;
+  const std::uint32_t corners = 4 + random.below(24), triangles = 2 + random.below(40);
+  return test::loose_triangles(random, corners, triangles);
 }
 
 // Boxes that overlap, touch and share sides.
@@ -148,15 +145,13 @@ Mat4 any_placement(Random& random) {
                                       glm::dvec4(to.x, to.y, to.z, 1)));
 }
 
-struct Corners {
-  std::array<Vec3, 3> at;
-};
+using Corners = std::array<Vec3, 3>;
 
 struct Occluders {
   Shape shape;
   Mat4 placement;
-  Sides sides;
-  TJunctions junctions;
+  Sides sides = Sides::both;
+  TJunctions junctions = TJunctions::open;
   std::vector<Corners> triangles;  // where they stand
   Vec3 middle{};
   float size = 0;
@@ -165,25 +160,20 @@ struct Occluders {
 };
 
 Occluders any_occluders(Random& random) {
-  Occluders out{any_shape(random),
-                any_placement(random),
-                random.below(2) == 0 ? Sides::both : Sides::front,
-                {},
-                {},
-                {},
-                0,
-                {},
-                {}};
+  Occluders out;
+  out.shape = any_shape(random);
+  out.placement = any_placement(random);
+  out.sides = random.below(2) == 0 ? Sides::both : Sides::front;
   // Rounding opens junctions of what is moved.
   const bool in_place = out.placement == Mat4{};
-  out.junctions = in_place && random.below(2) == 0 ? TJunctions::closed : TJunctions::open;
+  if (in_place && random.below(2) == 0) out.junctions = TJunctions::closed;
   const geometry::RowTransform rows = geometry::row_transform(out.placement);
   Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
   for (std::size_t i = 0; i < out.shape.indices.size(); i += 3) {
     Corners corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = out.shape.positions[out.shape.indices[i + k]];
-      const Vec3 q = corners.at[k] = in_place ? p : geometry::transform_point(rows, p);
+      const Vec3 q = corners[k] = in_place ? p : geometry::transform_point(rows, p);
       low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
       high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
     }
@@ -239,15 +229,15 @@ public:
         glm::determinant(glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10])) < 0;
     const glm::dvec3 eye = geometry::eye_of(view), forward = geometry::to_double(view_direction(view));
     for (const Corners& t : of.triangles) {
-      const glm::dvec3 a = geometry::to_double(t.at[0]),
-                       n = glm::cross(geometry::to_double(t.at[1]) - a, geometry::to_double(t.at[2]) - a);
+      const glm::dvec3 a = geometry::to_double(t[0]),
+                       n = glm::cross(geometry::to_double(t[1]) - a, geometry::to_double(t[2]) - a);
       const double side = is_orthographic(view) ? -glm::dot(n, forward) : glm::dot(n, eye - a);
       if (of.sides == Sides::both || (mirrored ? side <= 0 : side >= 0)) shown_.push_back(t);
     }
   }
   [[nodiscard]] double nearest(const glm::dvec2& p) const {
     double best = ExactRays::kMiss;
-    for (const Corners& t : shown_) best = std::max(best, rays_.hit(p.x, p.y, t.at));
+    for (const Corners& t : shown_) best = std::max(best, rays_.hit(p.x, p.y, t));
     for (const Box& box : of_.boxes) best = std::max(best, rays_.hit(p.x, p.y, box));
     for (const Sphere& sphere : of_.spheres) best = std::max(best, rays_.hit(p.x, p.y, sphere));
     return best;
@@ -298,8 +288,7 @@ public:
     const float a = random_.unit(), b = random_.between(0, 1 - a),
                 away = std::pow(10.0f, random_.between(-4, 0));
     const auto mix = [&](float p, float q, float r) { return p + a * (q - p) + b * (r - p); };
-    const Vec3 on{mix(t.at[0].x, t.at[1].x, t.at[2].x), mix(t.at[0].y, t.at[1].y, t.at[2].y),
-                  mix(t.at[0].z, t.at[1].z, t.at[2].z)};
+    const Vec3 on{mix(t[0].x, t[1].x, t[2].x), mix(t[0].y, t[1].y, t[2].y), mix(t[0].z, t[1].z, t[2].z)};
     const Vec3 eye = eye_position(view_);
     const Vec3 at = is_orthographic(view_) ? along(on, of_.size * away, view_direction(view_))
                                            : along(on, away, {on.x - eye.x, on.y - eye.y, on.z - eye.z});

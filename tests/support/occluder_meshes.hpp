@@ -116,6 +116,15 @@ inline scene::Shape block_of_ground(std::uint32_t steps) {
   return moved(std::move(box), [](const Vec3& p) { return Vec3{p.x, p.y * hills(p.x, p.z), p.z}; });
 }
 
+/// Loose triangles of all sizes and shapes that share corners: rims of every kind, folds, three at an edge.
+inline scene::Shape loose_triangles(scene::Random& random, std::uint32_t corners, std::uint32_t triangles) {
+  scene::Shape out;
+  for (std::uint32_t i = 0; i < corners; ++i)
+    out.positions.push_back(random.inside({{-1, -1, -1}, {1, 1, 1}}));
+  for (std::uint32_t i = 0; i < 3 * triangles; ++i) out.indices.push_back(random.below(corners));
+  return out;
+}
+
 inline std::vector<NamedMesh> closed_convex_meshes() {
   std::vector<NamedMesh> out;
   const auto add = [&](const char* name, scene::Shape shape) {
