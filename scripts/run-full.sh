@@ -26,9 +26,11 @@ line() {
 
 sanitizers() { cmake --build --preset asan && ctest --preset asan -j"$(nproc)"; }
 line sanitizers sanitizers
-random_scenes() {
-  SIGHTLINE_RANDOM_SCENES=20000 build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomScenes.*'
-}
+random_scenes() (
+  export SIGHTLINE_RANDOM_SCENES=20000
+  build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomScenes.*' &&
+    build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomWorlds.*'
+)
 line random-scenes random_scenes
 line surfaces scripts/check-surfaces.sh build/release --full
 line occluders scripts/check-occluders.sh build/release

@@ -8,144 +8,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "support/exact_rays.hpp"
-#include "support/occluder_meshes.hpp"
+#include "support/random_shapes.hpp"
 
 namespace sightline {
 namespace {
 
+using namespace test;
 using scene::Random;
 using scene::Shape;
-using test::ExactRays;
-
-Vec3 along(const Vec3& from, float by, const Vec3& way) {
-  return {from.x + by * way.x, from.y + by * way.y, from.z + by * way.z};
-}
-
-constexpr Box kUnit{{-1, -1, -1}, {1, 1, 1}};
-
-Vec3 around(Random& random, const Vec3& middle, float farthest) {
-  const Vec3 way = random.direction();
-  return along(middle, random.between(0, farthest), way);
-}
-
-// A side of a box, cut in two again and again: corners lie on others' edges.
-void cut_side(Random& random, const Vec3& corner, const Vec3& u, const Vec3& v, int cuts, Shape& out) {
-  if (cuts == 0 || random.below(6) == 0) {
-    if (random.below(30) == 0) return;  // a hole
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    const Vec3 beside = along(corner, 1, u);
-    out.positions.insert(out.positions.end(), {corner, beside, along(beside, 1, v), along(corner, 1, v)});
-    for (const std::uint32_t k : {0, 1, 2, 0, 2, 3}) out.indices.push_back(first + k);
-    return;
-  }
-  const float share = random.below(5) == 0 ? random.between(0.001f, 0.02f) : random.between(0.1f, 0.9f);
-  const auto part = [](const Vec3& of, float by) { return Vec3{by * of.x, by * of.y, by * of.z}; };
-  const bool across = random.below(2) == 0;
-  const Vec3& way = across ? u : v;
-  const Vec3 less = part(way, share), rest = part(way, 1 - share);
-  cut_side(random, corner, across ? less : u, across ? v : less, cuts - 1, out);
-  cut_side(random, along(corner, share, way), across ? rest : u, across ? v : rest, cuts - 1, out);
-}
-
-Shape cut_walls(Random& random) {
-  Shape out;
-  const Vec3 x{random.between(0.5f, 3), 0, 0}, y{0, random.between(0.5f, 3), 0},
-      z{0, 0, random.between(0.5f, 3)};
-  const Vec3 low{-x.x / 2, -y.y / 2, -z.z / 2}, high{x.x / 2, y.y / 2, z.z / 2};
-  const auto back = [](const Vec3& v) { return Vec3{-v.x, -v.y, -v.z}; };
-  const int cuts = 1 + static_cast<int>(random.below(4));
-  cut_side(random, low, y, x, cuts, out), cut_side(random, low, z, y, cuts, out);
-  cut_side(random, low, x, z, cuts, out), cut_side(random, high, back(x), back(y), cuts, out);
-  cut_side(random, high, back(y), back(z), cuts, out), cut_side(random, high, back(z), back(x), cuts, out);
-  return out;
-}
-
-// Triangles about a corner each, next to flat, some of them blades.
-Shape fans(Random& random) {
-  Shape out;
-  for (std::uint32_t fan = 1 + random.below(4); fan > 0; --fan) {
-    const Vec3 centre = random.inside(kUnit);
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    out.positions.push_back(centre);
-    const float uneven = random.below(2) == 0 ? 0 : std::pow(10.0f, random.between(-7, -1));
-    Vec3 u = random.direction(), v = random.direction();
-    for (float turn = 0; turn < 5; turn += random.below(2) == 0 ? 0.04f : random.between(0.1f, 0.9f)) {
-      const Vec3 flat = along(along(centre, std::cos(turn), u), std::sin(turn), v);
-      out.positions.push_back(along(flat, uneven, random.direction()));
-    }
-    for (std::uint32_t i = first + 1; i + 1 < out.positions.size(); ++i)
-      out.indices.insert(out.indices.end(), {first, i, i + 1});
-  }
-  return out;
-}
-
-// Ground with steps, holes and triangles that are turned over.
-Shape ground(Random& random) {
-  const std::uint32_t steps = 2 + random.below(5);
-  const float rise = random.below(2) == 0 ? 0.2f : random.between(0, 3);
-  Shape out = test::surface(steps, steps, false, false, [&](float u, float v) {
-    return Vec3{2 * u - 1, random.between(-rise, rise), 1 - 2 * v};
-  });
-  for (std::size_t i = 0; i < out.indices.size(); i += 3) {
-    const std::uint32_t which = random.below(14);
-    if (which == 0) std::swap(out.indices[i + 1], out.indices[i + 2]);
-    if (which == 1) out.indices[i] = out.indices[i + 1];
-  }
-  return out;
-}
-
-Shape loose(Random& random) {
-  const std::uint32_t corners = 4 + random.below(24), triangles = 2 + random.below(40);
-  return test::loose_triangles(random, corners, triangles);
-}
-
-// Boxes that overlap, touch and share sides.
-Shape boxes(Random& random) {
-  Shape out;
-  const auto on_grid = [](float x) { return std::round(4 * x) / 4; };
-  for (std::uint32_t box = 1 + random.below(4); box > 0; --box) {
-    const Vec3 at = random.inside(kUnit), size = random.inside({{0.3f, 0.3f, 0.3f}, {1, 1, 1}});
-    const Vec3 low{on_grid(at.x), on_grid(at.y), on_grid(at.z)};
-    out.append(
-        test::fine_box({low, {low.x + on_grid(size.x), low.y + on_grid(size.y), low.z + on_grid(size.z)}},
-                       1 + random.below(2)));
-  }
-  return out;
-}
-
-Shape any_shape(Random& random) {
-  switch (random.below(6)) {
-    case 0:
-      return cut_walls(random);
-    case 1:
-      return fans(random);
-    case 2:
-      return ground(random);
-    case 3:
-      return loose(random);
-    case 4:
-      return boxes(random);
-    default:
-      return scene::sphere(1 + random.below(2));
-  }
-}
-
-// Turned, stretched, mirrored and moved, if at all.
-Mat4 any_placement(Random& random) {
-  if (random.below(2) == 0) return {};
-  const Vec3 p = random.direction(), q = random.direction();
-  const glm::dvec3 x(p.x, p.y, p.z), z = glm::normalize(glm::cross(x, glm::dvec3(q.x, q.y, q.z))),
-                                     y = glm::cross(z, x);
-  const double sx = random.between(0.3f, 3), sy = random.between(0.3f, 3), sz = random.below(3) == 0 ? -1 : 1;
-  const Vec3 to = random.inside({{-5, -5, -5}, {5, 5, 5}});
-  return geometry::to_mat4(glm::dmat4(glm::dvec4(sx * x, 0), glm::dvec4(sy * y, 0), glm::dvec4(sz * z, 0),
-                                      glm::dvec4(to.x, to.y, to.z, 1)));
-}
-
-using Corners = std::array<Vec3, 3>;
 
 struct Occluders {
   Shape shape;
@@ -167,18 +39,8 @@ Occluders any_occluders(Random& random) {
   // Rounding opens junctions of what is moved.
   const bool in_place = out.placement == Mat4{};
   if (in_place && random.below(2) == 0) out.junctions = TJunctions::closed;
-  const geometry::RowTransform rows = geometry::row_transform(out.placement);
-  Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-  for (std::size_t i = 0; i < out.shape.indices.size(); i += 3) {
-    Corners corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = out.shape.positions[out.shape.indices[i + k]];
-      const Vec3 q = corners[k] = in_place ? p : geometry::transform_point(rows, p);
-      low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
-      high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-    }
-    out.triangles.push_back(corners);
-  }
+  out.triangles = placed(out.shape, out.placement);
+  const auto& [low, high] = bounds_of(out.triangles);
   out.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
   out.size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   const auto near = [&] { return around(random, out.middle, out.size); };
@@ -224,16 +86,8 @@ std::vector<float> draw(const Occluders& of, const OccluderMesh& mesh, const Vie
 class Truth {
 public:
   Truth(const Occluders& of, const View& view) : of_(of), rays_(view) {
-    const auto& m = of.placement.m;
-    const bool mirrored =
-        glm::determinant(glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10])) < 0;
-    const glm::dvec3 eye = geometry::eye_of(view), forward = geometry::to_double(view_direction(view));
-    for (const Corners& t : of.triangles) {
-      const glm::dvec3 a = geometry::to_double(t[0]),
-                       n = glm::cross(geometry::to_double(t[1]) - a, geometry::to_double(t[2]) - a);
-      const double side = is_orthographic(view) ? -glm::dot(n, forward) : glm::dot(n, eye - a);
-      if (of.sides == Sides::both || (mirrored ? side <= 0 : side >= 0)) shown_.push_back(t);
-    }
+    for (const Corners& t : of.triangles)
+      if (of.sides == Sides::both || shows_front(view, t)) shown_.push_back(t);
   }
   [[nodiscard]] double nearest(const glm::dvec2& p) const {
     double best = ExactRays::kMiss;
@@ -278,7 +132,7 @@ public:
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
       if (!(drawn_[i] > none)) continue;
       ++counts_.drawn;
-      for (const glm::dvec2& p : test::places_in(random_, view_, i, options_.coverage))
+      for (const glm::dvec2& p : places_in(random_, view_, i, options_.coverage))
         ASSERT_LE(drawn_[i], truth_.nearest(p)) << "at " << p.x << ' ' << p.y;
     }
   }
@@ -310,7 +164,7 @@ private:
     if (visible) return;
     ++counts_.hidden;
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
-      for (const glm::dvec2& p : test::places_in(random_, view_, i, options_.coverage)) {
+      for (const glm::dvec2& p : places_in(random_, view_, i, options_.coverage)) {
         const double at = truth_.at(p, thing);
         if (at > ExactRays::kMiss) ASSERT_GE(truth_.nearest(p), at) << "seen at " << p.x << ' ' << p.y;
       }
@@ -326,11 +180,6 @@ private:
   OcclusionBuffer buffer_;
   std::vector<float> drawn_;
 };
-
-std::uint64_t number_in(const char* variable, std::uint64_t otherwise) {
-  const char* text = std::getenv(variable);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
 
 TEST(RandomScenes, AreDrawnAndAnsweredAsExactRaysHaveThem) {
   const std::uint64_t scenes = number_in("SIGHTLINE_RANDOM_SCENES", 100),

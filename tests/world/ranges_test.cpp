@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "library/geometry/box_reader.hpp"
 #include "support/random_views.hpp"
 #include "support/run_threads.hpp"
 #include "support/world_twin.hpp"
