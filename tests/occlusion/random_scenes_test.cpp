@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "support/exact_rays.hpp"
 #include "support/random_shapes.hpp"
@@ -66,7 +67,8 @@ View any_view(Random& random, const Occluders& of) {
     if (random.below(3) == 0) camera.orthographic_height = of.size * random.between(0.3f, 2);
     if (random.below(4) == 0) camera.shift_x = random.between(-0.5f, 0.5f);
     camera.depth = random.below(2) == 0 ? Depth::standard : Depth::reversed;
-    const std::uint32_t width = 16 + random.below(48), height = 16 + random.below(32);
+    const std::uint32_t larger = random.below(12) == 0 ? 32 : 1;
+    const std::uint32_t width = larger * (16 + random.below(48)), height = larger * (16 + random.below(32));
     if (const Result<View> view = make_view(camera, width, height)) return *view;
   }
 }
@@ -116,7 +118,7 @@ public:
   Look(Random& random, const Occluders& of, const OccluderMesh& mesh, Counts& counts)
       : random_(random), of_(of), view_(any_view(random, of)), truth_(of, view_), counts_(counts) {
     options_.coverage = random.below(3) == 0 ? Coverage::centres : Coverage::area;
-    options_.scale = random.below(3) == 0 ? 2 : 1;
+    options_.scale = 1u << random.below(3) * random.below(2);
     drawn_ = draw(of, mesh, view_, options_, buffer_);
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
@@ -129,7 +131,7 @@ public:
   void hold_pixels() {
     const float none =
         is_orthographic(view_) ? static_cast<float>(ExactRays::kMiss) : 0;  // what hides nothing
-    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+    for (const std::size_t i : pixels_to_look_at()) {
       if (!(drawn_[i] > none)) continue;
       ++counts_.drawn;
       for (const glm::dvec2& p : places_in(random_, view_, i, options_.coverage))
@@ -148,6 +150,7 @@ public:
                                            : along(on, away, {on.x - eye.x, on.y - eye.y, on.z - eye.z});
     const float size = of_.size * std::pow(10.0f, random_.between(-4, -1));
     const Box box{along(at, -size, {1, 1, 1}), along(at, size, {1, 1, 1})};
+    around_ = pixels_around(box);
     hold(buffer_.may_see(box), box);
     std::array<std::uint8_t, 1> seen{};
     const Sphere sphere{at, size};
@@ -159,11 +162,46 @@ public:
   }
 
 private:
+  static constexpr std::size_t kAll = 5000;
+
+  [[nodiscard]] std::vector<std::size_t> all_pixels() const {
+    std::vector<std::size_t> out(drawn_.size());
+    std::iota(out.begin(), out.end(), std::size_t{0});
+    return out;
+  }
+  // Of a large image those at the edges of triangles, and some.
+  std::vector<std::size_t> pixels_to_look_at() {
+    if (drawn_.size() <= kAll) return all_pixels();
+    std::vector<std::size_t> out;
+    for (int i = 0; i < 300; ++i) out.push_back(random_.below(static_cast<std::uint32_t>(drawn_.size())));
+    for (int i = 0; i < 700; ++i) {
+      const Corners& t = of_.triangles[random_.below(static_cast<std::uint32_t>(of_.triangles.size()))];
+      const std::size_t k = random_.below(3);
+      const double part = double{random_.unit()};
+      glm::dvec2 at;
+      const auto corner = [&](std::size_t of) { return geometry::to_double(t[of % 3]); };
+      if (!seen_at(view_, glm::mix(corner(k), corner(k + 1), part), at)) continue;
+      at += glm::dvec2(random_.between(-1, 1), random_.between(-1, 1));
+      if (at.x >= 0 && at.x < view_.width && at.y >= 0 && at.y < view_.height)
+        out.push_back(pixel_of(view_, at));
+    }
+    return out;
+  }
+  std::vector<std::size_t> pixels_around(const Box& box) {
+    if (drawn_.size() <= kAll) return all_pixels();
+    std::vector<std::size_t> out;
+    for (int i = 0; i < 200; ++i) {
+      glm::dvec2 at;
+      if (seen_at(view_, geometry::to_double(random_.inside(box)), at)) out.push_back(pixel_of(view_, at));
+    }
+    return out;
+  }
+
   template <class Thing>
   void hold(bool visible, const Thing& thing) {
     if (visible) return;
     ++counts_.hidden;
-    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+    for (const std::size_t i : around_) {
       for (const glm::dvec2& p : places_in(random_, view_, i, options_.coverage)) {
         const double at = truth_.at(p, thing);
         if (at > ExactRays::kMiss) ASSERT_GE(truth_.nearest(p), at) << "seen at " << p.x << ' ' << p.y;
@@ -179,6 +217,7 @@ private:
   OcclusionOptions options_;
   OcclusionBuffer buffer_;
   std::vector<float> drawn_;
+  std::vector<std::size_t> around_;  // pixels that what is asked for may show in
 };
 
 TEST(RandomScenes, AreDrawnAndAnsweredAsExactRaysHaveThem) {

@@ -117,6 +117,20 @@ private:
   glm::dvec4 near_;
 };
 
+/// Where a point lies on the image, in pixels; false where it does not.
+inline bool seen_at(const View& view, const glm::dvec3& point, glm::dvec2& out) {
+  using geometry::to_double;
+  const glm::dvec4 clip = to_double(view.eye_to_clip) * (to_double(view.world_to_eye) * glm::dvec4(point, 1));
+  if (!(clip.w > 0)) return false;
+  out = {(0.5 + 0.5 * clip.x / clip.w) * view.width, (0.5 - 0.5 * clip.y / clip.w) * view.height};
+  return out.x >= 0 && out.x < view.width && out.y >= 0 && out.y < view.height;
+}
+
+/// The pixel there.
+inline std::size_t pixel_of(const View& view, const glm::dvec2& place) {
+  return static_cast<std::size_t>(place.y) * view.width + static_cast<std::size_t>(place.x);
+}
+
 /// Places of pixel i that are answered for: its centre; some within it, those at its corners among them.
 inline std::vector<glm::dvec2> places_in(scene::Random& random, const View& view, std::size_t i,
                                          Coverage coverage) {

@@ -124,7 +124,9 @@ public:
       camera.far_plane = random.below(3) == 0 ? random.between(2, 20) : 1000;
       if (random.below(4) == 0) camera.orthographic_height = random.between(2, 30);
       camera.depth = random.below(2) == 0 ? Depth::standard : Depth::reversed;
-      const std::uint32_t width = 32 + random.below(130), height = 24 + random.below(96);
+      const std::uint32_t larger = random.below(8) == 0 ? 14 : 1;
+      const std::uint32_t width = larger * (32 + random.below(130)),
+                          height = larger * (24 + random.below(96));
       if (const Result<View> view = make_view(camera, width, height)) return {*view, origin};
     }
   }

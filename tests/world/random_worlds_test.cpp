@@ -58,11 +58,7 @@ public:
       at = geometry::to_double(t[0]) * (1 - a - b) + geometry::to_double(t[1]) * a +
            geometry::to_double(t[2]) * b;
     }
-    const glm::dvec4 clip = geometry::to_double(view_.eye_to_clip) *
-                            (geometry::to_double(view_.world_to_eye) * glm::dvec4(at, 1));
-    if (!(clip.w > 0)) return false;
-    out = {(0.5 + 0.5 * clip.x / clip.w) * view_.width, (0.5 - 0.5 * clip.y / clip.w) * view_.height};
-    return out.x >= 0 && out.x < view_.width && out.y >= 0 && out.y < view_.height;
+    return seen_at(view_, at, out);
   }
 
 private:
@@ -97,7 +93,7 @@ public:
   Frame(Random& random, const RandomWorld& world, std::size_t cameras) : random_(random), world_(world) {
     options_ = automatic(std::pow(10.0f, random.between(3, 7)));
     options_.buffer.coverage = random.below(3) == 0 ? Coverage::centres : Coverage::area;
-    options_.buffer.scale = random.below(3) == 0 ? 2 : 1;
+    options_.buffer.scale = 1u << random.below(3) * random.below(2);
     for (std::size_t v = 0; v < cameras; ++v) {
       CullView view{.view = world.any_view(random)};
       if (random.below(4) == 0) view.layers = 1;
@@ -165,8 +161,7 @@ private:
     for (int i = 0; i < 12; ++i) {
       glm::dvec2 on;
       if (!truth.somewhere(random_, thing, on)) continue;
-      const std::size_t pixel = static_cast<std::size_t>(on.y) * view.width + static_cast<std::size_t>(on.x);
-      std::vector<glm::dvec2> places = places_in(random_, view, pixel, options_.buffer.coverage);
+      std::vector<glm::dvec2> places = places_in(random_, view, pixel_of(view, on), options_.buffer.coverage);
       if (options_.buffer.coverage == Coverage::area) places.resize(2), places.push_back(on);
       for (const glm::dvec2& p : places) {
         const double at = truth.hit(p, thing);
