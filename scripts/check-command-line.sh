@@ -78,7 +78,7 @@ refused "moon" "$sightline" info world:moon
 refused "'trees'" "$sightline" info world:forest?trees=-1
 refused "no such method" "$sightline" compare "$world" --methods nonesuch
 refused "lacks a level's PVS" "$sightline" verify "$world" --methods level-pvs
-refused "expected numbers of metres" "$sightline" casters "$world" --distance nan
+refused "expected a number from 1 to 100000" "$sightline" casters "$world" --distance nan
 refused "--light" "$sightline" casters "$world" --light moon
 refused "cpu" "$sightline" casters "$world" --device cpu
 refused "nowhere" "$sightline" casters "$world" --picture nowhere/x.png
@@ -88,7 +88,7 @@ refused "nothing occludes" "$sightline" occluders 'world:forest?trees=3' --trian
 [ ! -e nothing.glb ] || fail "occluders left nothing.glb behind"
 refused "no parameter" "$sightline" verify "$world" --methods none?x=1
 refused "--size" "$sightline" compare "$world" --size 0x0
-refused "no share" "$sightline" verify "$world" --device any --moving nan
+refused "expected a number from 0 to 1" "$sightline" verify "$world" --device any --moving nan
 refused "/proc/page" "$sightline" compare "$world" --report /proc/page
 refused "/proc/page" "$sightline" reproduce ray-pvs --report /proc/page
 refused "--device" "$sightline" compare "$world" --device ""
@@ -110,6 +110,49 @@ refused "an entry is empty" "$sightline" compare "$world" --methods none,,vfc-vc
 refused "device 'nonesuch'" "$sightline" compare "$world" --device nonesuch
 refused "nonesuch" "$sightline" compare "$world" --path nonesuch
 
+# Numbers are decimal and what they say; nothing is given twice, or in vain.
+expect 0 "10 random views" "$sightline" verify "$world" --views 010 --size 16x12
+refused "whole number from 1 to 1000000" "$sightline" verify "$world" --views 1e3
+refused "whole number from 1 to 1048576" "$sightline" bake "$world" -o no.pvs --viewpoints 0x10
+refused "expected a number from" "$sightline" bake "$world" -o no.pvs --target nan
+for cell in inf 1e30 nan -1 0x10 ""; do refused "expected a number from" "$sightline" bake "$world" -o no.pvs --cell "$cell"; done
+refused "three finite numbers" "$sightline" query forest.glb --at nan,0,0
+refused "is given twice" "$sightline" info "$world&size=90"
+refused "is given twice" "$sightline" compare "$world" --methods 'masked?coverage=area&coverage=centres'
+refused "it is empty" "$sightline" compare "$world" --methods ""
+refused "it is empty" "$sightline" compare "$world" --path ""
+refused "seams" "$sightline" info "$world" --seams=false
+refused "'--nonesuch': no such option here" "$sightline" --nonesuch
+refused "see sightline verify --help" "$sightline" verify "$world" --nonesuch
+refused "expected cpu" "$sightline" verify "$world" --device ""
+expect 0 "(no|yes)" "$sightline" generate --help
+expect 0 "(leaves|grate|sides)" "$sightline" generate --help
+
+# No output is written over another, or over what is read; none is asked for in vain.
+refused "one place" "$sightline" bake forest.glb -o forest.glb
+refused "one place" "$sightline" bake "$world" -o same.pvs --cells ./same.pvs
+refused "one place" "$sightline" occluders forest.glb -o "$PWD/forest.glb"
+refused "one place" "$sightline" compare "$world" --report page --json page/index.html
+refused "no visible sets of its own" "$sightline" bake "$world" -o no.pvs --cells no.csv
+refused "not a regular file" "$sightline" bake "$world" -o /dev/null
+refused "expected a name" "$sightline" compare "$world" --report ""
+[ ! -e no.pvs ] && [ ! -e same.pvs ] || fail "bake wrote what it refused"
+grep -q "<html" page/index.html || fail "a refused call changed an earlier page"
+
+# A name as long as one may be; a device that is no device to replace.
+long=$(printf 'n%.0s' {1..250}).json
+expect 0 "object-frustum" "$sightline" methods --json "$long"
+[ -s "$long" ] || fail "methods --json wrote no file of a long name"
+if ! "$sightline" methods | grep -q 'Vulkan devices: none'; then
+  refused "/dev/full" "$sightline" casters "$world" --views 1 --size 32x24 --map 16 --picture /dev/full
+  [ -c /dev/full ] || fail "casters --picture put a file in a device's place"
+fi
+
+# What a signal ends leaves nothing unfinished behind.
+mkdir ended
+(cd ended && exec timeout --signal=INT 3 "$sightline" reproduce object-frustum --quick --json o.json --report o >/dev/null 2>&1)
+[ -z "$(ls -A ended)" ] || fail "an ended reproduction leaves: $(ls -A ended)"
+
 # Files that are none, or not what they claim to be.
 : >empty.glb
 head -c 3000 "$sightline" >random.glb
@@ -128,7 +171,8 @@ echo '{"views":[{"eye":[0,0,0],"forward":[0,1,0],"up":[0,1,0]}]}' >singular.json
 echo '{"views":[{"eye":[0,0,1e999]}]}' >infinite.json
 echo '{"views":[]}' >none.json
 echo 'no json' >text.json
-for file in singular.json infinite.json none.json text.json; do
+echo '{"views":[{"eye":[0,0,9]}],"frames":3}' >more.json
+for file in singular.json infinite.json none.json text.json more.json; do
   refused "$file" "$sightline" compare "$world" --methods none --path $file
 done
 
@@ -143,7 +187,11 @@ else
   # Without the right to mount, a limit on the size of files is the full disk.
   (ulimit -f 8; trap '' XFSZ; refused "forest-full.glb" "$sightline" generate forest?trees=3000 -o forest-full.glb; exit $failed) || failed=$((failed + 1))
 fi
-"$sightline" methods >/dev/full 2>err && fail "methods > /dev/full exits 0"
+for call in methods --help --version "verify --help" "info $world"; do
+  "$sightline" $call >/dev/full 2>err && fail "$call > /dev/full exits 0"
+  grep -q "standard output" err || fail "$call > /dev/full says: $(cat err)"
+done
+"$sightline" --help >&- 2>err && fail "--help to nowhere exits 0"
 ls | grep -q '\.tmp' && fail "temporary files stay behind: $(ls)"
 
 echo "$passed passed, $failed failed"

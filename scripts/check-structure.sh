@@ -23,7 +23,7 @@ workbench/submission: workbench/scene
 workbench/io: workbench/scene
 workbench/partition: workbench/scene
 workbench/camera: workbench/scene workbench/io
-workbench/device: workbench/scene workbench/submission
+workbench/device: workbench/submission workbench/io
 workbench/methods: workbench/partition workbench/device
 workbench/oracle: workbench/scene workbench/device library/geometry
 workbench/measure: workbench/methods workbench/oracle workbench/camera

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
@@ -60,9 +64,21 @@ void print_level(const Scene& scene, const CellPvs& cells, const BakeOptions& op
   }
 }
 
+// What would only be found out once all was baked.
+void expect_sense(const BakeOptions& options) {
+  expect_apart({{"SCENE", options.scene}, {"--output", options.file}, {"--cells", options.cells}});
+  std::error_code ignored;
+  if (std::filesystem::exists(options.file, ignored) &&
+      !std::filesystem::is_regular_file(options.file, ignored))
+    throw Error("--output '" + options.file + "': not a regular file, expected one or none");
+}
+
 int run_bake(const BakeOptions& options) {
   const bake::Ranks ranks = bake::Ranks::join();
+  expect_sense(options);
   const Scene scene = load_scene(options.scene);
+  if (!scene.level && !options.cells.empty())
+    throw Error(options.scene + ": has no visible sets of its own, which --cells compares with");
   // Ranks share the machine out: a thread each, unless told otherwise.
   const int threads = options.threads > 0 || !ranks.joined() ? options.threads : 1;
   const auto shown = ranks.rank() == 0 ? progress("bake") : std::function<void(std::size_t, std::size_t)>();
@@ -114,9 +130,9 @@ Vec3 parse_point(const std::string& text) {
   for (std::size_t i = 0; good && i < 3; ++i) {
     const char* end = parts[i].data() + parts[i].size();
     const auto read = std::from_chars(parts[i].data(), end, v[i]);
-    good = read.ec == std::errc{} && read.ptr == end;
+    good = read.ec == std::errc{} && read.ptr == end && std::isfinite(v[i]);
   }
-  if (!good) throw Error("--at '" + text + "': expected three numbers, x,y,z");
+  if (!good) throw Error("--at '" + text + "': expected three finite numbers, x,y,z");
   return {v[0], v[1], v[2]};
 }
 
@@ -155,27 +171,29 @@ void add_bake(CLI::App& app, int& exit) {
       ->required()
       ->check(output_file())
       ->type_name("FILE.pvs");
-  command.add_option("--cell", options->bake.cell, "metres along each side of a cell")->capture_default_str();
+  command.add_option("--cell", options->bake.cell, "metres along each side of a cell")
+      ->check(number(0.01, 1e6))
+      ->capture_default_str();
   command.add_option("--target", options->bake.target, "share of a view that a cell's set may lack")
-      ->check(CLI::Range(1e-6, 0.5))
+      ->check(number(1e-6, 0.5))
       ->capture_default_str();
   command.add_option("--seed", options->bake.seed, "of the viewpoints")
-      ->check(whole_number())
+      ->transform(whole(0, kAnySeed))
       ->capture_default_str();
   command.add_option("--rays", options->bake.rays, "from each viewpoint")
-      ->check(CLI::Range(1, 1 << 20))
+      ->transform(whole(1, 1 << 20))
       ->capture_default_str();
   command.add_option("--viewpoints", options->bake.most_viewpoints, "at most, a cell")
-      ->check(CLI::Range(1, 1 << 20))
+      ->transform(whole(1, 1 << 20))
       ->capture_default_str();
   command
       .add_option("--threads", options->threads, "of each process; default: all cores, and under mpirun one")
-      ->check(CLI::Range(1, 1024));
+      ->transform(whole(1, 1024));
   command.add_option("--check", options->check, "afterwards hold N random views against the item buffer")
-      ->check(CLI::Range(0, 1000000))
+      ->transform(whole(0, 1000000))
       ->type_name("N");
   command.add_option("--check-seed", options->check_seed, "of those views")
-      ->check(whole_number())
+      ->transform(whole(0, kAnySeed))
       ->capture_default_str();
   command
       .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")

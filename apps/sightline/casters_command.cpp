@@ -1,7 +1,6 @@
 // sightline casters: shadow caster culling against lit pictures.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <tuple>
 
@@ -29,8 +28,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 int run_casters(CastersCall& call) {
-  if (!std::isfinite(call.options.distance) || !std::isfinite(call.options.lookup.metres))
-    throw Error("casters: --distance and --offset: expected numbers of metres");
+  expect_apart({{"SCENE", call.scene}, {"--picture", call.picture}});
   std::tie(call.options.width, call.options.height) = parse_size(call.size);
   call.options.light = call.light == "spot" ? LightKind::spot : LightKind::directional;
   const auto device = open_device(call.device);
@@ -76,25 +74,25 @@ void add_casters(CLI::App& app, int& exit) {
       ->check(CLI::IsMember({"directional", "spot"}))
       ->capture_default_str();
   command.add_option("--views", call->views, "random views")
-      ->check(CLI::Range(1, 1000000))
+      ->transform(whole(1, 1000000))
       ->capture_default_str();
   command.add_option("--seed", o.seed, "of the views and their lights")
-      ->check(whole_number())
+      ->transform(whole(0, kAnySeed))
       ->capture_default_str();
   command.add_option("--size", call->size, "of the cameras' pictures in pixels")
       ->type_name("WxH")
       ->capture_default_str();
   command.add_option("--distance", o.distance, "metres: how far cameras see and shadows are drawn")
-      ->check(CLI::Range(1.0f, 100000.0f))
+      ->check(number(1, 100000))
       ->capture_default_str();
   command.add_option("--map", o.map, "texels across the shadow map")
-      ->check(CLI::Range(16u, 8192u))
+      ->transform(whole(16, 8192))
       ->capture_default_str();
   command.add_option("--reach", o.lookup.reach, "texels to either side that each point asks, too")
-      ->check(CLI::Range(0u, 7u))
+      ->transform(whole(0, 7))
       ->capture_default_str();
   command.add_option("--offset", o.lookup.metres, "metres that each point moves along its normal before")
-      ->check(CLI::Range(0.0f, 1000.0f))
+      ->check(number(0, 1000))
       ->capture_default_str();
   command.add_option("--picture", call->picture, "write the last view's lit picture there")
       ->check(output_file())

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <sightline/workbench/parameters.hpp>
 #include <sightline/workbench/scene.hpp>
 
 namespace sightline::app {
@@ -48,13 +50,27 @@ void add_faces(CLI::App& command, RasterState& state);
 /// "WxH" as two numbers; refuses anything else with a sentence.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
-/// Option values: a share from 0 to 1; a whole number of 64 bits; a folder for a page, made, and a file's
-/// folder, both tried before any work is done; a name that is not empty.
-CLI::Validator share();
-CLI::Validator whole_number();
+/// A whole number in decimal digits, for CLI::Option::transform; a number, for CLI::Option::check.
+CLI::Validator whole(std::uint64_t low, std::uint64_t high);
+CLI::Validator number(double low, double high);
+inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::uint64_t>::max();
+
+/// A folder for a page, made, and a file's folder, both tried before any work is done; a name that is not
+/// empty.
 CLI::Validator page_folder();
 CLI::Validator output_file();
 CLI::Validator not_empty();
+
+/// A file or folder and the option that names it; an empty path is of no matter.
+struct NamedPath {
+  const char* option;
+  std::string path;
+};
+/// Refuses paths of which one would be written over another.
+void expect_apart(const std::vector<NamedPath>& paths);
+
+/// What a parameter may be: "0 to 5", or its choices.
+std::string range_of(const ParameterInfo& parameter);
 
 /// "A,B,C", the value of an option, as a list; refuses empty entries. Parameters of a method may hold no
 /// comma.

@@ -21,7 +21,7 @@ namespace {
 struct CompareOptions {
   std::string scene, methods, path, size = "1280x720", pvs, json, report;
   std::optional<std::string> device;
-  std::size_t frames = 24;
+  std::optional<std::size_t> frames;
   double moving = 0;
   bool limit = false, no_draw = false;
   RasterState faces = RasterState::materials;
@@ -33,6 +33,11 @@ std::unique_ptr<device::Device> device_of(const CompareOptions& options) {
 }
 
 int run_compare(const CompareOptions& options) {
+  expect_apart({{"SCENE", options.scene},
+                {"--pvs", options.pvs},
+                {"--path", options.path},
+                {"--json", options.json},
+                {"--report", options.report}});
   measure::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   measure.moving = options.moving;
@@ -48,7 +53,7 @@ int run_compare(const CompareOptions& options) {
                        device.get());
   const std::string path_name =
       options.path.empty() ? std::string(camera::default_path(scene)) : options.path;
-  const camera::CameraPath path = camera::make_path(scene, path_name, options.frames);
+  const camera::CameraPath path = camera::make_path(scene, path_name, options.frames.value_or(0));
   const measure::Comparison comparison = measure::compare(bench, path, measure, progress("compare"));
   expect_silence(device.get());
   fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}; {}\n\n", scene.name, scene.size(),
@@ -74,14 +79,17 @@ void add_compare(CLI::App& app, int& exit) {
   command
       .add_option("--methods", options->methods,
                   "methods, separated by commas (default: all that fit the scene)")
+      ->check(not_empty())
       ->type_name("A,B");
   command
       .add_option("--path", options->path,
                   "near, far, rising, walk, or a JSON path file (default: walk in a level, else near)")
+      ->check(not_empty())
       ->type_name("NAME|FILE");
-  command.add_option("--frames", options->frames, "views along the path")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  command
+      .add_option("--frames", options->frames,
+                  "views along the path; of a path file at most so many (default: 24, of a path file all)")
+      ->transform(whole(1, 100000));
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
       ->capture_default_str();
@@ -90,12 +98,15 @@ void add_compare(CLI::App& app, int& exit) {
                                         std::string(kDeviceHelp) + " (default: any where there is one)")
                             ->type_name("cpu|NAME");
   command.add_flag("--no-draw", options->no_draw, "cull on the CPU and draw nothing, as --device cpu does")
-      ->excludes(device);
+      ->excludes(device)
+      ->disable_flag_override();
   add_faces(command, options->faces);
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
-      ->check(share());
-  command.add_flag("--limit", options->limit,
-                   "also draw just what the item buffer sees, which no culling of whole objects can beat");
+      ->check(number(0, 1));
+  command
+      .add_flag("--limit", options->limit,
+                "also draw just what the item buffer sees, which no culling of whole objects can beat")
+      ->disable_flag_override();
   command.add_option("--json", options->json, "also write one row a method and view as JSON to FILE")
       ->check(output_file())
       ->type_name("FILE");

@@ -38,6 +38,8 @@ std::unique_ptr<device::Device> open_device(const std::string& name) {
 }
 
 std::unique_ptr<device::Device> open_device_or_cpu(const std::string& name) {
+  if (name.empty())
+    throw Error("--device: it is empty, expected cpu, a device's index or part of its name, or any");
   return name == "cpu" ? nullptr : open_device(name);
 }
 

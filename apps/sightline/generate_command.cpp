@@ -17,8 +17,7 @@ std::string list_of_worlds() {
   for (const WorldInfo& world : worlds()) {
     text += fmt::format("  {:<10} {}\n", world.name, world.summary);
     for (const ParameterInfo& p : world.parameters) {
-      text +=
-          fmt::format("  {:10} ?{}={}  ({:g} to {:g}) {}\n", "", p.name, p.fallback, p.min, p.max, p.summary);
+      text += fmt::format("  {:10} ?{}={}  ({}) {}\n", "", p.name, p.fallback, range_of(p), p.summary);
     }
   }
   return text;

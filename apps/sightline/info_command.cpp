@@ -125,10 +125,12 @@ void add_info(CLI::App& app, int& exit) {
   auto scene = std::make_shared<std::string>();
   command.add_option("SCENE", *scene, kSceneHelp)->required();
   auto seams = std::make_shared<bool>(false);
-  command.add_flag(
-      "--seams", *seams,
-      "Also how many edges of its occluders meet others, and the longest that do not: beside those, "
-      "occlusion leaves single pixels open");
+  command
+      .add_flag(
+          "--seams", *seams,
+          "Also how many edges of its occluders meet others, and the longest that do not: beside those, "
+          "occlusion leaves single pixels open")
+      ->disable_flag_override();
   on_run(command, exit, [scene, seams] {
     const Scene loaded = load_scene(*scene);
     print(loaded);

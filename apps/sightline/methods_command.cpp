@@ -36,10 +36,8 @@ void print(const MethodInfo& info, const MethodForm& form) {
   fmt::print("{:<22} {:<13} {:<34} {}\n", info.name, to_string(form.guarantee), info.paper, info.summary);
   if (!form.needs.empty()) fmt::print("{:22} needs {}\n", "", form.needs);
   for (const ParameterInfo& parameter : form.parameters) {
-    const std::string range = parameter.choices.empty()
-                                  ? fmt::format("{:g} to {:g}", parameter.min, parameter.max)
-                                  : std::string(parameter.choices);
-    fmt::print("{:22} ?{}={}  ({}) {}\n", "", parameter.name, parameter.fallback, range, parameter.summary);
+    fmt::print("{:22} ?{}={}  ({}) {}\n", "", parameter.name, parameter.fallback, range_of(parameter),
+               parameter.summary);
   }
 }
 

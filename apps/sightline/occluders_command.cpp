@@ -64,6 +64,7 @@ bool examine_all(const Scene& scene, const std::vector<measure::MadeOccluder>& o
 }
 
 int run_occluders(const OccludersCall& call) {
+  expect_apart({{"SCENE", call.scene}, {"--output", call.output}});
   Scene scene = load_scene(call.scene);
   set_raster_state(scene, call.faces);
   const auto occluders = measure::make_occluders(scene, call.options, progress("meshes"));
@@ -93,20 +94,20 @@ void add_occluders(CLI::App& app, int& exit) {
       ->check(output_file())
       ->type_name("FILE.glb");
   command.add_option("--triangles", call->options.most_triangles, "at most so many a mesh")
-      ->check(CLI::Range(0u, 4096u))
+      ->transform(whole(0, 4096))
       ->capture_default_str();
   command.add_option("--boxes", call->options.most_boxes, "at most so many a mesh")
-      ->check(CLI::Range(0u, 64u))
+      ->transform(whole(0, 64))
       ->capture_default_str();
   command
       .add_option(
           "--views", call->views,
           "look at each mesh so often, and hold what is covered against rays: exit code 1 where a pixel is "
           "covered wrongly")
-      ->check(CLI::Range(0u, 100000u))
+      ->transform(whole(0, 100000))
       ->capture_default_str();
   command.add_option("--pixels", call->pixels, "the side of such a view")
-      ->check(CLI::Range(1u, 4096u))
+      ->transform(whole(1, 4096))
       ->capture_default_str();
   add_faces(command, call->faces);
   on_run(command, exit, [call] { return run_occluders(*call); });

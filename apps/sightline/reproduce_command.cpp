@@ -114,7 +114,7 @@ void add_reproduce(CLI::App& app, int& exit) {
   for (const Paper& paper : kPapers) {
     CLI::App& of_paper = *command.add_subcommand(paper.name, paper.what);
     auto options = std::make_shared<ReproduceOptions>();
-    of_paper.add_flag("--quick", options->quick, paper.quick);
+    of_paper.add_flag("--quick", options->quick, paper.quick)->disable_flag_override();
     of_paper.add_option("--json", options->json, "also write every table as JSON to FILE")
         ->check(output_file())
         ->type_name("FILE");
@@ -128,6 +128,7 @@ void add_reproduce(CLI::App& app, int& exit) {
         ->check(not_empty())
         ->type_name("NAME");
     on_run(of_paper, exit, [options, run = paper.run] {
+      expect_apart({{"--json", options->json}, {"--report", options->report}});
       if (options->report.empty()) return run(*options);
       report::PageFolder folder(options->report);
       ReproduceOptions here = *options;

@@ -147,18 +147,19 @@ void add_verify(CLI::App& app, int& exit) {
       .add_option("--methods", options->methods,
                   "methods, separated by commas (default: all that fit the scene and promise something; "
                   "on a Vulkan device, of those the ones that run on it)")
+      ->check(not_empty())
       ->type_name("A,B");
   command.add_option("--views", options->views, "random views")
-      ->check(CLI::Range(1, 1000000))
+      ->transform(whole(1, 1000000))
       ->capture_default_str();
   command.add_option("--seed", options->seed, "of the random views")
-      ->check(whole_number())
+      ->transform(whole(0, kAnySeed))
       ->capture_default_str();
   command
       .add_option("--samples", options->samples,
                   "random places of each pixel that are judged in place of its centre: for methods that "
                   "promise all of the image, as masked?coverage=area does")
-      ->check(CLI::Range(1, 64))
+      ->transform(whole(1, 64))
       ->type_name("N");
   command.add_option("--size", options->size, "image size in pixels")
       ->type_name("WxH")
@@ -166,7 +167,7 @@ void add_verify(CLI::App& app, int& exit) {
   command.add_option("--device", options->device, kDeviceHelp)->type_name("cpu|NAME")->capture_default_str();
   add_faces(command, options->faces);
   command.add_option("--moving", options->moving, "share of the objects that move before every frame")
-      ->check(share());
+      ->check(number(0, 1));
   on_run(command, exit, [options] { return run_verify(*options); });
 }
 

@@ -15,14 +15,14 @@ declare -A may=(
   [library/geometry]="" [library/frustum]="$g" [library/rays]="$g" [library/occlusion]="$g" [library/pvs]="$g"
   [library/world]="$g library/frustum library/rays library/occlusion"
   [$w/scene]="" [$w/submission]="$w/scene" [$w/io]="$w/scene" [$w/partition]="$w/scene" [$w/camera]="$w/scene $w/io"
-  [$w/device]="$w/scene $w/submission"
-  [$w/methods]="$w/scene $w/submission $w/partition $w/device"
-  [$w/oracle]="$w/scene $w/submission $w/device $g"
+  [$w/device]="$w/scene $w/submission $w/io"
+  [$w/methods]="$w/scene $w/submission $w/io $w/partition $w/device"
+  [$w/oracle]="$w/scene $w/submission $w/io $w/device $g"
 )
 may[$w/measure]="${may[$w/methods]} ${may[$w/oracle]} ${may[$w/camera]} $w/methods $w/oracle $w/camera"
 may[$w/report]="${may[$w/measure]} $w/measure"
 may[$w/reproduce]="${may[$w/report]} $w/report"
-may[$w/bake]="${may[$w/oracle]} $w/oracle $w/io $w/partition library/pvs"
+may[$w/bake]="${may[$w/oracle]} $w/oracle $w/partition library/pvs"
 may[apps/sightline]="${may[$w/reproduce]} $w/reproduce ${may[$w/bake]} $w/bake"
 may[bindings/c]="" may[bindings/python]="" may[examples]="bindings/c"
 

@@ -16,7 +16,7 @@
 namespace sightline::camera {
 namespace {
 
-constexpr std::size_t kDefaultFrames = 60;
+constexpr std::size_t kDefaultFrames = 24;
 constexpr float kEyeHeight = 1.7f;                             ///< metres
 constexpr float kSway = 25 * std::numbers::pi_v<float> / 180;  ///< how far "near" and "far" turn
 constexpr float kLookAround = 2.5f;  ///< metres before and behind over which a walk's heading is averaged

@@ -164,6 +164,8 @@ std::vector<Camera> parse_path(const std::string& source, const std::string& tex
   if (!document.is_object() || !document.contains("views") || !document["views"].is_array()) {
     throw Error(source + ": expected an object with an array \"views\"");
   }
+  for (const auto& [key, value] : document.items())
+    if (key != "views") throw Error(source + ": unknown member \"" + key + "\", expected \"views\" alone");
   const Json& views = document["views"];
   if (views.empty() || views.size() > kMaxViews) {
     throw Error(fmt::format("{}: {} views, expected 1 to {}", source, views.size(), kMaxViews));

@@ -1,11 +1,12 @@
-#include <cstdio>
-#include <filesystem>
-
-#include <fmt/format.h>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/device/renderer.hpp"
+#include "workbench/io/files.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -19,17 +20,17 @@
 namespace sightline::device {
 
 void save_png(const Picture& picture, const std::string& path) {
-  const std::string temporary = path + ".tmp";
-  const int ok =
-      stbi_write_png(temporary.c_str(), static_cast<int>(picture.width), static_cast<int>(picture.height), 4,
-                     picture.pixels.data(), static_cast<int>(picture.width * 4));
-  std::error_code failed;
-  if (ok) std::filesystem::rename(temporary, path, failed);
-  if (!ok || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw Error(fmt::format("{}: the picture cannot be written there", path));
-  }
+  std::vector<std::byte> file;
+  const auto append = [](void* to, void* bytes, int size) {
+    const std::span more(static_cast<const std::byte*>(bytes), static_cast<std::size_t>(size));
+    auto& all = *static_cast<std::vector<std::byte>*>(to);
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  const auto width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+  if (!stbi_write_png_to_func(append, &file, width, height, 4, picture.pixels.data(), 4 * width))
+    throw Error(path + ": there is not enough memory to write the picture");
+  const std::array pieces{std::span<const std::byte>(file)};
+  io::write_file(path, pieces);
 }
 
 }  // namespace sightline::device

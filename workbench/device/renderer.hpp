@@ -102,7 +102,7 @@ private:
   GraphicsPipeline depth_pipeline_, lit_pipeline_, cut_out_pipeline_, blend_pipeline_;
 };
 
-/// Writes a PNG through a temporary name. Throws Error when the file cannot be written.
+/// Writes a PNG, as io::write_file does. Throws Error where that cannot be.
 void save_png(const Picture& picture, const std::string& path);
 
 }  // namespace sightline::device

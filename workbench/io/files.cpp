@@ -15,6 +15,8 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/io/unfinished.hpp"
+
 namespace sightline::io {
 
 namespace {
@@ -70,19 +72,13 @@ void write_file(const std::filesystem::path& path, std::span<const std::span<con
   const bool device =
       std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
   if (device) return write_pieces(path, path, "wb", pieces);
-  std::filesystem::path temporary = path;
+  // A short name: with some letters more, one as long as a name may be could not be made.
   static std::atomic<unsigned> count = 0;
-  temporary += fmt::format(".{}.{}.tmp", ::getpid(), count++);
-  try {
-    write_pieces(temporary, path, "wbx", pieces);
-    std::filesystem::rename(temporary, path);
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::filesystem::remove(temporary, ignored);
-    throw Error(path.string() + ": cannot be written: " + error.code().message());
-  } catch (const Error&) {
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  const Unfinished temporary(path.parent_path() / fmt::format("sightline-{}-{}.tmp", ::getpid(), count++));
+  write_pieces(temporary.path(), path, "wbx", pieces);
+  std::error_code failed;
+  std::filesystem::rename(temporary.path(), path, failed);
+  if (failed) throw Error(path.string() + ": cannot be written: " + failed.message());
 }
 
 }  // namespace sightline::io

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 
 #include <sightline/workbench/error.hpp>
@@ -22,7 +23,9 @@ bool is_page(const fs::path& folder) {
 
 }  // namespace
 
-PageFolder::PageFolder(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {
+PageFolder::PageFolder(const fs::path& target) {
+  if (target.empty()) throw Error("a page has no folder, expected a name");
+  target_ = fs::absolute(target).lexically_normal();
   if (!target_.has_filename()) target_ = target_.parent_path();  // "DIR/"
   std::error_code failed;
   const auto refuse = [&](const char* expected) {
@@ -34,18 +37,13 @@ PageFolder::PageFolder(const fs::path& target) : target_(fs::absolute(target).le
       refuse("an empty folder, a new one, or an earlier page of ours to replace");
     if (failed || access(target_.c_str(), W_OK | X_OK) != 0) refuse("a folder open to writing");
   } else {
-    made_target_ = fs::create_directories(target_, failed);
+    if (fs::create_directories(target_, failed)) made_target_.emplace(target_);
     if (failed) refuse("a folder or a place for one");
   }
-  partial_ = target_.parent_path() / fmt::format(".{}.{}", target_.filename().string(), getpid());
-  fs::create_directory(partial_, failed);
+  static std::atomic<unsigned> count = 0;
+  partial_.emplace(target_.parent_path() / fmt::format(".sightline-{}-{}.tmp", getpid(), count++));
+  fs::create_directory(path(), failed);
   if (failed) refuse("a place beside it for what is not finished");
-}
-
-PageFolder::~PageFolder() {
-  std::error_code ignored;
-  fs::remove_all(partial_, ignored);
-  if (made_target_) fs::remove(target_, ignored);  // only where it is empty
 }
 
 void PageFolder::commit() {
@@ -55,13 +53,13 @@ void PageFolder::commit() {
     if (!failed) fs::rename(file, target_ / file.filename(), failed);
   };
   // The page comes last: where it stands, its pictures do.
-  for (const fs::directory_entry& file : fs::directory_iterator(partial_)) {
+  for (const fs::directory_entry& file : fs::directory_iterator(path())) {
     if (file.path().filename() != "index.html") move(file.path());
   }
-  move(partial_ / "index.html");
+  move(path() / "index.html");
   if (failed)
     throw Error(fmt::format("{}: the page cannot be put there: {}", target_.string(), failed.message()));
-  made_target_ = false;
+  if (made_target_) made_target_->keep();
 }
 
 }  // namespace sightline::report

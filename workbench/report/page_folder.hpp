@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "workbench/io/unfinished.hpp"
 
 namespace sightline::report {
 
@@ -14,17 +17,17 @@ class PageFolder {
 public:
   /// Throws Error where the folder cannot be made, or the target holds anything but an earlier page.
   explicit PageFolder(const std::filesystem::path& target);
-  ~PageFolder();
   PageFolder(const PageFolder&) = delete;
   PageFolder& operator=(const PageFolder&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return partial_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return partial_->path(); }
   /// Throws Error where the files cannot be moved.
   void commit();
 
 private:
-  std::filesystem::path target_, partial_;
-  bool made_target_ = false;
+  std::filesystem::path target_;
+  // Also the target itself, as long as it is a new and empty folder.
+  std::optional<io::Unfinished> made_target_, partial_;
 };
 
 }  // namespace sightline::report

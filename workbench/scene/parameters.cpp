@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include <sightline/workbench/error.hpp>
 
@@ -93,6 +94,7 @@ Parameters parse_parameters(std::string_view what, std::string_view specificatio
   if (question == std::string_view::npos) return out;
   std::string_view rest = specification.substr(question + 1);
   const std::string subject = std::string(what) + " '" + std::string(specified_name(specification)) + "': ";
+  std::set<std::string_view> given;
   while (!rest.empty()) {
     const std::string_view pair = rest.substr(0, rest.find('&'));
     rest.remove_prefix(std::min(rest.size(), pair.size() + 1));
@@ -105,6 +107,8 @@ Parameters parse_parameters(std::string_view what, std::string_view specificatio
     if (!info) {
       throw Error(subject + "it has no parameter '" + std::string(key) + "', expected " + listed(declared));
     }
+    if (!given.insert(key).second)
+      throw Error(subject + "'" + std::string(key) + "' is given twice, expected it once");
     if (const std::string wrong = complaint(*info, value); !wrong.empty()) throw Error(subject + wrong);
     out.set(std::string(key), std::string(value));
   }

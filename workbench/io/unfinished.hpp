@@ -1,0 +1,29 @@
+// What is written under a temporary name, so that whoever ends the program early can take it away.
+#pragma once
+
+#include <filesystem>
+
+namespace sightline::io {
+
+/// A file or folder that is not finished; taken away with this, unless it was renamed or kept.
+/// Threads: any may have some at once.
+class Unfinished {
+public:
+  /// Nothing needs to stand there yet.
+  explicit Unfinished(std::filesystem::path path);
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+  /// It is finished, and stays.
+  void keep() noexcept;
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+private:
+  std::filesystem::path path_;
+};
+
+/// Takes away all that there is, for a program that ends at once: nobody can begin anything afterwards.
+void remove_unfinished() noexcept;
+
+}  // namespace sightline::io
