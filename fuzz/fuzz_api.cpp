@@ -169,7 +169,8 @@ void make_occluder_of(Numbers& in, std::span<const Vec3> points, std::span<const
                       std::span<const Sides> sides) {
   const OccluderOptions options{in.byte() % 32u, in.byte() % 4u};
   const auto made = make_occluder(points, indices, sides, options);
-  require(static_cast<bool>(made));
+  require(static_cast<bool>(made) == (options.most_triangles > 0 || options.most_boxes > 0));
+  if (!made) return;
   require(made->sides.size() <= options.most_triangles && made->boxes.size() <= options.most_boxes);
   require(made->indices.size() == 3 * made->sides.size() && made->solid_triangles <= made->sides.size());
   require(static_cast<bool>(OccluderMesh::make(made->positions, made->indices, made->sides)));

@@ -70,8 +70,8 @@ struct Inspection {
 
 /// Looks into culls.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: one at a time. Allocates:
-/// nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: one at a time. Allocates: nothing.
 class CullInspector {
 public:
   /// Allocates: its first tables.

@@ -42,9 +42,9 @@ struct InstancePlacement {
 /// bytes: ten thousand of a world of 100,000 objects are 10⁹ objects in ten megabytes.
 ///
 /// Instances are objects as World has them: their handles name them, a box each, which holds all of the world
-/// that they show. A refused call changes nothing. Unless a function says otherwise: Errors: none. Cost:
-/// constant. Threads: many may read and cull (each with a culler of its own) while nobody changes these or
-/// the worlds; changing is for one. Allocates: nothing.
+/// that they show. A refused call changes nothing. What was moved from may only be destroyed or assigned to.
+/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: many may read and cull (each with
+/// a culler of its own) while nobody changes these or the worlds; changing is for one. Allocates: nothing.
 class Instances {
 public:
   /// Allocates: its first tables.
@@ -148,8 +148,8 @@ struct InstanceCullResult {
 
 /// Culls instances of worlds.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: one at a time; instances can have
-/// many cullers at once. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: one at a time; instances can have many cullers at once. Allocates: nothing.
 class InstanceCuller {
 public:
   /// Allocates: its first tables.

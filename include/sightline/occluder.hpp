@@ -33,8 +33,8 @@ struct OccluderEdge {
 /// edges that two or more triangles share, and T-junctions if asked for. What can be looked through
 /// (cut-outs, glass) must not be among them.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: any number may draw one mesh at
-/// once. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: any number may draw one mesh at once. Allocates: nothing.
 class OccluderMesh {
 public:
   /// Without a triangle.
@@ -47,8 +47,9 @@ public:
   /// triangle, or one for all of them; without any, both sides occlude. Triangles that join to fewer than
   /// three corners are left out. Errors: bad_mesh for indices that are not a multiple of three or out of
   /// range (index(): which index), for positions that are not finite (index(): which position) and for
-  /// another number of sides; too_many beyond 2³⁰ triangles or 2³² - 2 positions. Cost: n log n, some 2 µs a
-  /// triangle: build once. Allocates: about 500 bytes a triangle.
+  /// another number of sides; bad_argument for sides (index(): which entry) and junctions that are none;
+  /// too_many beyond 2³⁰ triangles or 2³² - 2 positions. Cost: n log n, some 2 µs a triangle: build once.
+  /// Allocates: about 500 bytes a triangle.
   static Result<OccluderMesh> make(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
                                    std::span<const Sides> sides = {},
                                    TJunctions junctions = TJunctions::open);
@@ -72,7 +73,7 @@ private:
   Topology* topology_;
 };
 
-/// How much make_occluder may make of a mesh.
+/// How much make_occluder may make of a mesh: something, so not both may be 0.
 struct OccluderOptions {
   std::uint32_t most_triangles = 64;  ///< 4096 at most; 0: boxes alone
   std::uint32_t most_boxes = 8;       ///< 4096 at most; 0: triangles alone, which is quicker
@@ -117,8 +118,9 @@ struct Occluder {
 /// triangle and box is judged by itself before it is taken: none comes nearer to the surface than 5e-5 of the
 /// part's box. What is thinner than 1/32 of its part is seen as flat or not at all.
 ///
-/// Errors: as OccluderMesh::make; bad_argument for options out of range. Cost: n log n; a tenth of a second
-/// to half of one a large part. Threads: any. Allocates: about 400 bytes a triangle, meanwhile.
+/// Errors: as OccluderMesh::make; bad_argument for options out of range or without room for anything. Cost: n
+/// log n; a tenth of a second to half of one a large part. Threads: any. Allocates: about 400 bytes a
+/// triangle, meanwhile.
 Result<Occluder> make_occluder(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
                                std::span<const Sides> sides = {}, const OccluderOptions& options = {});
 

@@ -43,8 +43,9 @@ struct OcclusionOptions {
 /// leave, OcclusionBuffer::may_see(const OccludeeTriangles&, …) tests triangle by triangle. Objects are
 /// numbered 0 … objects() - 1. Holds 144 bytes for every four triangles begun of an object.
 ///
-/// A refused call changes nothing. Unless a function says otherwise: Errors: none. Cost: constant. Threads:
-/// many may read while nobody changes it. Allocates: nothing.
+/// A refused call changes nothing. What was moved from may only be destroyed or assigned to. Unless a
+/// function says otherwise: Errors: none. Cost: constant. Threads: many may read while nobody changes it.
+/// Allocates: nothing.
 class OccludeeTriangles {
 public:
   /// Without an object.
@@ -58,8 +59,9 @@ public:
   /// finite is always seen. `sides` has one entry an object, or one for all of them; without any, both sides
   /// may be seen. Of Sides::front a triangle is never seen from behind, which is the cheapest answer of all,
   /// and the only one for surfaces that meet an outline from behind. Errors: bad_mesh where corners.size() is
-  /// not three times the sum, and for another number of sides; too_many beyond 2³² - 2 objects or blocks.
-  /// Cost: a copy of the corners. Allocates: for all objects.
+  /// not three times the sum, and for another number of sides; bad_argument for sides that are none (index():
+  /// which entry); too_many beyond 2³² - 2 objects or blocks. Cost: a copy of the corners. Allocates: for all
+  /// objects.
   Status assign(std::span<const Vec3> corners, std::span<const std::uint32_t> triangles_per_object,
                 std::span<const Sides> sides = {});
   /// Gives one object, which has moved, new corners: 3 · triangles(object) of them. Its sides stay.
@@ -86,8 +88,9 @@ private:
 /// A BoxView says itself where its boxes stand: doubles, or floats about its own origin, which is fastest
 /// where it is the view's. All else is in metres about the view's origin.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: drawing is for one, asking for
-/// many at once while nobody draws. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: drawing is for one, asking for many at once while nobody draws. Allocates:
+/// nothing.
 class OcclusionBuffer {
 public:
   /// Allocates: a little.

@@ -36,8 +36,9 @@ struct SlotChange {
 /// object keeps its slot while it stays in its chunk, and while its chunk has room.
 ///
 /// Takes 8 bytes a slot, 5 a chunk, 8 for each change of the largest report, and nothing of a world that has
-/// no order. Unless a function says otherwise: Errors: none. Cost: constant. Threads: many may read and cull
-/// while nobody changes it or its world; changing is for one. Allocates: nothing.
+/// no order. What was moved from may only be destroyed or assigned to. Unless a function says otherwise:
+/// Errors: none. Cost: constant. Threads: many may read and cull while nobody changes it or its world;
+/// changing is for one. Allocates: nothing.
 class ObjectOrder {
 public:
   /// Of no world. Allocates: its first tables.
@@ -103,8 +104,8 @@ struct RangeResult {
 
 /// Culls worlds into ranges of their order.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: one at a time; a world can have
-/// many cullers at once. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: one at a time; a world can have many cullers at once. Allocates: nothing.
 class RangeCuller {
 public:
   /// Allocates: its first tables.

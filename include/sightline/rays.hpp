@@ -66,8 +66,8 @@ float intersect(const Ray& ray, const Box& box) noexcept;
 
 /// Boxes to cast rays at: binned SAH (Wald 2007) collapsed to nodes of eight boxes that SIMD tests at once.
 ///
-/// A refused call changes nothing. Unless a function says otherwise: Errors: none. Cost: constant. Threads:
-/// one at a time. Allocates: nothing.
+/// A refused call changes nothing. What was moved from may only be destroyed or assigned to. Unless a
+/// function says otherwise: Errors: none. Cost: constant. Threads: one at a time. Allocates: nothing.
 class BoxBvh {
 public:
   /// Without a box. Allocates: a little.
@@ -77,8 +77,8 @@ public:
   BoxBvh& operator=(BoxBvh&&) noexcept;
 
   /// Takes the boxes, in metres about `origin`, rounded outwards to single precision there.
-  /// Errors: bad_argument (not sound), bad_box, too_many (beyond 2³⁰). Cost: n log n, some 300 ns a box.
-  /// Allocates: about 70 bytes a box.
+  /// Errors: bad_argument (not sound, an origin beyond kWorldReach), bad_box, too_many (beyond 2³⁰). Cost: n
+  /// log n, some 300 ns a box. Allocates: about 70 bytes a box.
   Status build(const BoxView& boxes, const WorldPoint& origin = {});
   /// Takes over moved boxes, as many as were built with: the tree stays, its bounds become tight again. Rays
   /// get slower where boxes move far; build anew then. Errors: bad_argument (not sound, another number),

@@ -100,8 +100,9 @@ struct ShadowFilter {
 /// Light and receivers may be of any kind: an orthographic shadow view stands for parallel rays, another one
 /// for rays from its eye. After the shadow caster culling of Bittner et al. 2011.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: changing is for one, culling for
-/// many at once while nobody changes it. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: changing is for one, culling for many at once while nobody changes it. Allocates:
+/// nothing.
 class ShadowCasters {
 public:
   /// Allocates: a little.

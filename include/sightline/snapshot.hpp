@@ -88,9 +88,9 @@ struct StreamReport {
 /// as long as the stream lives; a mapped file is what they should be, for nothing of a sector is read before
 /// it comes.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: those of World's for changing
-/// it; work() alone may run on others at the same time, and has returned when the stream goes. Allocates:
-/// nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: those of World's for changing it; work() alone may run on others at the same
+/// time, and has returned when the stream goes. Allocates: nothing.
 class WorldStream {
 public:
   /// Checks all but the sectors, which are checked when they come. `world`, a new one, becomes that of the

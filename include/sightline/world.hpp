@@ -79,8 +79,9 @@ struct OccluderPlacement {
 /// (ours; after the vertex chunks of Lee & Shin 2023).
 ///
 /// A refused call changes nothing. Running out of memory ends the program, as everywhere without exceptions.
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: many may read and cull (each with
-/// a Culler of its own) while nobody changes it; changing is for one. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: many may read and cull (each with a Culler of its own) while nobody changes it;
+/// changing is for one. Allocates: nothing.
 class World {
 public:
   /// An empty world. Allocates: its first tables.
@@ -143,9 +144,9 @@ public:
   /// Gives each object an occluder, switched on, which hides from culls with Occlusion::automatic what lies
   /// behind it. Call it again when the object has moved: an occluder that reaches out of its object's box is
   /// not drawn. A view about the placement's origin draws it exactly where the transform says; for others the
-  /// translation is rounded once. Errors: bad_argument (lengths, an unknown occluder, a transform that is not
-  /// finite or not affine, an origin beyond kWorldReach), stale_handle. Cost: linear. Allocates: some 200
-  /// bytes an object that carries one, 4 an id.
+  /// translation is rounded once. Errors: bad_argument (lengths, strides, pointers, an unknown occluder, a
+  /// transform that is not finite or not affine, an origin beyond kWorldReach), stale_handle. Cost: linear.
+  /// Allocates: some 200 bytes an object that carries one, 4 an id.
   Status set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements);
   /// Switches what the objects carry on (1) or off (0), as doors do; those that carry nothing stay so.
   /// Errors: bad_argument, stale_handle. Cost: linear.
@@ -300,8 +301,8 @@ std::size_t cull_capacity(const World& world, const CullOptions& options = {}) n
 
 /// Culls worlds, and remembers from frame to frame what helps the next.
 ///
-/// Unless a function says otherwise: Errors: none. Cost: constant. Threads: one at a time; a world can have
-/// many cullers at once. Allocates: nothing.
+/// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
+/// Cost: constant. Threads: one at a time; a world can have many cullers at once. Allocates: nothing.
 class Culler {
 public:
   /// Allocates: its first tables.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -50,10 +51,14 @@ struct SphereBlock {
 
 /// min <= max on each axis and within ±kWorldReach; false for what is no number.
 inline bool is_valid(const WorldBox& b) noexcept {
-  const auto in_reach = [](double low, double high) {
+  const auto is_range = [](double low, double high) {
     return low >= -kWorldReach && high <= kWorldReach && low <= high;
   };
-  return in_reach(b.min.x, b.max.x) && in_reach(b.min.y, b.max.y) && in_reach(b.min.z, b.max.z);
+  return is_range(b.min.x, b.max.x) && is_range(b.min.y, b.max.y) && is_range(b.min.z, b.max.z);
+}
+/// Within ±kWorldReach on each axis; false for what is no number.
+inline bool in_reach(const WorldPoint& p) noexcept {
+  return std::fabs(p.x) <= kWorldReach && std::fabs(p.y) <= kWorldReach && std::fabs(p.z) <= kWorldReach;
 }
 
 /// The box about an origin, rounded outwards.

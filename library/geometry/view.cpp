@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "library/geometry/box_reader.hpp"
 #include "library/geometry/elementary.hpp"
 #include "library/geometry/linear.hpp"
 
@@ -140,11 +141,8 @@ Status check(const View& view) noexcept {
 }
 
 Status check(const WorldView& view) noexcept {
-  const WorldPoint& o = view.origin;
-  // False for NaN, too.
-  const bool near =
-      std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach;
-  return near ? check(view.view) : bad("view: its origin is out of range, expected within 1e11 m of 0");
+  if (!in_reach(view.origin)) return bad("view: its origin is out of range, expected within 1e11 m of 0");
+  return check(view.view);
 }
 
 Mat4 world_to_clip(const View& view) noexcept {

@@ -204,6 +204,8 @@ Result<Occluder> make_occluder(std::span<const Vec3> positions, std::span<const 
   if (const Status sound = check_mesh(positions, indices, sides); !sound) return sound;
   if (options.most_triangles > kMost || options.most_boxes > kMost)
     return Status{StatusCode::bad_argument, "occluder: expected at most 4096 triangles and 4096 boxes"};
+  if (options.most_triangles == 0 && options.most_boxes == 0)
+    return Status{StatusCode::bad_argument, "make_occluder: expected room for some triangles or boxes"};
   return Maker(parts_of(positions, indices, sides), options).make();
 }
 

@@ -15,6 +15,10 @@ Status check_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t
   if (sides.size() > 1 && sides.size() != indices.size() / 3)
     return {StatusCode::bad_mesh, "occluder: expected as many sides as triangles, one, or none",
             sides.size()};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!is_known(sides[i]))
+      return {StatusCode::bad_argument, "occluder: sides are none, expected both or front", i};
+  }
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!geometry::is_finite(positions[i]))
       return {StatusCode::bad_mesh, "occluder: a position is not finite", i};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "library/occlusion/depth_tiles.hpp"
+#include "library/occlusion/mesh_check.hpp"
 
 namespace sightline {
 
@@ -63,6 +64,10 @@ Status OccludeeTriangles::assign(std::span<const Vec3> corners,
   if (corners.size() != 3 * triangles) return kExpectedCorners;
   if (sides.size() > 1 && sides.size() != triangles_per_object.size())
     return {StatusCode::bad_mesh, "occludees: expected sides for each object, one for all, or none"};
+  const auto odd = std::ranges::find_if_not(sides, occlusion::is_known);
+  if (odd != sides.end())
+    return {StatusCode::bad_argument, "occludees: sides are none, expected both or front",
+            static_cast<std::size_t>(odd - sides.begin())};
   State& s = *state_;
   s.sides.assign(triangles_per_object.size(), sides.empty() ? Sides::both : sides[0]);
   if (sides.size() > 1) std::ranges::copy(sides, s.sides.begin());

@@ -88,6 +88,8 @@ Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
                                         std::span<const std::uint32_t> indices, std::span<const Sides> sides,
                                         TJunctions junctions) {
   if (const Status sound = occlusion::check_mesh(positions, indices, sides); !sound) return sound;
+  if (junctions != TJunctions::open && junctions != TJunctions::closed)
+    return Status{StatusCode::bad_argument, "occluder: the T-junctions are none, expected open or closed"};
   OccluderMesh mesh;
   add_triangles(*mesh.topology_, positions, indices, sides);
   sort_along_curve(*mesh.topology_);

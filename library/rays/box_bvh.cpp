@@ -77,6 +77,8 @@ Status BoxBvh::build(const BoxView& boxes, const WorldPoint& origin) {
   if (!boxes.sound())
     return {StatusCode::bad_argument, "rays: a box's pointer is null or its stride too short"};
   if (boxes.size() > std::size_t{1} << 30) return {StatusCode::too_many, "rays: expected at most 2^30 boxes"};
+  if (!geometry::in_reach(origin))
+    return {StatusCode::bad_argument, "rays: the origin is out of range, expected within 1e11 m of 0"};
   Boxes taken;
   taken.resize(boxes.size());
   if (const Status sound = take(boxes, origin, taken); !sound) return sound;

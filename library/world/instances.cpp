@@ -86,9 +86,7 @@ Status check_placement(const InstancesState& s, const InstancePlacement& p, std:
     return {StatusCode::bad_argument,
             "instances: a transform is not sound, expected a rotation, a uniform scale and a translation",
             index};
-  const WorldPoint& o = p.origin;
-  // False for NaN, too.
-  if (!(std::fabs(o.x) <= kWorldReach && std::fabs(o.y) <= kWorldReach && std::fabs(o.z) <= kWorldReach))
+  if (!in_reach(p.origin))
     return {StatusCode::bad_argument, "instances: an origin is out of range, expected within 1e11 m of 0",
             index};
   return {};

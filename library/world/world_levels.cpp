@@ -386,7 +386,9 @@ Result<LevelTableId> World::add_levels(std::span<const float> sizes) {
 
 Status World::set_levels(Strided<const Handle> handles, Strided<const LevelTableId> tables) {
   if (const Status stand = world::check_handles(*this, handles); !stand) return stand;
-  if (!tables.sound() || tables.size() != handles.size())
+  if (!tables.sound())
+    return {StatusCode::bad_argument, "world: the tables' pointer is null or their stride too short"};
+  if (tables.size() != handles.size())
     return {StatusCode::bad_argument, "world: expected one table of levels an object"};
   auto* levels = static_cast<world::WorldLevels*>(state_->levels.get());
   const std::size_t count = levels ? levels->tables.size() : 1;

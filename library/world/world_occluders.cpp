@@ -7,6 +7,7 @@
 #include "library/geometry/box_math.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/geometry/linear.hpp"
+#include "library/occlusion/mesh_check.hpp"
 #include "library/world/automatic_cull.hpp"
 #include "library/world/free_list.hpp"
 #include "library/world/world_state.hpp"
@@ -120,10 +121,6 @@ Status make_meshes(const Occluder& occluder, OccluderShape& shape) {
 bool is_affine(const Mat4& m) noexcept {
   return std::all_of(m.m.begin(), m.m.end(), [](float x) { return std::isfinite(x); }) && m.m[3] == 0 &&
          m.m[7] == 0 && m.m[11] == 0 && m.m[15] == 1;
-}
-
-bool in_reach(const WorldPoint& p) noexcept {
-  return geometry::is_valid(WorldBox{p, p});
 }
 
 bool names_one(const WorldOccluders& o, OccluderId id) noexcept {
@@ -247,7 +244,9 @@ Status World::remove_occluder(OccluderId occluder) {
 
 Status World::set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements) {
   if (const Status stand = world::check_handles(*this, handles); !stand) return stand;
-  if (!placements.sound() || placements.size() != handles.size())
+  if (!placements.sound())
+    return {StatusCode::bad_argument, "world: the placements' pointer is null or their stride too short"};
+  if (placements.size() != handles.size())
     return {StatusCode::bad_argument, "world: expected one occluder's placement a handle"};
   WorldOccluders& o = state_->own_occluders();
   for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -255,7 +254,7 @@ Status World::set_occluders(Strided<const Handle> handles, Strided<const Occlude
     if (placement.occluder == kNoOccluder) continue;
     if (!world::names_one(o, placement.occluder))
       return {StatusCode::bad_argument, "world: a placement names no occluder of this world", i};
-    if (!world::is_affine(placement.transform) || !world::in_reach(placement.origin))
+    if (!world::is_affine(placement.transform) || !geometry::in_reach(placement.origin))
       return {StatusCode::bad_argument,
               "world: a placement is not finite, not affine or out of reach, expected the last row 0 0 0 1",
               i};
@@ -267,7 +266,9 @@ Status World::set_occluders(Strided<const Handle> handles, Strided<const Occlude
 
 Status World::set_occluding(Strided<const Handle> handles, Strided<const std::uint8_t> on) {
   if (const Status stand = world::check_handles(*this, handles); !stand) return stand;
-  if (!on.sound() || on.size() != handles.size())
+  if (!on.sound())
+    return {StatusCode::bad_argument, "world: the switches' pointer is null or their stride too short"};
+  if (on.size() != handles.size())
     return {StatusCode::bad_argument, "world: expected one switch, 0 or 1, a handle"};
   for (std::size_t i = 0; i < on.size(); ++i)
     if (on[i] > 1) return {StatusCode::bad_argument, "world: a switch is neither 0 nor 1", i};
@@ -286,9 +287,9 @@ Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const 
   if (corners.size() % 3 != 0) return {StatusCode::bad_mesh, "world: expected three points a triangle"};
   if (corners.size() / 3 > std::size_t{1} << 30)
     return {StatusCode::too_many, "world: an object cannot have more than 2^30 triangles"};
-  if (!world::in_reach(origin))
+  if (!geometry::in_reach(origin))
     return {StatusCode::bad_argument, "world: the triangles' origin is not finite or out of reach"};
-  if (sides != Sides::both && sides != Sides::front)
+  if (!occlusion::is_known(sides))
     return {StatusCode::bad_argument, "world: the triangles' sides are none, expected both or front"};
   state_->own_occluders().set_triangles(handle.index, corners, origin, sides, state_->objects.size());
   return {};

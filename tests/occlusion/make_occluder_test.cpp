@@ -33,6 +33,9 @@ TEST(MakeOccluder, RefusesWhatOccluderMeshRefuses) {
   const std::vector<std::uint32_t> point{0, 0, 0};
   EXPECT_EQ(make_occluder(sound, point, {}, {4097, 0}).error().code(), StatusCode::bad_argument);
   EXPECT_EQ(make_occluder(sound, point, {}, {0, 4097}).error().code(), StatusCode::bad_argument);
+  EXPECT_EQ(make_occluder(sound, point, {}, {0, 0}).error().code(), StatusCode::bad_argument);
+  const auto none = static_cast<Sides>(9);
+  EXPECT_EQ(make_occluder(sound, point, {&none, 1}).error().code(), StatusCode::bad_argument);
   EXPECT_EQ(make_occluder(sound, point)->yield, OccluderYield::empty);
   EXPECT_EQ(make_occluder({}, {})->yield, OccluderYield::empty);
 }
@@ -90,14 +93,14 @@ TEST(MakeOccluder, KnowsWhatIsInside) {
 }
 
 TEST(MakeOccluder, KeepsWithinItsMeans) {
-  for (const std::uint32_t most : {0u, 3u, 20u}) {
+  for (const OccluderOptions& most : {OccluderOptions{0, 2}, {3, 0}, {20, 5}}) {
     for (const NamedMesh& mesh : test::closed_concave_meshes()) {
       if (mesh.name != "bell") continue;
-      const Occluder made = make(mesh.shape, Sides::both, {most, most / 4});
-      EXPECT_LE(made.sides.size(), most) << mesh.name;
+      const Occluder made = make(mesh.shape, Sides::both, most);
+      EXPECT_LE(made.sides.size(), most.most_triangles) << mesh.name;
       EXPECT_EQ(made.indices.size(), 3 * made.sides.size());
-      EXPECT_LE(made.boxes.size(), most / 4);
-      EXPECT_EQ(made.sides.empty(), most == 0) << mesh.name << " of " << most;
+      EXPECT_LE(made.boxes.size(), most.most_boxes);
+      EXPECT_EQ(made.sides.empty(), most.most_triangles == 0) << mesh.name << " of " << most.most_triangles;
     }
   }
 }

@@ -73,6 +73,9 @@ TEST(OccludeeTriangles, RefuseWhatDoesNotFitAndStayAsTheyAre) {
   EXPECT_FALSE(occludees.assign(corners, more));
   const std::array sides{Sides::front, Sides::both, Sides::front};
   EXPECT_EQ(occludees.assign(corners, counts, sides).code(), StatusCode::bad_mesh);
+  const std::array odd{Sides::front, static_cast<Sides>(9)};
+  EXPECT_EQ(occludees.assign(corners, counts, odd).code(), StatusCode::bad_argument);
+  EXPECT_EQ(occludees.assign(corners, counts, odd).index(), 1u);
   EXPECT_EQ(occludees.objects(), 2u);
   EXPECT_EQ(occludees.triangles(1), 1u);
   EXPECT_FALSE(occludees.set(0, corners));

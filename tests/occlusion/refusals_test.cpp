@@ -67,6 +67,14 @@ TEST(OcclusionRefusals, MeshesAndTransforms) {
   positions[1].y = std::nanf("");
   EXPECT_EQ(OccluderMesh::make(positions, kCorners).error().index(), 1u);
   EXPECT_EQ(OccluderMesh::make({}, {})->triangles(), 0u);
+  constexpr auto kNoSides = static_cast<Sides>(9);
+  const std::array twice{0u, 1u, 2u, 0u, 2u, 1u};
+  const Status no_sides = OccluderMesh::make(kTriangle, twice, std::array{Sides::front, kNoSides}).error();
+  EXPECT_EQ(no_sides.code(), StatusCode::bad_argument);
+  EXPECT_EQ(no_sides.index(), 1u);
+  EXPECT_EQ(OccluderMesh::make(kTriangle, twice, kNoSides).error().index(), 0u);
+  EXPECT_EQ(OccluderMesh::make(kTriangle, twice, Sides::both, static_cast<TJunctions>(9)).error().code(),
+            StatusCode::bad_argument);
   const OccluderMesh mesh = *OccluderMesh::make(kTriangle, kCorners);
   OcclusionBuffer buffer;
   ASSERT_TRUE(buffer.begin(kView));

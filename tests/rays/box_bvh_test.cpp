@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -116,6 +117,23 @@ TEST(BoxBvh, FindsASetThatAViewSees) {
   EXPECT_GT(*seen, *less);
   EXPECT_LT(*seen, 300u);
   EXPECT_GT(*less, 3u);
+}
+
+TEST(BoxBvh, TakesNoOriginOutOfReach) {
+  BoxBvh bvh;
+  const std::vector<Box> boxes{{{-1, -1, -1}, {1, 1, 1}}};
+  ASSERT_TRUE(bvh.build(boxes));
+  for (const double bad : {double{NAN}, double{INFINITY}, -double{INFINITY}, 1e15, -1e300, 1.001e11}) {
+    for (const WorldPoint& origin : {WorldPoint{bad, 0, 0}, WorldPoint{0, bad, 0}, WorldPoint{0, 0, bad}})
+      EXPECT_EQ(bvh.build(boxes, origin).code(), StatusCode::bad_argument) << bad;
+  }
+  std::array<ObjectId, 1> met{};
+  ASSERT_TRUE(bvh.cast(std::array{Ray{{0, 0, 9}, {0, 0, -1}}}, met));
+  EXPECT_EQ(met[0], 0u) << "it is as it was";
+  const WorldPoint far{-kWorldReach, 0, kWorldReach};
+  ASSERT_TRUE(bvh.build(std::array{WorldBox{far, far}}, far));
+  ASSERT_TRUE(bvh.cast(std::array{Ray{{0, 0, 9}, {0, 0, -1}}}, met));
+  EXPECT_EQ(met[0], 0u) << "at the border of what is in reach";
 }
 
 TEST(BoxBvh, RefusesWhatIsWrongAndStaysAsItWas) {

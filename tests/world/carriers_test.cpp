@@ -242,6 +242,8 @@ TEST(Carriers, RefusesWhatItCannotTake) {
   EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_box);
   bad.boxes.clear(), bad.indices = {0, 1, 2};
   EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_mesh);
+  bad = kUnitBox, bad.sides = {static_cast<Sides>(9)};
+  EXPECT_EQ(world.add_occluder(bad).error().code(), StatusCode::bad_argument);
   EXPECT_EQ(world.remove_occluder(7).code(), StatusCode::bad_argument);
   std::array<OccluderPlacement, 1> placement{OccluderPlacement{7}};
   EXPECT_EQ(world.set_occluders(one, placement).code(), StatusCode::bad_argument);
@@ -253,6 +255,11 @@ TEST(Carriers, RefusesWhatItCannotTake) {
   EXPECT_EQ(world.set_occluders(one, placement).code(), StatusCode::bad_argument);
   EXPECT_EQ(world.set_occluding(one, std::array<std::uint8_t, 1>{2}).code(), StatusCode::bad_argument);
   EXPECT_EQ(world.set_occluding({}, std::array<std::uint8_t, 1>{1}).code(), StatusCode::bad_argument);
+  const std::array<std::uint8_t, 2> switches{};
+  EXPECT_STREQ(world.set_occluders(one, {nullptr, 1}).message(),
+               "world: the placements' pointer is null or their stride too short");
+  EXPECT_STREQ(world.set_occluding(one, {switches.data(), 1, 0}).message(),
+               "world: the switches' pointer is null or their stride too short");
   EXPECT_EQ(world.set_triangles(one[0], std::array<Vec3, 2>{}).code(), StatusCode::bad_mesh);
   EXPECT_EQ(world.set_triangles({}, {}).code(), StatusCode::stale_handle);
   EXPECT_EQ(world.set_triangles(one[0], {}, {}, static_cast<Sides>(2)).code(), StatusCode::bad_argument);

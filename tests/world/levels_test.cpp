@@ -337,6 +337,8 @@ TEST(Levels, AreRefusedWhereTheyMeanNothing) {
   EXPECT_EQ(code({5}), StatusCode::ok);
   ASSERT_TRUE(world.set_levels(handle, tables));
   EXPECT_EQ(world.set_levels(handle, tables.first(0)).code(), StatusCode::bad_argument);
+  EXPECT_STREQ(world.set_levels(handle, {table.data(), 1, 0}).message(),
+               "world: the tables' pointer is null or their stride too short");
   EXPECT_EQ(world.levels(handle[0]), 1u);
   EXPECT_EQ(world.levels({}), kNoLevels);
   table[0] = 2;

@@ -1,4 +1,8 @@
+#include <sightline/inspect.hpp>
+#include <sightline/instances.hpp>
 #include <sightline/occlusion.hpp>
+#include <sightline/ranges.hpp>
+#include <sightline/rays.hpp>
 #include <sightline/world.hpp>
 
 #include <gtest/gtest.h>
@@ -12,6 +16,7 @@
 #include "library/world/world_state.hpp"
 #include "support/cull.hpp"
 #include "support/random_views.hpp"
+#include "support/snapshots.hpp"
 #include "support/world_twin.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -346,6 +351,44 @@ TEST(World, CullsViewsThatAreTheSameForEachOfThem) {
   const CullResult result = test::cull(culler, world, test::cull_views(five, 0, occlusion), visible, masks);
   EXPECT_TRUE(std::any_of(masks.begin(), masks.begin() + static_cast<std::ptrdiff_t>(result.count),
                           [](std::uint8_t mask) { return (mask & 5) == 4; }));
+}
+
+// Into a new object, whose source is then assigned to again, and out of one that goes without more.
+template <class T, class Works>
+void expect_moves(T first, const Works& works) {
+  T second(std::move(first));
+  EXPECT_TRUE(works(second));
+  first = std::move(second);
+  EXPECT_TRUE(works(first));
+}
+
+TEST(World, AndAllThatMovesMayBeAssignedToAndGoWhenMovedFrom) {
+  World world;
+  std::array<Handle, 1> handle;
+  const std::array boxes{Box{{-1, -1, -9}, {1, 1, -8}}};
+  ASSERT_TRUE(world.insert(BoxView(boxes), handle));
+  const CullView view{.view = {*make_view({}, 64, 64), {}}};
+  std::vector<ObjectId> ids(cull_capacity(world));
+  Instances instances;
+  ObjectOrder order;
+  ASSERT_TRUE(order.update(world));
+  const auto takes_a_box = [&](auto& to) { return bool{to.insert(BoxView(boxes), handle)}; };
+  const auto culls = [&](Culler& by) { return by.cull(world, view, ids)->count == 1; };
+  expect_moves(World(), takes_a_box);
+  expect_moves(Culler(), culls);
+  expect_moves(RangeCuller(), [&](RangeCuller& by) { return bool{by.cull(world, order, view)}; });
+  expect_moves(InstanceCuller(), [&](InstanceCuller& by) { return bool{by.cull(instances, view)}; });
+  expect_moves(CullInspector(), [&](CullInspector& by) { return bool{by.inspect(world, {&view, 1})}; });
+  expect_moves(Instances(), [&](Instances& in) { return bool{in.add_world(world)}; });
+  expect_moves(ObjectOrder(), [&](ObjectOrder& in) { return bool{in.update(world)}; });
+  expect_moves(ShadowCasters(), [&](ShadowCasters& in) { return bool{in.begin(view.view, view.view)}; });
+  expect_moves(OcclusionBuffer(), [&](OcclusionBuffer& in) { return bool{in.begin(view.view)}; });
+  expect_moves(OccluderMesh(), [](OccluderMesh& mesh) { return mesh.triangles() == 0; });
+  expect_moves(OccludeeTriangles(), [](OccludeeTriangles& of) { return of.objects() == 0; });
+  expect_moves(BoxBvh(), [&](BoxBvh& bvh) { return bool{bvh.build(boxes)}; });
+  const test::FileBytes bytes = test::saved(world);
+  World streamed;
+  expect_moves(*WorldStream::open(bytes, streamed), [](WorldStream& stream) { return stream.size() == 1; });
 }
 
 }  // namespace

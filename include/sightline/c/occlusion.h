@@ -75,7 +75,7 @@ static inline sightline_occluder_parts sightline_occluder_parts_default(void) {
 /** Makes an occluder of any mesh, closed or not, given as to sightline_occluder_mesh_create(): flat pieces
  * merged, and of closed parts what lies inside them. It covers no point that the mesh does not cover as near
  * or nearer; like a solid box, what lies inside is for eyes and near planes outside of the mesh. At most so
- * many triangles, 64 are good, and so many boxes, 8; at most 4096 each, 0 for none. Errors: as
+ * many triangles, 64 are good, and so many boxes, 8; at most 4096 each, 0 for none, not both. Errors: as
  * sightline_occluder_mesh_create(); BAD_ARGUMENT. Cost: n log n; a tenth of a second to half of one a large
  * part. Allocates: about 400 bytes a triangle, meanwhile. */
 SIGHTLINE_API sightline_status sightline_occluder_create(const float* positions, size_t position_count,
