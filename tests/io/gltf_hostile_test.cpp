@@ -191,6 +191,26 @@ TEST(GltfHostile, NumbersThatAreNone) {
   EXPECT_THAT(refusal(document), HasSubstr("object 0"));
 }
 
+TEST(GltfHostile, TransformsThatTheFormatForbids) {
+  const auto said = [](const std::string& node) {
+    json document = one_triangle();
+    document["nodes"][0].update(json::parse(node));
+    return refusal(document);
+  };
+  EXPECT_EQ(said(R"({"matrix": [1,0,0,0, 0,1,0,0.5, 0,0,1,0, 0,0,0,2]})"),
+            "sample.gltf: node 0 has 'matrix' with the last row 0 0.5 0 2, expected 0 0 0 1");
+  EXPECT_THAT(said(R"({"matrix": [1,0,0,1e-5, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), HasSubstr("the last row"));
+  EXPECT_THAT(said(R"({"matrix": [0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,0]})"), HasSubstr("the last row"));
+  EXPECT_EQ(said(R"({"rotation": [0, 0, 0, 5]})"),
+            "sample.gltf: node 0 has 'rotation' of length 5, expected a quaternion of length 1");
+  for (const std::string turn : {"0, 0, 0, 0", "0, 0, 0, 1.011", "0, 0.989, 0, 0", "1e300, 0, 0, 1e300"})
+    EXPECT_THAT(said(R"({"rotation": [)" + turn + "]}"), HasSubstr("'rotation' of length")) << turn;
+  const std::string matrix = R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], )";
+  for (const std::string part :
+       {R"("translation": [0, 0, 0])", R"("rotation": [0, 0, 0, 1])", R"("scale": [1, 1, 1])"})
+    EXPECT_THAT(said(matrix + part + "}"), HasSubstr("node 0 has 'matrix' beside")) << part;
+}
+
 TEST(GltfHostile, SparseIndicesMustAscendWithinTheCount) {
   for (const std::vector<std::uint16_t>& indices : {std::vector<std::uint16_t>{1, 1}, {2, 1}, {1, 3}}) {
     json document = one_triangle();

@@ -207,6 +207,16 @@ TEST(GltfMaterialHostile, BrokenImagesAreOneSentence) {
   }
 }
 
+TEST(GltfMaterialHostile, ModesThatTheFormatLacks) {
+  json document = one_triangle();
+  for (const json& mode : {json("FOO"), json("opaque"), json(""), json(3), json(nullptr), json::array()}) {
+    document["materials"] = {json::object(), {{"alphaMode", mode}}};
+    EXPECT_EQ(error_of([&] { read_document(document); }),
+              "sample.gltf: material 1 has 'alphaMode' that is not OPAQUE, MASK or BLEND")
+        << mode.dump();
+  }
+}
+
 TEST(GltfMaterialHostile, ReferencesAndNumbers) {
   json document = with_image(png());
   document["textures"][0]["source"] = 1;

@@ -82,6 +82,20 @@ TEST(Gltf, MatrixIsColumnMajor) {
   EXPECT_EQ(read(document).bounds[0], (Box{{10, 20, 30}, {11, 23, 30}}));
 }
 
+TEST(Gltf, TransformsMayBeRounded) {
+  json document = one_triangle();
+  json& node = document["nodes"][0];
+  node["matrix"] = {1, 0, 0, 1e-7, 0, 3, 0, -1e-7, 0, 0, 1, 0, 10, 20, 30, 1.0000001};
+  EXPECT_EQ(read(document).bounds[0], (Box{{10, 20, 30}, {11, 23, 30}}));
+  node.erase("matrix");
+  for (const double length : {0.991, 1.009}) {
+    node["rotation"] = {0, 0, length, 0};
+    const Box box = read(document).bounds[0];
+    EXPECT_NEAR(box.min.x, -1, 1e-6);
+    EXPECT_NEAR(box.min.y, -1, 1e-6);
+  }
+}
+
 TEST(Gltf, WithoutScenesTheRootsAreShown) {
   json document = one_triangle();
   document.erase("scene");

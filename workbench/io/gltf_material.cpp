@@ -28,6 +28,15 @@ double number_or(const Json& object, const char* key, double fallback) {
   return found != nullptr ? number_of(*found, key) : fallback;
 }
 
+/// glTF's default where the material says none.
+std::string alpha_mode_of(const Json& material) {
+  if (find(material, "alphaMode") == nullptr) return "OPAQUE";
+  std::string mode = text_of(material, "alphaMode");
+  if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+    throw Error("has 'alphaMode' that is not OPAQUE, MASK or BLEND");
+  return mode;
+}
+
 /// KHR_texture_transform: scaled, then turned, then moved.
 void read_move(const Json& transform, std::uint64_t material, Look& look) {
   std::array<double, 2> offset{0, 0}, scale{1, 1};
@@ -71,7 +80,7 @@ const Look& MaterialReader::look_of(const Json& primitive) const {
 
 Look MaterialReader::read(const Json& material, std::uint64_t index) {
   Look look;
-  const std::string mode = text_of(material, "alphaMode");
+  const std::string mode = alpha_mode_of(material);
   look.material.sides = says(material, "doubleSided") ? Sides::both : Sides::front;
   if (mode == "BLEND") look.material.surface = Surface::transparent;
   if (mode == "MASK") read_cut_out(material, index, look);

@@ -85,6 +85,28 @@ std::optional<WorldPoint> kept_origin(const Document& document) {
   return {};
 }
 
+// So far exporters round a matrix's last row, and the length of a quaternion.
+constexpr double kRowRounding = 1e-6, kTurnRounding = 0.01;
+
+Transform node_matrix(const Json& matrix) {
+  std::array<double, 16> m;
+  numbers_of(matrix, "matrix", m);
+  const std::array<double, 4> row{m[3], m[7], m[11], m[15]}, expected{0, 0, 0, 1};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (!(std::abs(row[i] - expected[i]) <= kRowRounding))
+      throw Error(fmt::format("has 'matrix' with the last row {}, expected 0 0 0 1", fmt::join(row, " ")));
+  }
+  m[3] = m[7] = m[11] = 0, m[15] = 1;
+  return glm::make_mat4(m.data());
+}
+
+void read_turn(const Json& rotation, std::array<double, 4>& out) {
+  numbers_of(rotation, "rotation", out);
+  const double length = glm::length(glm::make_vec4(out.data()));
+  if (!(std::abs(length - 1) <= kTurnRounding))
+    throw Error(fmt::format("has 'rotation' of length {:.4g}, expected a quaternion of length 1", length));
+}
+
 class SceneReader {
 public:
   SceneReader(Document& document, std::uint64_t file_bytes, Scene& scene)
@@ -133,17 +155,17 @@ private:
   };
 
   static Transform local_transform(const Json& node) {
+    const Json *translation = find(node, "translation"), *rotation = find(node, "rotation"),
+               *scale = find(node, "scale");
     if (const Json* matrix = find(node, "matrix")) {
-      std::array<double, 16> m;
-      numbers_of(*matrix, "matrix", m);
-      m[3] = m[7] = m[11] = 0, m[15] = 1;  // the last row is not looked at
-      return glm::make_mat4(m.data());
+      if (translation != nullptr || rotation != nullptr || scale != nullptr)
+        throw Error("has 'matrix' beside 'translation', 'rotation' or 'scale', expected one or the other");
+      return node_matrix(*matrix);
     }
     Parts parts;
-    if (const Json* translation = find(node, "translation"))
-      numbers_of(*translation, "translation", parts.translation);
-    if (const Json* rotation = find(node, "rotation")) numbers_of(*rotation, "rotation", parts.rotation);
-    if (const Json* scale = find(node, "scale")) numbers_of(*scale, "scale", parts.scale);
+    if (translation != nullptr) numbers_of(*translation, "translation", parts.translation);
+    if (rotation != nullptr) read_turn(*rotation, parts.rotation);
+    if (scale != nullptr) numbers_of(*scale, "scale", parts.scale);
     return compose(parts);
   }
 
