@@ -71,9 +71,14 @@ bool take_struct(const void* given, std::size_t first_size, T& taken) noexcept {
   return true;
 }
 
+/// Spheres where they lie, or copies of those whose x, y and z do not lie side by side.
+struct GivenSpheres : SphereView {
+  std::vector<Sphere> copied;
+};
+
 // Of what the caller gave; refused where it is not what its function makes.
 Status take(const sightline_box_view& given, BoxView& boxes) noexcept;
-Status take(const sightline_sphere_view& given, SphereView& spheres) noexcept;
+Status take(const sightline_sphere_view& given, GivenSpheres& spheres) noexcept;
 Status take(const sightline_jobs& given, JobSystem& jobs) noexcept;
 /// The same of a view, which must be sound.
 Status take(const sightline_view& given, WorldView& view) noexcept;

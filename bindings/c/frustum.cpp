@@ -73,7 +73,7 @@ sightline_status sightline_cull_spheres(const sightline_frustum* frustum,
                                         size_t capacity, size_t* count) {
   if (!frustum || !spheres || !can_hold(visible, capacity) || !count)
     return refuse("cull spheres: a pointer is NULL, or the capacity more than memory holds");
-  SphereView given;
+  GivenSpheres given;
   if (const Status ok = c_api::take(*spheres, given); !ok) return keep(ok);
   const Result<std::size_t> kept = cull_spheres(frustum_of(*frustum), given, {visible, capacity});
   if (!kept) return keep(kept.error());

@@ -20,24 +20,35 @@ using namespace sightline::c_api;
 
 namespace {
 
-// What boxes and spheres have in common: View is BoxView or SphereView, Given the C struct for it.
-template <class View, class Given>
+// What boxes and spheres have in common: Taken is BoxView or GivenSpheres, Given the C struct for it.
+template <class Taken, class View, class Given>
 sightline_status draw(sightline_occlusion* occlusion, const Given* volumes,
                       Status (OcclusionBuffer::*draw_them)(const View&) noexcept) {
   if (!occlusion || !volumes) return refuse("occlusion: the occlusion or what to draw is NULL");
-  View view;
+  Taken view;
   if (const Status ok = take(*volumes, view); !ok) return keep(ok);
   return keep((occlusion->buffer.*draw_them)(view));
 }
 
-template <class View, class Given>
+template <class Taken, class Given>
 sightline_status may_see(const sightline_occlusion* occlusion, const Given* volumes, uint8_t* visible,
                          size_t capacity) {
   if (!occlusion || !volumes || !can_hold(visible, capacity))
     return refuse("occlusion: a pointer is NULL, or the capacity more than memory holds");
-  View view;
+  Taken view;
   if (const Status ok = take(*volumes, view); !ok) return keep(ok);
   return keep(occlusion->buffer.may_see(view, {visible, capacity}));
+}
+
+// What the library refuses by counts alone: here before anything is copied for it.
+Status check_counts(std::size_t positions, std::size_t indices, std::size_t sides) {
+  constexpr std::size_t kMostTriangles = std::size_t{1} << 30, kMostPositions = 0xfffffffe;
+  if (indices % 3 != 0) return {StatusCode::bad_mesh, "occluder: expected three indices a triangle", indices};
+  if (indices / 3 > kMostTriangles || positions > kMostPositions)
+    return {StatusCode::too_many, "occluder: expected at most 2^30 triangles and 2^32 - 2 positions"};
+  if (sides > 1 && sides != indices / 3)
+    return {StatusCode::bad_mesh, "occluder: expected as many sides as triangles, one, or none", sides};
+  return {};
 }
 
 }  // namespace
@@ -49,6 +60,7 @@ Status c_api::take_mesh(const float* positions, size_t position_count, const uin
       !can_hold(indices, index_count) || !can_hold(sides, side_count))
     return {StatusCode::bad_argument,
             "occluder: positions, indices or sides are NULL, or more than memory holds"};
+  if (const Status ok = check_counts(position_count, index_count, side_count); !ok) return ok;
   drawn.resize(side_count);
   for (std::size_t i = 0; i < side_count; ++i) {
     if (sides[i] > SIGHTLINE_FRONT_SIDE)
@@ -184,7 +196,7 @@ sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
 
 sightline_status sightline_occlusion_draw_spheres(sightline_occlusion* occlusion,
                                                   const sightline_sphere_view* spheres) {
-  return draw<SphereView>(occlusion, spheres, &OcclusionBuffer::draw_spheres);
+  return draw<GivenSpheres>(occlusion, spheres, &OcclusionBuffer::draw_spheres);
 }
 
 sightline_status sightline_occlusion_draw_mesh(sightline_occlusion* occlusion,
@@ -205,7 +217,7 @@ sightline_status sightline_occlusion_may_see_boxes(const sightline_occlusion* oc
 sightline_status sightline_occlusion_may_see_spheres(const sightline_occlusion* occlusion,
                                                      const sightline_sphere_view* spheres, uint8_t* visible,
                                                      size_t capacity) {
-  return may_see<SphereView>(occlusion, spheres, visible, capacity);
+  return may_see<GivenSpheres>(occlusion, spheres, visible, capacity);
 }
 
 sightline_status sightline_occlusion_may_see_triangles(const sightline_occlusion* occlusion,

@@ -18,6 +18,16 @@ namespace {
 
 static_assert(SIGHTLINE_NO_CELL == kNoCell);
 
+// x * y * z, or more than there can be.
+std::uint64_t cells_of(const std::uint32_t (&counts)[3]) {
+  std::uint64_t cells = 1;
+  for (const std::uint32_t along : counts) {
+    cells *= along;
+    if (cells > kMostCells) return kMostCells + 1;
+  }
+  return cells;
+}
+
 Status take(const sightline_pvs_cells& given, CellPvs& cells) {
   sightline_pvs_cells c = sightline_pvs_cells_default();
   if (!take_struct(&given, SIGHTLINE_FIRST_SIZE(sightline_pvs_cells, visible_count), c)) {
@@ -28,13 +38,16 @@ Status take(const sightline_pvs_cells& given, CellPvs& cells) {
   if (!c.open || !c.first || !can_hold(c.visible, c.visible_count)) {
     return {StatusCode::bad_argument, "pvs: open, first or visible are NULL, or more than memory holds"};
   }
+  // Before anything is read: there may be no more of it than the counts say.
+  if (c.cells != cells_of(c.counts))
+    return {StatusCode::bad_argument, "pvs: expected cells to be counts[0] * counts[1] * counts[2]"};
+  if (c.first[c.cells] != c.visible_count)
+    return {StatusCode::bad_argument, "pvs: expected first[cells] to be visible_count"};
   cells.bounds = box_of(c.bounds);
   cells.counts = {c.counts[0], c.counts[1], c.counts[2]};
   cells.objects = c.objects, cells.scene = c.scene;
   cells.open.assign(c.open, c.open + c.cells);
   cells.first.assign(c.first, c.first + c.cells + 1);
-  if (cells.first.back() != c.visible_count)
-    return {StatusCode::bad_argument, "pvs: expected first[cells] to be visible_count"};
   if (c.visible_count > 0) cells.visible.assign(c.visible, c.visible + c.visible_count);
   return {};
 }

@@ -26,6 +26,22 @@ Vec3 vector_of(const float v[3]) {
   return {v[0], v[1], v[2]};
 }
 
+bool side_by_side(const sightline_sphere_view& v) {
+  return v.data[0] && v.data[1] == v.data[0] + 1 && v.data[2] == v.data[0] + 2;
+}
+
+Status copy_spheres(const sightline_sphere_view& v, std::vector<Sphere>& copied) {
+  const auto number = [&](std::size_t k) { return Strided<const float>(v.data[k], v.count, v.stride); };
+  const auto x = number(0), y = number(1), z = number(2), radius = number(3);
+  if (!x.sound() || !y.sound() || !z.sound() || !radius.sound()) {
+    return {StatusCode::bad_argument,
+            "spheres: a pointer is NULL, the stride too short, or the count more than memory holds"};
+  }
+  copied.resize(v.count);
+  for (std::size_t i = 0; i < v.count; ++i) copied[i] = {{x[i], y[i], z[i]}, radius[i]};
+  return {};
+}
+
 }  // namespace
 
 WorldView view_of(const sightline_view& view) noexcept {
@@ -73,17 +89,21 @@ Status take(const sightline_box_view& given, BoxView& boxes) noexcept {
   }
 }
 
-Status take(const sightline_sphere_view& given, SphereView& spheres) noexcept {
+Status take(const sightline_sphere_view& given, GivenSpheres& spheres) noexcept {
   sightline_sphere_view v{};
   if (!take_struct(&given, SIGHTLINE_FIRST_SIZE(sightline_sphere_view, count), v) || v.arrays > 1) {
     return {StatusCode::bad_argument,
             "spheres: struct_size or arrays are unknown, expected those of "
             "sightline_spheres_of or sightline_spheres_arrays"};
   }
+  SphereView& view = spheres;
   if (v.arrays == 1) {
-    spheres = SphereView::arrays(v.data[0], v.data[1], v.data[2], v.data[3], v.count);
+    view = SphereView::arrays(v.data[0], v.data[1], v.data[2], v.data[3], v.count);
+  } else if (side_by_side(v)) {
+    view = SphereView(v.data[0], v.data[3], v.stride, v.count);
   } else {
-    spheres = SphereView(v.data[0], v.data[3], v.stride, v.count);
+    if (const Status ok = copy_spheres(v, spheres.copied); !ok) return ok;
+    view = SphereView(spheres.copied);
   }
   return {};
 }

@@ -75,7 +75,6 @@ constexpr std::size_t kMostFloats = static_cast<std::size_t>(-1) / 64;
 
 sightline_status add(sightline_world& world, const Occluder& occluder, std::span<const Sphere> spheres,
                      uint32_t* name) {
-  if (!name) return refuse("world: what to write the occluder's name to is NULL");
   const Result<OccluderId> added = world.world.add_occluder(occluder, spheres);
   if (!added) return keep(added.error());
   *name = *added;
@@ -176,14 +175,15 @@ sightline_status sightline_world_set_distances(sightline_world* world, const sig
 
 sightline_status sightline_world_add_occluder(sightline_world* world, const sightline_occluder* occluder,
                                               uint32_t* name) {
-  if (!world || !occluder) return refuse("add_occluder: the world or the occluder is NULL");
+  if (!world || !occluder || !name)
+    return refuse("add_occluder: the world, the occluder or the name is NULL");
   return add(*world, occluder->occluder, {}, name);
 }
 
 sightline_status sightline_world_add_solids(sightline_world* world, const float* boxes, size_t box_count,
                                             const float* spheres, size_t sphere_count, uint32_t* name) {
-  if (!world || !can_hold(boxes, box_count) || box_count > kMostFloats || !can_hold(spheres, sphere_count) ||
-      sphere_count > kMostFloats)
+  if (!world || !name || !can_hold(boxes, box_count) || box_count > kMostFloats ||
+      !can_hold(spheres, sphere_count) || sphere_count > kMostFloats)
     return refuse("add_solids: a pointer is NULL, or a count more than memory holds");
   Occluder occluder;
   std::vector<Sphere> balls;
@@ -196,7 +196,7 @@ sightline_status sightline_world_add_surface(sightline_world* world, const float
                                              size_t position_count, const uint32_t* indices,
                                              size_t index_count, const uint8_t* sides, size_t side_count,
                                              uint32_t* name) {
-  if (!world) return refuse("add_surface: the world is NULL");
+  if (!world || !name) return refuse("add_surface: the world or the name is NULL");
   Occluder occluder;
   if (const Status ok =
           take_mesh(positions, position_count, indices, index_count, sides, side_count, occluder.sides);
@@ -217,6 +217,10 @@ sightline_status sightline_world_set_occluders(sightline_world* world, const sig
                                                const sightline_occluder_placement* placements, size_t count) {
   if (!world || !handles || !can_hold(placements, count))
     return refuse("set_occluders: a pointer is NULL, or a count more than memory holds");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (placements[i].reserved != 0)
+      return keep({StatusCode::bad_argument, "set_occluders: expected 0 where a placement is reserved", i});
+  }
   return keep(world->world.set_occluders(read(*handles), {placements, count, sizeof *placements}));
 }
 

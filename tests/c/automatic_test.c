@@ -88,7 +88,15 @@ static void refusals(void) {
   EXPECT(sightline_world_add_solids(world, NULL, 1, NULL, 0, &name) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_add_occluder(world, NULL, &name) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_add_surface(world, corners, 3, NULL, 3, NULL, 0, &name) == SIGHTLINE_BAD_ARGUMENT);
+  EXPECT(sightline_world_add_surface(world, corners, 3, ids, 3, NULL, 0, NULL) == SIGHTLINE_BAD_ARGUMENT);
+  /* Refused by its counts, before what they claim is copied. */
+  const sightline_status many = sizeof(size_t) > 4 ? SIGHTLINE_TOO_MANY : SIGHTLINE_BAD_ARGUMENT;
+  EXPECT(sightline_world_add_surface(world, corners, 0xffffffffu, ids, 3, NULL, 0, &name) == many);
+  EXPECT_REFUSED(sightline_world_add_surface(world, corners, 3, ids, 3, &on, (size_t)-1 / 4, &name),
+                 SIGHTLINE_BAD_MESH, (size_t)-1 / 4);
   EXPECT(sightline_world_set_occluders(world, &first, &placement, 1) == SIGHTLINE_BAD_ARGUMENT);
+  placement = sightline_occluder_placement_of(SIGHTLINE_NO_OCCLUDER, NULL), placement.reserved = 1;
+  EXPECT_REFUSED(sightline_world_set_occluders(world, &first, &placement, 1), SIGHTLINE_BAD_ARGUMENT, 0);
   EXPECT(sightline_world_set_occluders(world, &first, NULL, 1) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_set_occluding(world, &first, &on, 1) == SIGHTLINE_BAD_ARGUMENT);
   EXPECT(sightline_world_set_triangles(world, handles[0], corners, 2, NULL, SIGHTLINE_BOTH_SIDES) ==

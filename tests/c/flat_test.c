@@ -41,6 +41,28 @@ static void cull_flat(const sightline_frustum* frustum) {
   EXPECT_REFUSED(sightline_cull_spheres(frustum, &holes, visible, kRoom, &count), bad, none);
 }
 
+/* Numbers of a sphere that do not lie side by side are each read where they lie. */
+static void cull_spread_spheres(const sightline_frustum* frustum) {
+  const struct {
+    float x, before_y, y, before_z, z, radius;
+  } spheres[2] = {{0, 90, 0, 90, 5, 1}, {0, 90, 0, 90, -5, 1}};
+  uint32_t visible[kRoom];
+  size_t count = 0;
+  sightline_sphere_view view = sightline_spheres_of(&spheres[0].x, &spheres[0].radius, sizeof *spheres, 2);
+  view.data[1] = &spheres[0].y, view.data[2] = &spheres[0].z;
+  EXPECT(sightline_cull_spheres(frustum, &view, visible, kRoom, &count) == SIGHTLINE_OK);
+  EXPECT(count == 1 && visible[0] == 1);
+
+  const sightline_status bad = SIGHTLINE_BAD_ARGUMENT;
+  sightline_sphere_view wrong[5];
+  for (int i = 0; i < 5; ++i) wrong[i] = view;
+  for (int i = 0; i < 3; ++i) wrong[i].data[i] = NULL;
+  wrong[3].stride = 3, wrong[4].count = TOO_MUCH;
+  for (int i = 0; i < 5; ++i)
+    EXPECT_REFUSED(sightline_cull_spheres(frustum, &wrong[i], visible, kRoom, &count), bad,
+                   SIGHTLINE_NO_INDEX);
+}
+
 /* Whatever is made of a view, or of an extent, refuses what is none. */
 static void refuse_views(const sightline_view* view) {
   sightline_frustum frustum;
@@ -71,6 +93,7 @@ void test_frustum(void) {
   sightline_frustum frustum;
   EXPECT(sightline_frustum_make(&view, &frustum) == SIGHTLINE_OK);
   cull_flat(&frustum);
+  cull_spread_spheres(&frustum);
   refuse_views(&view);
 
   const float inside[6] = {-1, -1, -11, 1, 1, -10}, behind[6] = {-1, -1, 10, 1, 1, 11},

@@ -113,6 +113,22 @@ static void draw_and_ask(sightline_occlusion* occlusion, const sightline_view* v
   EXPECT(sightline_occlusion_draw_spheres(occlusion, &arrays) == SIGHTLINE_OK);
   EXPECT(sightline_occlusion_may_see_spheres(occlusion, &hidden, visible, 1) == SIGHTLINE_OK);
   EXPECT(visible[0] == 0);
+
+  /* The same where the numbers of a sphere do not lie side by side: a solid one, and one behind it. */
+  const float apart[2][6] = {{0, 90, 0, 90, -3, 1}, {0, 90, 0, 90, -7, 0.5f}};
+  sightline_sphere_view spread[2];
+  for (int i = 0; i < 2; ++i) {
+    spread[i] = sightline_spheres_of(apart[i], &apart[i][5], sizeof apart[i], 1);
+    spread[i].data[1] = &apart[i][2], spread[i].data[2] = &apart[i][4];
+  }
+  EXPECT(sightline_occlusion_begin(occlusion, view) == SIGHTLINE_OK);
+  EXPECT(sightline_occlusion_may_see_spheres(occlusion, &spread[1], visible, 1) == SIGHTLINE_OK);
+  EXPECT(visible[0] == 1);
+  EXPECT(sightline_occlusion_draw_spheres(occlusion, &spread[0]) == SIGHTLINE_OK);
+  EXPECT(sightline_occlusion_may_see_spheres(occlusion, &hidden, visible, 1) == SIGHTLINE_OK);
+  EXPECT(visible[0] == 0);
+  EXPECT(sightline_occlusion_may_see_spheres(occlusion, &spread[1], visible, 1) == SIGHTLINE_OK);
+  EXPECT(visible[0] == 0);
 }
 
 static void ask_for_objects(sightline_occlusion* occlusion, const sightline_view* view) {

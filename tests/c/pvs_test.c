@@ -78,6 +78,14 @@ static void refuse_cells(void) {
     const sightline_status code = i == 9 ? SIGHTLINE_TOO_MANY : SIGHTLINE_BAD_ARGUMENT;
     EXPECT(sightline_pvs_write(&wrong[i], keep_bytes, &out) == code);
   }
+  /* Counts of one cell: no more than its flag is read. */
+  sightline_pvs_cells one = four_cells();
+  uint8_t flag = 1;
+  one.counts[0] = 1, one.cells = 7, one.open = &flag;
+  EXPECT_REFUSED(sightline_pvs_write(&one, keep_bytes, &out), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
+  EXPECT(strstr(sightline_last_error(), "counts[0]") != NULL);
+  one.counts[0] = one.counts[1] = one.counts[2] = 0x10000u, one.cells = 0;
+  EXPECT_REFUSED(sightline_pvs_write(&one, keep_bytes, &out), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
   const sightline_pvs_cells right = four_cells();
   EXPECT_REFUSED(sightline_pvs_write(NULL, keep_bytes, &out), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
   EXPECT_REFUSED(sightline_pvs_write(&right, NULL, &out), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);

@@ -89,7 +89,8 @@ static inline sightline_box_view sightline_boxes_arrays(const float* min_x, cons
 /* --- spheres, handles, columns --- */
 
 /** `count` spheres in metres and single precision in the caller's own memory. Made by one of the functions
- * below. */
+ * below; members of structs that stand apart may then be set in `data`. Where x, y and z do not lie side by
+ * side, whoever is given the view copies the spheres first, 16 bytes each, whatever comes of the call. */
 typedef struct sightline_sphere_view {
   uint32_t struct_size; /**< bytes of this struct */
   uint32_t arrays;      /**< 0: data[0] to data[3] step by `stride` bytes; 1: they are arrays */
