@@ -189,6 +189,16 @@ std::vector<bool> truths_of(const py::object& given, const std::string& what) {
   return std::vector<bool>(array.data(), array.data() + array.size());
 }
 
+std::uint64_t whole_number_of(const py::handle& given, const char* name, std::uint64_t most) {
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+  const std::uint64_t value = number ? PyLong_AsUnsignedLongLong(number.ptr()) : 0;
+  const bool none = PyErr_Occurred() != nullptr;
+  PyErr_Clear();
+  if (none || value > most)
+    refuse(std::string(name) + ": expected a whole number from 0 to " + std::to_string(most));
+  return value;
+}
+
 WorldPoint world_point_of(const py::object& given, const char* name) {
   const auto p = doubles_of(given, {3}, std::string(name) + ": expected three numbers");
   return {p[0], p[1], p[2]};
@@ -230,16 +240,19 @@ std::vector<Mat4> matrices_of(const py::object& given, const char* name) {
   return out;
 }
 
+std::optional<Sides> named_sides_of(const py::object& given) {
+  if (!py::isinstance<py::str>(given)) return std::nullopt;
+  if (given.equal(py::str("both"))) return Sides::both;
+  if (given.equal(py::str("front"))) return Sides::front;
+  return std::nullopt;
+}
+
 std::vector<Sides> sides_of(const py::object& given) {
-  if (py::isinstance<py::str>(given)) {
-    const auto name = given.cast<std::string>();
-    if (name == "both") return {Sides::both};
-    if (name == "front") return {Sides::front};
-    refuse("sides: expected 'both', 'front' or bool (m,)");
-  }
+  constexpr const char* what = "sides: expected 'both', 'front' or bool (m,)";
+  if (const std::optional<Sides> named = named_sides_of(given)) return {*named};
+  if (py::isinstance<py::str>(given)) refuse(what);
   std::vector<Sides> out;
-  for (const bool front : truths_of(given, "sides: expected 'both', 'front' or bool (m,)"))
-    out.push_back(front ? Sides::front : Sides::both);
+  for (const bool front : truths_of(given, what)) out.push_back(front ? Sides::front : Sides::both);
   return out;
 }
 

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,6 +63,19 @@ std::vector<Vec3> points_of(const py::object& given, const char* name);
 std::vector<std::uint32_t> numbers_of(const py::object& given, const char* name);
 std::vector<bool> truths_of(const py::object& given, const std::string& what);
 
+/// A whole number from 0 to `most`, of Python or NumPy.
+std::uint64_t whole_number_of(const py::handle& given, const char* name, std::uint64_t most);
+/// The same, as far as T goes.
+template <class T = std::uint32_t>
+T whole_number_of(const py::handle& given, const char* name) {
+  return static_cast<T>(whole_number_of(given, name, std::numeric_limits<T>::max()));
+}
+/// The same, or None.
+template <class T = std::uint32_t>
+std::optional<T> whole_number_or_none(const py::object& given, const char* name) {
+  return given.is_none() ? std::nullopt : std::optional(whole_number_of<T>(given, name));
+}
+
 WorldPoint world_point_of(const py::object& given, const char* name);
 std::pair<float, float> two_numbers_of(const py::object& given, const char* name);
 Box box_of(const py::object& given, const char* name);
@@ -68,6 +83,8 @@ Box box_of(const py::object& given, const char* name);
 Mat4 matrix_of(const py::object& given, const char* name);
 /// The same, or (n, 4, 4).
 std::vector<Mat4> matrices_of(const py::object& given, const char* name);
+/// "both" or "front"; none of anything else.
+std::optional<Sides> named_sides_of(const py::object& given);
 /// "both", "front", or a truth a triangle: whether only its front occludes.
 std::vector<Sides> sides_of(const py::object& given);
 template <class T>

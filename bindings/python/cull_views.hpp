@@ -1,11 +1,13 @@
 // What sees worlds, as Python holds it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <vector>
 
 #include "bindings/python/objects.hpp"
@@ -13,8 +15,20 @@
 namespace sightline::python {
 
 using SharedWorld = Guarded<World>;
-using LockedCuller = Guarded<Culler>;
 using Reading = std::shared_lock<std::shared_mutex>;
+
+/// A culler, and the images of the views that it last culled with automatic occlusion, by their places.
+struct LockedCuller : Guarded<Culler> {
+  struct Image {
+    std::uint32_t width = 0, height = 0;
+  };
+  std::array<Image, kMaxViews> images = {};
+
+  void remember(std::span<const CullView> views) {
+    for (std::size_t i = 0; i < views.size(); ++i)
+      images[i] = {views[i].view.view.width, views[i].view.view.height};
+  }
+};
 
 struct ViewOfWorld {
   WorldView view;

@@ -1,9 +1,6 @@
 // What culls did, and shapes to be drawn.
 #include <sightline/inspect.hpp>
 
-#include <pybind11/stl.h>
-
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -92,12 +89,32 @@ py::array_t<std::uint8_t> image_of(const Occlusion& occlusion) {
   return pixels;
 }
 
-py::array_t<std::uint8_t> image_of_culler(const LockedCuller& culler, std::size_t place,
-                                          std::pair<std::uint32_t, std::uint32_t> size) {
-  py::array_t<std::uint8_t> pixels({py::ssize_t{size.second}, py::ssize_t{size.first}});
+// Refuses another size than the image's, and takes None.
+void check_size(const py::object& size, const LockedCuller::Image& image) {
+  if (size.is_none()) return;
+  const auto [width, height] = two_numbers_of(size, "size");
+  if (width != static_cast<float>(image.width) || height != static_cast<float>(image.height))
+    refuse("size: expected (" + std::to_string(image.width) + ", " + std::to_string(image.height) +
+           "), width and height of the view's image");
+}
+
+py::array_t<std::uint8_t> image_of_culler(const LockedCuller& culler, const py::object& place,
+                                          const py::object& size) {
+  const auto at = whole_number_of(place, "place");
+  const LockedCuller::Image image = looking(culler, [&](const Culler&) {
+    return at < culler.images.size() ? culler.images[at] : LockedCuller::Image{};
+  });
+  // Of no image nothing was drawn, and the library says so.
+  if (image.width > 0) check_size(size, image);
+  py::array_t<std::uint8_t> pixels({py::ssize_t{image.height}, py::ssize_t{image.width}});
   const std::span<std::uint8_t> out = span_of(pixels);
-  std::fill(out.begin(), out.end(), std::uint8_t{0});
-  expect(looking_unlocked(culler, [&](const Culler& c) { return depth_image(c, place, out); }));
+  expect(looking_unlocked(culler, [&](const Culler& c) {
+    // What fits into fewer pixels was drawn for an earlier view of this place.
+    if (!out.empty() && depth_image(c, at, out.first(out.size() - 1)))
+      return Status(StatusCode::stale_buffer,
+                    "depth image: the culler has drawn no occluders for that view since its size changed");
+    return depth_image(c, at, out);
+  }));
   return pixels;
 }
 
@@ -133,8 +150,8 @@ void add_inspect(py::module_& m) {
       "culler_depth_image", &image_of_culler,
       "The same of what automatic occlusion drew for the view at `place` in the culler's calls, whose image "
       "is\n"
-      "`size`, width and height.",
-      py::arg("culler"), py::arg("place"), py::arg("size"));
+      "`size`, width and height, as it was culled the last time; any other is refused, None stands for it.",
+      py::arg("culler"), py::arg("place"), py::arg("size") = py::none());
 }
 
 }  // namespace sightline::python

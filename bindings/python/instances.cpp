@@ -47,7 +47,8 @@ std::uint32_t add_placed_world(PlacedWorlds& placed, const py::object& world) {
   return name;
 }
 
-void remove_placed_world(PlacedWorlds& placed, PlacedWorldId name) {
+void remove_placed_world(PlacedWorlds& placed, const py::object& given) {
+  const PlacedWorldId name = whole_number_of(given, "name");
   expect(changing(placed.instances, [&](Placed& p) {
     const Status gone = p.all.remove_world(name);
     if (gone) p.worlds[name] = nullptr;
@@ -120,12 +121,13 @@ struct SeenInstances {
 
 py::tuple cull_instances(LockedInstanceCuller& culler, const PlacedWorlds& placed, const py::object& views,
                          bool masks, bool values, const std::optional<LevelOptions>& levels,
-                         std::size_t most_objects) {
+                         const py::object& most_objects) {
   const std::vector<ViewOfWorld> given = views_of(views);
   const std::vector<CullView> seeing = cull_views_of(given);
   InstanceCullOptions options;
   options.masks = masks, options.values_for_ids = values, options.levels = levels.has_value();
-  options.level_options = levels.value_or(LevelOptions{}), options.most_objects = most_objects;
+  options.level_options = levels.value_or(LevelOptions{}),
+  options.most_objects = whole_number_of<std::size_t>(most_objects, "most_objects");
   SeenInstances seen;
   const auto keep = [](const auto& from, auto& to) { to.assign(from.begin(), from.end()); };
   expect(changing_unlocked(culler, [&](InstanceCuller& c) {

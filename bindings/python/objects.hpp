@@ -55,8 +55,8 @@ auto looking_unlocked(const Guarded<T>& object, const Call& call) {
   return looking(object, call);
 }
 
-/// Refuses a coverage other than 'centres' and 'area'.
-OcclusionOptions occlusion_options(const std::string& coverage, std::uint32_t scale);
+/// Refuses a coverage other than 'centres' and 'area', and a scale that is no whole number.
+OcclusionOptions occlusion_options(const std::string& coverage, const pybind11::object& scale);
 
 // Each adds its classes and functions.
 void add_views(pybind11::module_& m);

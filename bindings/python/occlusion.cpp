@@ -24,13 +24,15 @@ OccluderMesh make_mesh(const py::object& positions, const py::object& indices, c
 }
 
 Occluder make(const py::object& positions, const py::object& indices, const py::object& sides,
-              std::uint32_t most_triangles, std::uint32_t most_boxes) {
+              const py::object& most_triangles, const py::object& most_boxes) {
   const std::vector<Vec3> points = points_of(positions, "positions");
   const std::vector<std::uint32_t> corners = numbers_of(indices, "indices");
   const std::vector<Sides> drawn = sides_of(sides);
+  const std::uint32_t triangles = whole_number_of(most_triangles, "most_triangles"),
+                      boxes = whole_number_of(most_boxes, "most_boxes");
   return expect([&] {
     const Unlocked unlocked;
-    return make_occluder(points, corners, drawn, {most_triangles, most_boxes});
+    return make_occluder(points, corners, drawn, {triangles, boxes});
   }());
 }
 
@@ -49,12 +51,14 @@ void assign(SharedTriangles& triangles, const py::object& corners, const py::obj
   expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.assign(points, counts); }));
 }
 
-void set(SharedTriangles& triangles, std::uint32_t object, const py::object& corners) {
+void set(SharedTriangles& triangles, const py::object& object, const py::object& corners) {
+  const std::uint32_t which = whole_number_of(object, "object");
   const std::vector<Vec3> points = points_of(corners, "corners");
-  expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.set(object, points); }));
+  expect(changing_unlocked(triangles, [&](OccludeeTriangles& t) { return t.set(which, points); }));
 }
 
-void begin(Occlusion& occlusion, const WorldView& view, const std::string& coverage, std::uint32_t scale) {
+void begin(Occlusion& occlusion, const WorldView& view, const std::string& coverage,
+           const py::object& scale) {
   const OcclusionOptions options = occlusion_options(coverage, scale);
   expect(changing_unlocked(occlusion, [&](OcclusionBuffer& b) { return b.begin(view, options); }));
 }
@@ -125,8 +129,9 @@ py::object begun_view(const Occlusion& occlusion) {
   return view ? py::cast(*view) : py::none();
 }
 
-std::uint32_t triangles_of(const SharedTriangles& triangles, std::uint32_t object) {
-  return looking(triangles, [&](const OccludeeTriangles& t) { return t.triangles(object); });
+std::uint32_t triangles_of(const SharedTriangles& triangles, const py::object& object) {
+  const std::uint32_t which = whole_number_of(object, "object");
+  return looking(triangles, [&](const OccludeeTriangles& t) { return t.triangles(which); });
 }
 std::uint32_t objects_of(const SharedTriangles& triangles) {
   return looking(triangles, [](const OccludeeTriangles& t) { return t.objects(); });
@@ -209,9 +214,9 @@ void add_triangles(py::module_& m) {
 
 }  // namespace
 
-OcclusionOptions occlusion_options(const std::string& coverage, std::uint32_t scale) {
+OcclusionOptions occlusion_options(const std::string& coverage, const py::object& scale) {
   if (coverage != "centres" && coverage != "area") refuse("coverage: expected 'centres' or 'area'");
-  return {coverage == "area" ? Coverage::area : Coverage::centres, scale};
+  return {coverage == "area" ? Coverage::area : Coverage::centres, whole_number_of(scale, "scale")};
 }
 
 void add_occlusion(py::module_& m) {

@@ -51,13 +51,37 @@ py::object cell_at(const CellPvs& pvs, const py::object& point) {
   return cell == kNoCell ? py::object(py::none()) : py::int_(cell);
 }
 
-py::bytes write(const py::object& bounds, const std::array<std::uint32_t, 3>& counts, std::uint32_t objects,
-                const py::object& open, const py::sequence& sets, std::uint64_t scene) {
+std::array<std::uint32_t, 3> counts_of(const py::object& given) {
+  if (!py::isinstance<py::sequence>(given) || py::len(given) != 3)
+    refuse("counts: expected three numbers, the cells along x, y and z");
+  std::array<std::uint32_t, 3> counts{};
+  std::size_t axis = 0;
+  for (const py::handle along : given) counts.at(axis++) = whole_number_of(along, "counts");
+  return counts;
+}
+
+std::vector<std::uint8_t> flags_of(const py::object& given) {
+  constexpr const char* what = "open: expected a sequence of flags, True or False a cell";
+  if (!py::isinstance<py::iterable>(given)) refuse(what);
+  std::vector<std::uint8_t> flags;
+  for (const py::handle flag : given) {
+    py::detail::make_caster<bool> taken;
+    if (!taken.load(flag, true)) refuse(what);
+    flags.push_back(py::detail::cast_op<bool>(taken));
+  }
+  return flags;
+}
+
+py::bytes write(const py::object& bounds, const py::object& counts, const py::object& objects,
+                const py::object& open, const py::object& sets, const py::object& scene) {
   CellPvs cells;
   cells.bounds = box_of(bounds, "bounds");
-  cells.counts = counts, cells.objects = objects, cells.scene = scene;
-  for (const py::handle flag : open) cells.open.push_back(flag.cast<bool>());
+  cells.counts = counts_of(counts), cells.open = flags_of(open);
+  cells.objects = whole_number_of(objects, "objects");
+  cells.scene = whole_number_of<std::uint64_t>(scene, "scene");
   cells.first.push_back(0);
+  if (!py::isinstance<py::sequence>(sets))
+    refuse("sets: expected a sequence of arrays, uint32 (k,), one a cell");
   for (const py::handle set : sets) {
     const auto members = numbers_of(py::reinterpret_borrow<py::object>(set), "sets");
     cells.visible.insert(cells.visible.end(), members.begin(), members.end());

@@ -50,11 +50,13 @@ py::tuple cast(LockedBvh& bvh, const py::object& origins, const py::object& dire
   return py::make_tuple(objects, distances);
 }
 
-py::object visible_set(LockedBvh& bvh, const WorldView& view, std::uint32_t columns, std::uint32_t rows) {
+py::object visible_set(LockedBvh& bvh, const WorldView& view, const py::object& columns,
+                       const py::object& rows) {
+  const std::uint32_t across = whole_number_of(columns, "columns"), down = whole_number_of(rows, "rows");
   std::vector<std::uint32_t> visible;
   const std::size_t count = expect(changing_unlocked(bvh, [&](BoxBvh& b) {
     visible.resize(b.size());
-    return b.visible_set(view, columns, rows, visible);
+    return b.visible_set(view, across, down, visible);
   }));
   return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(count), visible.data());
 }

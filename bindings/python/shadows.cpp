@@ -35,17 +35,20 @@ DepthRange depths_of(const py::object& given) {
   return {near, far};
 }
 
-WorldView view_of_light(const Light& light, const WorldView& camera, std::uint32_t pixels,
-                        const py::object& depths, std::uint32_t face) {
-  return expect(shadow_view(light, camera, depths_of(depths), pixels, face));
+WorldView view_of_light(const Light& light, const WorldView& camera, const py::object& pixels,
+                        const py::object& depths, const py::object& face) {
+  return expect(shadow_view(light, camera, depths_of(depths), whole_number_of(pixels, "pixels"),
+                            whole_number_of(face, "face")));
 }
 
-py::list cascades_of(const Light& light, const WorldView& camera, std::size_t count, const py::object& depths,
-                     float logarithmic, std::uint32_t pixels) {
+py::list cascades_of(const Light& light, const WorldView& camera, const py::object& count,
+                     const py::object& depths, float logarithmic, const py::object& pixels) {
   std::array<Cascade, kMaxCascades> made;
-  if (count > made.size()) refuse("count: expected 1 to 16 cascades");
-  const auto some = std::span(made).first(count);
-  expect(split_cascades(light, camera, {depths_of(depths), logarithmic, pixels}, some));
+  const auto parts = whole_number_of<std::size_t>(count, "count");
+  if (parts > made.size()) refuse("count: expected 1 to 16 cascades");
+  const auto some = std::span(made).first(parts);
+  expect(split_cascades(light, camera, {depths_of(depths), logarithmic, whole_number_of(pixels, "pixels")},
+                        some));
   py::list out;
   for (const Cascade& c : some)
     out.append(py::make_tuple(c.view, py::make_tuple(c.depths.near_plane, c.depths.far_plane)));

@@ -1,8 +1,6 @@
 // Worlds as bytes, whole or sector by sector.
 #include <sightline/snapshot.hpp>
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <optional>
 
@@ -65,12 +63,13 @@ std::unique_ptr<Streamed> open_stream(const py::buffer& bytes, const py::object&
 }
 
 template <class Call>
-StreamReport with_stream(Streamed& streamed, const py::object& views, std::optional<std::size_t> budget,
-                         double ahead, const Call& call) {
+StreamReport with_stream(Streamed& streamed, const py::object& views, const py::object& budget, double ahead,
+                         const Call& call) {
   const std::vector<ViewOfWorld> given = views_of(views);
   const std::vector<CullView> seen = cull_views_of(given);
   StreamOptions options;
-  options.budget = budget.value_or(options.budget), options.ahead = ahead;
+  options.budget = whole_number_or_none<std::size_t>(budget, "budget").value_or(options.budget),
+  options.ahead = ahead;
   SharedWorld& world = streamed.shared();
   return expect([&] {
     const Unlocked unlocked;
@@ -79,15 +78,13 @@ StreamReport with_stream(Streamed& streamed, const py::object& views, std::optio
   }());
 }
 
-StreamReport update(Streamed& streamed, const py::object& views, std::optional<std::size_t> budget,
-                    double ahead) {
+StreamReport update(Streamed& streamed, const py::object& views, const py::object& budget, double ahead) {
   return with_stream(streamed, views, budget, ahead,
                      [](WorldStream& stream, const auto& seen, const StreamOptions& options) {
                        return stream.update(seen, options);
                      });
 }
-StreamReport bring_in(Streamed& streamed, const py::object& views, std::optional<std::size_t> budget,
-                      double ahead) {
+StreamReport bring_in(Streamed& streamed, const py::object& views, const py::object& budget, double ahead) {
   return with_stream(streamed, views, budget, ahead,
                      [](WorldStream& stream, const auto& seen, const StreamOptions& options) {
                        return stream.bring_in(seen, options);
@@ -104,7 +101,8 @@ const char* name_of(SectorState state) {
   return names[static_cast<std::size_t>(state)];
 }
 
-py::dict sector(Streamed& streamed, std::size_t index) {
+py::dict sector(Streamed& streamed, const py::object& place) {
+  const auto index = whole_number_of<std::size_t>(place, "index");
   const StreamSector s = [&] {
     const Unlocked unlocked;
     const std::lock_guard lock(streamed.mutex);

@@ -59,7 +59,10 @@ Boxes min_max(const py::object& boxes, const py::object& maximum, const py::obje
                          "boxes: expected minimum and maximum, float32 or float64 of shape (n, 3)", of, of);
   }
   const Boxes whole = boxes_of(boxes);
-  if (origin.is_none() || whole.arrays.size() != 1) return whole;
+  if (origin.is_none()) return whole;
+  // The others have one already, or do not say what their arrays are.
+  if (whole.arrays.size() != 1)
+    refuse("origin: expected an array or two of boxes beside it, got a BoxView of several arrays");
   if (!py::isinstance<py::array_t<float>>(whole.arrays[0])) refuse("origin: only boxes in float32 have one");
   const auto all = py::reinterpret_borrow<py::array>(whole.arrays[0]);
   const auto part = [&](int index) -> py::object {
@@ -160,7 +163,7 @@ void add_box_views(py::module_& m) {
       .def_static(
           "min_max", &min_max,
           "Of one array (n, 2, 3) or (n, 6), or of two, minimum and maximum, (n, 3) each: float32 or\n"
-          "float64, metres, rows at any one ascending stride. `origin`: added to float32.",
+          "float64, metres, rows at any one ascending stride. `origin`: added to float32, of arrays alone.",
           py::arg("minimum"), py::arg("maximum") = py::none(), py::kw_only(), py::arg("origin") = py::none())
       .def_static("centre_half", &centre_half,
                   "Of centres and half sizes, (n, 3) each: float32 or float64, metres, rows at any one\n"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/cull_views.hpp"
@@ -150,6 +151,9 @@ std::vector<ViewOfWorld> views_of(const py::object& given) {
   std::vector<ViewOfWorld> views;
   if (!py::isinstance<py::sequence>(given)) return {view_of(given)};
   for (const py::handle view : py::reinterpret_borrow<py::sequence>(given)) views.push_back(view_of(view));
+  if (views.empty() || views.size() > kMaxViews)
+    refuse("cull: expected 1 to " + std::to_string(kMaxViews) + " views, got " +
+           std::to_string(views.size()));
   return views;
 }
 
@@ -208,7 +212,7 @@ sightline::Occlusion occlusion_of(const std::string& name) {
 
 py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object& views, bool masks,
                 bool values, const std::string& occlusion, float object_cost, const std::string& coverage,
-                std::uint32_t scale, const std::optional<LevelOptions>& levels) {
+                const py::object& scale, const std::optional<LevelOptions>& levels) {
   const std::vector<ViewOfWorld> given = views_of(views);
   const std::vector<CullView> seen = cull_views_of(given);
   CullOptions options{{}, values};
@@ -222,7 +226,9 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
     const Result<CullResult> result = changing_unlocked(culler, [&](Culler& c) {
       return looking(world, [&](const World& w) {
         const std::vector<Reading> locks = lock_all(given);
-        return c.cull(w, seen, options, out);
+        const Result<CullResult> culled = c.cull(w, seen, options, out);
+        if (culled && options.occlusion == sightline::Occlusion::automatic) culler.remember(seen);
+        return culled;
       });
     });
     // Another thread may have let the world grow meanwhile.
@@ -288,11 +294,16 @@ void add_world(py::module_& m) {
 
   py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
       .def(
-          py::init([](const WorldView& view, std::uint32_t layers, float min_area,
+          py::init([](const WorldView& view, const py::object& layers, float min_area,
                       std::shared_ptr<Occlusion> occlusion, float distance_scale,
-                      std::optional<std::uint32_t> distance_view, std::shared_ptr<Casters> casters) {
-            return ViewOfWorld{view,           layers,        min_area,          std::move(occlusion),
-                               distance_scale, distance_view, std::move(casters)};
+                      const py::object& distance_view, std::shared_ptr<Casters> casters) {
+            return ViewOfWorld{view,
+                               whole_number_of(layers, "layers"),
+                               min_area,
+                               std::move(occlusion),
+                               distance_scale,
+                               whole_number_or_none(distance_view, "distance_view"),
+                               std::move(casters)};
           }),
           "layers: sees objects whose layers share a bit with these; min_area: drops what covers fewer px2,\n"
           "approximately; occlusion: one that was begun with this same view, or None; distance_scale: times\n"
@@ -303,16 +314,25 @@ void add_world(py::module_& m) {
           py::arg("occlusion") = std::shared_ptr<Occlusion>(), py::arg("distance_scale") = 1.0f,
           py::arg("distance_view") = py::none(), py::arg("casters") = std::shared_ptr<Casters>())
       .def_readwrite("view", &ViewOfWorld::view)
-      .def_readwrite("layers", &ViewOfWorld::layers)
+      .def_property(
+          "layers", [](const ViewOfWorld& v) { return v.layers; },
+          [](ViewOfWorld& v, const py::object& given) { v.layers = whole_number_of(given, "layers"); })
       .def_readwrite("min_area", &ViewOfWorld::min_area)
       .def_readwrite("occlusion", &ViewOfWorld::occlusion)
       .def_readwrite("distance_scale", &ViewOfWorld::distance_scale)
-      .def_readwrite("distance_view", &ViewOfWorld::distance_view)
+      .def_property(
+          "distance_view", [](const ViewOfWorld& v) { return v.distance_view; },
+          [](ViewOfWorld& v, const py::object& given) {
+            v.distance_view = whole_number_or_none(given, "distance_view");
+          })
       .def_readwrite("casters", &ViewOfWorld::casters);
 
   py::class_<LevelOptions>(m, "Levels", "How a cull chooses levels of detail, for all its views.")
-      .def(py::init([](std::uint32_t view, std::uint32_t key, float hysteresis, float fade, float scale,
-                       bool cut) { return LevelOptions{view, key, hysteresis, fade, scale, cut}; }),
+      .def(py::init([](const py::object& view, const py::object& key, float hysteresis, float fade,
+                       float scale, bool cut) {
+             return LevelOptions{
+                 whole_number_of(view, "view"), whole_number_of(key, "key"), hysteresis, fade, scale, cut};
+           }),
            "view: the place of the view by whose image objects have their sizes; key: whose memory, 0 to 7, "
            "of\n"
            "cameras that take turns; hysteresis: how far beyond a limit a level is kept, as a share of it; "

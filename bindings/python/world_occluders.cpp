@@ -44,13 +44,14 @@ std::uint32_t add_surface(SharedWorld& world, const py::object& positions, const
   return expect(changing_unlocked(world, [&](World& w) { return w.add_occluder(occluder); }));
 }
 
-void remove_occluder(SharedWorld& world, std::uint32_t name) {
-  expect(changing(world, [&](World& w) { return w.remove_occluder(name); }));
+void remove_occluder(SharedWorld& world, const py::object& name) {
+  const OccluderId given = whole_number_of(name, "name");
+  expect(changing(world, [&](World& w) { return w.remove_occluder(given); }));
 }
 
 // One for all, or one an object.
 std::vector<std::uint32_t> names_of(const py::object& given) {
-  if (py::isinstance<py::int_>(given)) return {given.cast<std::uint32_t>()};
+  if (py::isinstance<py::int_>(given)) return {whole_number_of(given, "occluders")};
   return numbers_of(given, "occluders");
 }
 
@@ -83,9 +84,9 @@ void set_triangles(SharedWorld& world, const py::object& handle, const py::objec
   if (which.size() != 1) refuse("handle: expected one, (1, 2)");
   const std::vector<Vec3> points = points_of(corners, "corners");
   const WorldPoint about = origin.is_none() ? WorldPoint{} : world_point_of(origin, "origin");
-  const std::vector<Sides> seen = sides_of(sides);
-  if (seen.size() != 1) refuse("sides: expected 'both' or 'front'");
-  expect(changing(world, [&](World& w) { return w.set_triangles(which[0], points, about, seen[0]); }));
+  const std::optional<Sides> seen = named_sides_of(sides);
+  if (!seen) refuse("sides: expected 'both' or 'front'");
+  expect(changing(world, [&](World& w) { return w.set_triangles(which[0], points, about, *seen); }));
 }
 
 }  // namespace

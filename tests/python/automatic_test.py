@@ -73,12 +73,18 @@ class Automatic(Case):
         self.bad("frame's time", culler.report_frame_time, -1)
         self.refused("bad_argument", "no occluder of this name", world.remove_occluder, 3, index=3)
         self.refused("bad_argument", "names no occluder", world.set_occluders, handles[:1], 3, index=0)
+        self.whole("scale", lambda n: culler.cull(world, AHEAD, scale=n))
+        self.whole("name", world.remove_occluder)
+        for number in (-1, 1 << 32, 1 << 99):
+            self.bad("occluders: expected a whole number from 0 to 4294967295", world.set_occluders, handles[:1], number)
         name = world.add_surface(QUAD, CORNERS)
         self.bad("one a handle", world.set_occluders, handles[:3], np.array([name, name], np.uint32))
         self.bad("one a handle", world.set_occluders, handles[:3], name, np.zeros((2, 4, 4)))
         self.refused("bad_argument", "not affine", world.set_occluders, handles[:1], name, np.zeros((4, 4)), index=0)
         self.refused("bad_mesh", "three points", world.set_triangles, handles[:1], np.zeros((2, 3), np.float32))
-        self.bad("sides: expected 'both'", world.set_triangles, handles[:1], np.zeros((3, 3), np.float32), sides=[True, False])
+        for sides in ("back", [True, False], np.array([True]), "\ud800", None):
+            self.bad("sides: expected 'both' or 'front'", world.set_triangles, handles[:1],
+                     np.zeros((3, 3), np.float32), sides=sides)
         self.bad("expected one", world.set_triangles, handles[:2], np.zeros((3, 3), np.float32))
 
 

@@ -75,6 +75,8 @@ class Rays(Case):
         self.bad("max_distances: expected", self.bvh.cast, self.origins, self.directions, "far")
         self.bad("rays", self.bvh.visible_set, VIEW, 0, 4)
         self.bad("rays", self.bvh.visible_set, VIEW, 4097, 4096)
+        self.whole("columns", lambda n: self.bvh.visible_set(VIEW, n, 5))
+        self.whole("rows", lambda n: self.bvh.visible_set(VIEW, 5, n))
         self.assertEqual(self.bvh.cast(self.origins, self.directions)[0][0], 0)
 
 
@@ -123,6 +125,14 @@ class Pvs(Case):
             self.assertEqual(caught.exception.status, "bad_argument")
         self.bad("sets: expected uint32", self.bytes_of, sets=[np.array([1.5])] * 4)
         self.bad("bounds: expected", self.bytes_of, bounds=[1, 2, 3])
+        for flags in ("ab", [1, "b", 0, 1], [[1, 1]] * 4, 5):
+            self.bad("open: expected a sequence of flags", self.bytes_of, open=flags)
+        for counts in (4, (4, 1), (4, 1, 1, 1), None):
+            self.bad("counts: expected three numbers", self.bytes_of, counts=counts)
+        self.bad("sets: expected a sequence", self.bytes_of, sets=5)
+        self.whole("counts", lambda n: self.bytes_of(counts=(4, 1, n)))
+        self.whole("objects", lambda n: self.bytes_of(objects=n))
+        self.whole("scene", lambda n: self.bytes_of(scene=n))
 
 
 if __name__ == "__main__":

@@ -49,6 +49,35 @@ class Inspect(Case):
         self.refused("stale_buffer", "has drawn no occluders", sightline.culler_depth_image, culler, 0, (64, 64))
         self.bad("expected a Culler", sightline.CullInspector().inspect, sightline.World(), camera, 3)
 
+    def test_a_cullers_picture_has_the_size_of_its_view(self):
+        world, culler, picture = sightline.World(), sightline.Culler(), sightline.culler_depth_image
+        wall = np.array([[[-50, -50, -5.5], [1, 50, -4.5]]], np.float32)
+        behind = [[[-1, -1, -8 - i], [1, 1, -7.5 - i]] for i in range(200)]
+        handles = world.insert(np.concatenate([wall, np.array(behind, np.float32)]))
+        world.set_occluders(handles[:1], world.add_solids(boxes=wall))
+
+        def cull(*views):
+            culler.cull(world, views, occlusion="automatic", object_cost=100000)
+
+        cull(sightline.camera(width=40, height=30), sightline.camera(width=160, height=120))
+        for size in (None, (160, 120), [160, 120], np.array([160, 120])):
+            image = picture(culler, 1, size)
+            self.assertEqual((image.shape, image[60, 0], image[60, 159]), ((120, 160), 255, 0))
+        self.assertEqual(picture(culler, 1).shape, (120, 160))
+        for size in ((120, 160), (161, 120), (160, 121), (159, 120), (500, 500), (-1, 5), (0, 0), (np.nan, 120)):
+            self.bad("size: expected (160, 120)", picture, culler, 1, size)
+        for size in ((160,), 160, "ab"):
+            self.bad("size: expected two numbers", picture, culler, 1, size)
+        self.whole("place", lambda n: picture(culler, n))
+        self.assertEqual(picture(culler, 0).shape, (30, 40))
+        for place in (2, 7, 8, 1 << 20):
+            self.refused("stale_buffer", "has drawn no occluders", picture, culler, place)
+        # Of two equal views the second is not drawn for: its picture is still that of the one before, of another size.
+        for status, width, height in (("buffer_too_small", 80, 60), ("stale_buffer", 320, 240)):
+            cull(*[sightline.camera(width=width, height=height)] * 2)
+            self.assertEqual(picture(culler, 0).shape, (height, width))
+            self.refused(status, "depth image: ", picture, culler, 1, (width, height))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -105,6 +105,8 @@ class Instances(Case):
         casters = sightline.ShadowCasters()
         self.bad("casters", culler.cull, instances, sightline.CullView(sightline.camera(), casters=casters), index=0)
         self.bad("hysteresis", culler.cull, instances, sightline.camera(), levels=sightline.Levels(hysteresis=0.1))
+        self.whole("name", instances.remove_world)
+        self.whole("most_objects", lambda n: culler.cull(instances, sightline.camera(), most_objects=n))
         self.refused("too_many", "most_objects", culler.cull, instances, sightline.camera(), most_objects=0)
         instances.set_layers(handles, np.array([0], np.uint32))
         self.assertEqual(len(culler.cull(instances, sightline.camera())[0]), 0)

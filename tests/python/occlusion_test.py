@@ -66,6 +66,8 @@ class Draw(Case):
         self.refused("bad_mesh", "names no position", sightline.Occluder, cube, indices, index=2)
         self.bad("at most 4096", sightline.Occluder, wall, indices, most_triangles=5000)
         self.bad("positions: expected float32", sightline.Occluder, cube.astype(float), indices)
+        for name in ("most_triangles", "most_boxes"):
+            self.whole(name, lambda n: sightline.Occluder(wall, indices, **{name: n}))
 
     def test_boxes_and_spheres_hide_too(self):
         columns = [np.ascontiguousarray(SPHERES[:, i]) for i in range(4)]
@@ -104,6 +106,8 @@ class Draw(Case):
         self.refused("bad_mesh", "three corners", triangles.assign, TRIANGLES, np.array([3], np.uint32))
         self.bad("corners: expected float32", triangles.assign, TRIANGLES.astype(float), np.array([2], np.uint32))
         self.bad("triangles_per_object: expected uint32", triangles.assign, TRIANGLES, np.array([2]))
+        self.whole("object", lambda n: triangles.set(n, TRIANGLES[0]))
+        self.whole("object", triangles.triangles)
         self.bad("objects: expected uint32", self.occlusion.keep_seen, triangles, np.array([2.0]))
 
     def test_nearness(self):
@@ -122,6 +126,7 @@ class Draw(Case):
                 self.assertEqual(self.occlusion.read_nearness().shape, (48, 64))
         self.bad("coverage: expected", self.occlusion.begin, VIEW, "all")
         self.refused("bad_argument", "scale", self.occlusion.begin, VIEW, "area", 3)
+        self.whole("scale", lambda n: self.occlusion.begin(VIEW, "area", n))
 
     def test_before_begin(self):
         fresh = sightline.Occlusion()

@@ -80,6 +80,8 @@ class Snapshots(Case):
         self.assertEqual(stream.sector(0)["state"], "damaged")
         self.assertIn("checksum", stream.sector(0)["error"])
         self.bad("no such sector", stream.sector, len(stream))
+        self.whole("index", stream.sector)
+        self.whole("budget", lambda n: stream.update(view, budget=n))
         self.bad("in use", sightline.WorldStream, bytes_, world)
         self.bad("expected a World", sightline.WorldStream, bytes_, 3)
 

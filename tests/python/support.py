@@ -44,3 +44,8 @@ class Case(unittest.TestCase):
 
     def bad(self, sentence, call, *args, **kwargs):
         self.refused("bad_argument", sentence, call, *args, **kwargs)
+
+    def whole(self, name, call):
+        """The argument of this name takes no number but whole ones from 0 on, as far as 64 bits go at most."""
+        for number in (-1, 1 << 64, 1 << 99, 0.5, "one", np.int64(-1)):
+            self.bad(f"{name}: expected a whole number from 0 to ", call, number)

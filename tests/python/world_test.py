@@ -45,6 +45,15 @@ class Insert(Case):
                      sightline.BoxView.min_max(floats[:, 0], floats[:, 1], origin=(1e7, 0, 0))):
             world = sightline.World()
             np.testing.assert_allclose(world.boxes(world.insert(form))[:, :, 0], [[1e7 - 0.5, 1e7 + 0.5]] * 3, atol=1e-3)
+        one = sightline.BoxView.min_max(floats)
+        moved = world.boxes(world.insert(sightline.BoxView.min_max(one, origin=(1e7, 0, 0))))
+        np.testing.assert_allclose(moved[:, :, 0], [[1e7 - 0.5, 1e7 + 0.5]] * 3, atol=1e-3)
+        columns = [np.ascontiguousarray(floats[:, i // 3, i % 3]) for i in range(6)]
+        for form in (sightline.BoxView.centre_half(things["position"], things["half"]),
+                     sightline.BoxView.arrays(*columns), sightline.BoxView.min_max(floats[:, 0], floats[:, 1]),
+                     sightline.BoxView.min_max(floats, origin=(1e7, 0, 0))):
+            self.bad("origin: expected an array or two", sightline.BoxView.min_max, form, origin=(1, 0, 0))
+            self.assertEqual(len(sightline.BoxView.min_max(form)), 3)
         self.bad("only boxes in float32", sightline.BoxView.min_max, boxes_of(things), origin=(1, 0, 0))
         self.bad("only boxes in float32", sightline.BoxView.centre_half, things["exact_position"],
                  things["exact_half"], origin=(1, 0, 0))
@@ -223,14 +232,22 @@ class Cull(Case):
 
     def test_refusals(self):
         cull = self.culler.cull
-        with self.assertRaisesRegex(ValueError, "1 to 8 views"):
-            cull(self.world, [])
-        with self.assertRaisesRegex(ValueError, "1 to 8 views"):
-            cull(self.world, [AHEAD] * 9)
+        for count in (0, 9):
+            self.bad(f"expected 1 to 8 views, got {count}", cull, self.world, [AHEAD] * count)
         for views in (None, 3, "view", [AHEAD, None]):
             self.bad("expected a View, a CullView", cull, self.world, views)
         for area in (np.nan, -1, np.inf):
             self.bad("min_area", cull, self.world, [AHEAD, sightline.CullView(AHEAD, min_area=area)], index=1)
+        view = sightline.CullView(AHEAD, layers=5, distance_view=0)
+        for name in ("layers", "distance_view"):
+            self.whole(name, lambda n: sightline.CullView(AHEAD, **{name: n}))
+            self.whole(name, lambda n: setattr(view, name, n))
+        self.assertEqual((view.layers, view.distance_view), (5, 0))
+        view.layers, view.distance_view = np.uint32(6), None
+        self.assertEqual((view.layers, view.distance_view), (6, None))
+        for name in ("view", "key"):
+            self.whole(name, lambda n: sightline.Levels(**{name: n}))
+            self.bad(f"{name}: expected a whole number from 0 to 4294967295", sightline.Levels, **{name: 1 << 32})
 
     def test_threads_wait_for_each_other(self):
         occlusions = [sightline.Occlusion(), sightline.Occlusion()]
