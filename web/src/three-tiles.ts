@@ -15,6 +15,7 @@ import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
 import { isLoaded, ready, supported } from './runtime.js';
 import { eyeOf, isRigid } from './three/eye.js';
 import { determinantOf, isSolid, type Eye } from './three/occluders.js';
+import { release } from './three/release.js';
 
 export { ready, supported };
 
@@ -74,10 +75,9 @@ export class SightlineTilesPlugin {
   dispose(): void {
     this.#tiles?.removeEventListener('update-before', this.#update);
     this.#tiles = undefined, (this.#sights = []);
-    for (const { mesh, forget } of [...this.#meshes.values()]) forget(), mesh?.dispose();
+    for (const { mesh, forget } of [...this.#meshes.values()]) forget(), release(mesh);
     this.#meshes.clear();
-    for (const buffer of this.#buffers.splice(0)) buffer.dispose();
-    this.#seen?.dispose(), (this.#seen = undefined);
+    release(...this.#buffers.splice(0), this.#seen), (this.#seen = undefined);
   }
 
   /** Called by the renderer for each tile that it comes to: masks those that no camera can see. */
@@ -158,7 +158,7 @@ export class SightlineTilesPlugin {
     if (known) return known.mesh;
     const forget = (): void => {
       geometry.removeEventListener('dispose', forget);
-      this.#meshes.get(geometry)?.mesh?.dispose();
+      release(this.#meshes.get(geometry)?.mesh);
       this.#meshes.delete(geometry);
     };
     geometry.addEventListener('dispose', forget);

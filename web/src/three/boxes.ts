@@ -1,6 +1,9 @@
 // World-space boxes of what matrices move, in double precision, a little larger than they are.
 import type { Box3 } from 'three';
 
+/** As far from 0 as a World takes boxes and views. */
+const reach = 1e11;
+
 /** Writes the box of `local` moved by `m` and then by `n`, if any, at 6 · slot; returns whether it is another than before. */
 export function writeBox(out: Float64Array, slot: number, local: Box3, m: ArrayLike<number>, at: number,
   n?: ArrayLike<number>): boolean {
@@ -25,11 +28,19 @@ export function writeBox(out: Float64Array, slot: number, local: Box3, m: ArrayL
     // What single precision on the GPU can move a corner by.
     const size = Math.max(Math.abs(low), Math.abs(high), Math.abs(d));
     low -= 2e-6 * size, high += 2e-6 * size;
-    if (!(low >= -1e10 && high <= 1e10)) sound = false;
+    if (!(low >= -reach && high <= reach)) sound = false;
     const first = 6 * slot + row;
     if (out[first] !== low || out[first + 3] !== high) (changed = true), (out[first] = low), (out[first + 3] = high);
   }
-  // Nothing is known of it: it is everywhere.
-  if (!sound) out.fill(-1e10, 6 * slot, 6 * slot + 3).fill(1e10, 6 * slot + 3, 6 * slot + 6);
+  // Nothing is known of it: it is everywhere that a camera may be.
+  if (!sound) out.fill(-reach, 6 * slot, 6 * slot + 3).fill(reach, 6 * slot + 3, 6 * slot + 6);
   return changed;
+}
+
+/** Makes the box at 6 · slot hold another one, too. */
+export function widen(out: Float64Array, slot: number, by: Float64Array): void {
+  for (let k = 6 * slot, axis = 0; axis < 3; ++axis, ++k) {
+    out[k] = Math.min(out[k]!, by[axis]!);
+    out[k + 3] = Math.max(out[k + 3]!, by[axis + 3]!);
+  }
 }

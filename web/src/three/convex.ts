@@ -4,6 +4,7 @@ import type { BufferAttribute, BufferGeometry } from 'three';
 import type { Batch } from './batches.js';
 import { pointsOf, type Points } from './bounds.js';
 import { OccluderMesh } from '../occlusion.js';
+import { release } from './release.js';
 
 export interface Convex {
   mesh: OccluderMesh;
@@ -16,11 +17,7 @@ const mostTriangles = 200;
 interface Parts { points: Points; index: BufferAttribute | null; versions: number; made: Map<number, Convex | null> }
 const known = new WeakMap<BufferGeometry, Parts>();
 // They lie in the module's memory, where nobody collects them with their geometry.
-const collected = new FinalizationRegistry<Parts>((parts) => {
-  try {
-    free(parts);
-  } catch {} // nobody waits for this, should the module have ended
-});
+const collected = new FinalizationRegistry<Parts>((parts) => free(parts));
 const disposed = ({ target }: { target: BufferGeometry }) => forgetConvex(target);
 
 // Of a geometry's vertices or indices from `start` on, made once for as long as they stay.
@@ -41,11 +38,12 @@ function part(geometry: BufferGeometry, start: number, corners: number): Convex 
 export function forgetConvex(geometry: BufferGeometry): void {
   const parts = known.get(geometry);
   if (!parts) return;
-  free(parts), collected.unregister(parts), known.delete(geometry);
+  collected.unregister(parts), known.delete(geometry);
   geometry.removeEventListener('dispose', disposed);
+  free(parts);
 }
 function free({ made }: Parts): void {
-  for (const convex of made.values()) convex?.mesh.dispose();
+  for (const convex of made.values()) release(convex?.mesh);
 }
 
 /** The geometry as an occluder; null where it is not closed and convex, or has more than 200 triangles. */

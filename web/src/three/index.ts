@@ -20,6 +20,7 @@ import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
 import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
+import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
 import { isCalled, isDisplaced, type Thing } from './things.js';
@@ -79,6 +80,7 @@ export class SightlineCuller {
   readonly #frames: Frame[] = [];
   readonly #hooks: Hooks;
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
+  #tried = false;
   #drawn: Eye | undefined;
   #layers = new Layers(); // of the camera that draws
   readonly #whole = new Whole();
@@ -125,13 +127,17 @@ export class SightlineCuller {
     taken.delete(this.#scene);
     this.enabled = false;
     for (const { mesh } of this.#inside?.inventory.things ?? [])
-      for (const shape of [mesh.geometry, mesh.userData.occluder]) forgetConvex(shape as BufferGeometry);
-    for (const thing of Object.values(this.#inside ?? {})) thing.dispose();
+      for (const shape of [mesh.geometry, mesh.userData?.occluder]) forgetConvex(shape as BufferGeometry);
+    release(...Object.values(this.#inside ?? {}));
     this.#inside = undefined;
   }
 
-  #make() {
-    return { inventory: new Inventory(this.#scene), culler: new Culler(), buffer: new OcclusionBuffer() };
+  // Tried once: what one module lacks, it lacks in every frame. The buffer first, which the smaller module lacks, so that
+  // nothing else is made then.
+  #make(): void {
+    this.#tried = true;
+    const buffer = new OcclusionBuffer(), culler = new Culler();
+    this.#inside = { inventory: new Inventory(this.#scene, (error) => this.#tell(error)), culler, buffer };
   }
 
   // What cannot be culled is drawn whole, and said once.
@@ -155,7 +161,7 @@ export class SightlineCuller {
     this.#frames.push(frame);
     // compileAsync() begins and never ends; nor does any render where somebody has put another onAfterRender over ours.
     if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
-    if (!this.#inside && isLoaded()) this.#try(() => (this.#inside = this.#make()));
+    if (!this.#tried && isLoaded()) this.#try(() => this.#make());
     this.#inside?.inventory.takeNote();
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     if (isDisplaced(this.#scene.overrideMaterial as Material | null)) return; // then all of it may be elsewhere

@@ -2,6 +2,8 @@
 import type { BatchedMesh, InstancedMesh, Layers, Mesh, Object3D, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
+import { measure } from './bounds.js';
+import { release } from './release.js';
 import { Resting } from './resting.js';
 import { classify, disposeOf, isOther, isRestless, makeThing, sumOf, takeNote, update, type Known, type Thing } from './things.js';
 
@@ -56,11 +58,13 @@ export class Inventory {
   #matrices = new Float64Array(0);
   #changed = true;
   readonly #moved: number[] = [];
-  readonly #added = (event: { child: Object3D; target: Object3D }) => this.#add(event.child, event.target, 1);
-  readonly #removed = (event: { child: Object3D }) => this.#remove(event.child);
+  readonly #tell: (error: Error) => void;
+  readonly #added = ({ child, target }: { child: Object3D; target: Object3D }) => this.#hear(() => this.#add(child, target, 1));
+  readonly #removed = ({ child }: { child: Object3D }) => this.#hear(() => this.#remove(child));
 
-  constructor(scene: Scene) {
-    this.#scene = scene;
+  /** `tell` hears what goes wrong while the scene changes. */
+  constructor(scene: Scene, tell: (error: Error) => void) {
+    this.#scene = scene, (this.#tell = tell);
   }
 
   /** To be called in every frame, before three draws, whether it is culled or not. */
@@ -88,7 +92,7 @@ export class Inventory {
     for (const thing of this.many) {
       const mesh = thing.mesh as InstancedMesh | BatchedMesh;
       if (!mesh.visible || !mesh.layers.test(layers) || !this.nodes[thing.parent]!.shown) continue;
-      if (mesh.boundingSphere === null) mesh.computeBoundingSphere();
+      measure(mesh);
     }
   }
 
@@ -106,8 +110,7 @@ export class Inventory {
   dispose(): void {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const thing of this.things) disposeOf(thing);
-    this.world.dispose();
-    this.boxes.dispose();
+    release(this.world, this.boxes);
   }
 
   #scan(): void {
@@ -154,7 +157,7 @@ export class Inventory {
     for (const thing of this.things) disposeOf(thing);
     for (const all of [this.things, this.many, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = this.size = this.#freed = 0;
-    this.world.dispose(), (this.world = new World());
+    release(this.world), (this.world = new World());
     this.nodes.push(nodeOf(this.#scene, -1));
     this.#listen(this.#scene, true);
     const found: Thing[] = [];
@@ -221,6 +224,14 @@ export class Inventory {
     }
   }
 
+  // Within the user's own call, which is to do all that it does without the culler.
+  #hear(change: () => void): void {
+    try {
+      change();
+    } catch (error) {
+      this.#changed = true, this.#tell(error as Error);
+    }
+  }
   // Meshes come and go one by one; for all else the scene is walked anew.
   #add(child: Object3D, parent: Object3D, more: number): void {
     const taken = classify(child);

@@ -1,5 +1,5 @@
 // Which things occlude, frame by frame: those that look largest. Whatever picks better takes this file's place.
-import { Object3D } from 'three';
+import { Frustum, Matrix4, Object3D } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh } from 'three';
 import type { OcclusionBuffer } from '../occlusion.js';
 import { convexOf, convexOfInstance, type Convex } from './convex.js';
@@ -69,6 +69,15 @@ function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): bool
   return materialsOf(mesh, override).every(mark ? isWhole : isSolid);
 }
 
+const frustum = new Frustum(), toClip = new Matrix4();
+
+// As three culls: by spheres, which may be older than the points or given, so that it does not draw all that is in view.
+function setFrustum(camera: Camera): void {
+  const { coordinateSystem, reversedDepth } = camera as Camera & { reversedDepth?: boolean };
+  toClip.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+  frustum.setFromProjectionMatrix(toClip, coordinateSystem, reversedDepth);
+}
+
 /** The shape that a thing which may occludes with; null where it has none. */
 function shapeOf({ mesh, kind }: Thing, instance: number): Convex | null {
   const mark = markOf(mesh);
@@ -120,7 +129,7 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
     const room = 2 * slots.length;
     found.slots = new Uint32Array(room), (found.sizes = new Float64Array(room)), (found.order = new Uint32Array(room));
   }
-  found.count = 0;
+  found.count = 0, setFrustum(camera);
   inventory.forEachShown(slots, (_, from, to) => findLarge(inventory.boxes.array, eye, { slots, from, to }));
   orderOf(found.sizes, found.count, true, found.order);
   let drawn = 0, tried = 0;
@@ -128,7 +137,7 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
     const slot = found.slots[found.order[i]!]!;
     const thing = inventory.thingOf[slot]!;
     const shape = mayOcclude(thing.mesh, override, camera) ? shapeOf(thing, slot - thing.first) : null;
-    if (!shape) continue;
+    if (!shape || !frustum.intersectsObject(thing.mesh)) continue;
     if (draw(buffer, inventory, eye, slot, flat, shape)) ++drawn;
     if (++tried === most) break;
   }

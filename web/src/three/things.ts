@@ -2,10 +2,11 @@
 import type { BufferGeometry, InstancedMesh, Mesh } from 'three';
 import { BatchedMesh, Box3, Object3D } from 'three';
 import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
-import { boxOf, pointsOf, type Points } from './bounds.js';
-import { writeBox } from './boxes.js';
+import { boxOf, boxOfMesh, ownSphereOf, pointsOf, reachOf, SeenSphere, type Points } from './bounds.js';
+import { widen, writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
+import { release } from './release.js';
 import { Sending } from './sending.js';
 import { countsInstances } from './shaders.js';
 
@@ -21,7 +22,10 @@ export interface Thing {
   geometry: BufferGeometry;
   points: Points;
   pointsVersion: number;
-  radius: number | undefined;
+  /** The geometry's, and a mesh's own; of instances, where their mesh's own says that they may be. */
+  readonly sphere: SeenSphere;
+  readonly ownSphere: SeenSphere;
+  reach: Box3 | null;
   given: Box3 | null;
   /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
@@ -82,7 +86,8 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
 /** A thing, of which nothing is known yet. */
 export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
   const { geometry } = mesh;
-  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, radius: undefined, given: null,
+  return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, given: null,
+    sphere: new SeenSphere(), ownSphere: new SeenSphere(), reach: null,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
     sending: kind === 'batched' ? new Sending(count) : undefined,
@@ -96,7 +101,7 @@ export function takeNote({ mesh, ranges }: Thing): void {
 }
 
 export function disposeOf({ mesh, kind, matrices, told }: Thing): void {
-  matrices?.dispose();
+  release(matrices);
   if (told) unlisten(mesh as Batch, told);
   if (kind === 'instanced') letGo((mesh as InstancedMesh).instanceMatrix), letGo((mesh as InstancedMesh).instanceColor);
 }
@@ -123,18 +128,19 @@ export function update(thing: Thing, known: Known): void {
   const { mesh, kind } = thing, m = mesh.matrixWorld.elements;
   const isMoved = moves(known.matrices, 12 * thing.first, m);
   if (kind === 'batched') return updateBatch(thing, mesh as Batch, isMoved, known);
-  const isReshaped = reshapes(thing, mesh.geometry);
+  const isReshaped = reshapes(thing, mesh);
   if (kind === 'instanced') return updateInstances(thing, mesh as InstancedMesh, isMoved || isReshaped, known);
-  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOf(mesh.geometry), m, 0)) known.moved.push(thing.first);
+  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOfMesh(mesh), m, 0)) known.moved.push(thing.first);
 }
 
 // Whether a mesh has other points than are known of it; takes them over.
-function reshapes(thing: Thing, geometry: BufferGeometry): boolean {
-  const points = pointsOf(geometry), { version } = points;
-  const radius = geometry.boundingSphere?.radius;
-  if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && radius === thing.radius &&
+function reshapes(thing: Thing, mesh: Mesh): boolean {
+  const { geometry } = mesh, points = pointsOf(geometry), { version } = points;
+  const isOther = thing.sphere.changes(geometry.boundingSphere);
+  const isOwnOther = thing.kind === 'mesh' && thing.ownSphere.changes(ownSphereOf(mesh));
+  if (geometry === thing.geometry && points === thing.points && version === thing.pointsVersion && !isOther && !isOwnOther &&
     geometry.boundingBox === thing.given) return false;
-  thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version), (thing.radius = radius);
+  thing.geometry = geometry, (thing.points = points), (thing.pointsVersion = version);
   thing.given = geometry.boundingBox;
   return true;
 }
@@ -154,12 +160,19 @@ const mostRestless = 4;
 const isMuch = (moved: number, count: number): boolean => moved > 1000 && 4 * moved > count;
 export const isRestless = ({ restless }: Thing): boolean => restless >= mostRestless;
 
+const reached = new Float64Array(6); // by all instances of a mesh, in the world
+
 function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxes, moved }: Known): void {
   const { matrices, first, count } = thing, ranges = thing.ranges!, now = mesh.instanceMatrix.array as Float32Array;
+  const reach = reachOf(mesh);
+  if (reach !== thing.reach) (thing.reach = reach), (all = true);
   if (!all && ranges.isEmpty) return;
   const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements, before = moved.length;
+  if (reach) writeBox(reached, 0, reach, world, 0);
   const write = (i: number) => {
-    if (writeBox(boxes, first + i, box, now, 16 * i, world)) moved.push(first + i);
+    if (!writeBox(boxes, first + i, box, now, 16 * i, world) && !reach) return;
+    if (reach) widen(boxes, first + i, reached);
+    moved.push(first + i);
   };
   if (all || ranges.isOther) {
     matrices!.takeAll(now);
