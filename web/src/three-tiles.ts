@@ -10,11 +10,12 @@ import type { BufferGeometry, Camera, Material, Mesh, Object3D } from 'three';
 import { Box3, Matrix4, Vector3 } from 'three';
 import { refuse, said } from './errors.js';
 import './index.js';
-import { bytes, type Block } from './memory.js';
+import { bytes, reading, type Block } from './memory.js';
 import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
 import { isLoaded, ready, supported } from './runtime.js';
 import { eyeOf, isRigid } from './three/eye.js';
 import { determinantOf, isSolid, type Eye } from './three/occluders.js';
+import { readOptions } from './three/options.js';
 import { release } from './three/release.js';
 
 export { ready, supported };
@@ -38,6 +39,9 @@ interface Tiles {
 }
 interface ViewError { inView: boolean; error: number; distance: number }
 
+const isTiles = (tiles: Tiles | undefined): boolean => typeof tiles?.addEventListener === 'function' && Boolean(tiles.group) &&
+  Array.isArray(tiles.cameras) && tiles.cameraMap instanceof Map && tiles.visibleTiles instanceof Set;
+
 /** What hides things for one camera. */
 interface Sight { buffer: OcclusionBuffer; eye: Eye }
 
@@ -59,7 +63,7 @@ export class SightlineTilesPlugin {
   #told = false;
 
   constructor(options?: SightlineTilesOptions) {
-    const { mostTriangles = 60_000 } = options ?? {};
+    const { mostTriangles = 60_000 } = readOptions('SightlineTilesPlugin', options, ['mostTriangles']);
     if (!Number.isInteger(mostTriangles) || mostTriangles < 1)
       refuse(`SightlineTilesPlugin: ${said(mostTriangles)} triangles, expected an integer of 1 or more`);
     this.#mostTriangles = mostTriangles;
@@ -68,6 +72,8 @@ export class SightlineTilesPlugin {
 
   /** Called by TilesRenderer.registerPlugin(). */
   init(tiles: unknown): void {
+    if (!reading('SightlineTilesPlugin', () => isTiles(tiles as Tiles | undefined)))
+      refuse('SightlineTilesPlugin: init() without a TilesRenderer, expected registerPlugin() of one to call it');
     this.#tiles = tiles as Tiles;
     this.#tiles.addEventListener('update-before', this.#update);
   }

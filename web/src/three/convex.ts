@@ -62,6 +62,8 @@ export function convexOfInstance(mesh: Batch, instance: number): Convex | null {
 
 function make(geometry: BufferGeometry, start: number, corners: number): Convex | null {
   const position = geometry.attributes.position!;
+  // What lies on the GPU alone cannot be read.
+  if (!('getX' in position) || (geometry.index && !('getX' in geometry.index))) return null;
   if (corners % 3 !== 0 || corners > 3 * mostTriangles || corners < 12) return null;
   const all = Array.from({ length: corners }, (_, i) => {
     const v = geometry.index ? geometry.index.getX(start + i) : start + i;

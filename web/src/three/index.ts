@@ -20,6 +20,7 @@ import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
 import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
+import { readOptions } from './options.js';
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
@@ -87,10 +88,12 @@ export class SightlineCuller {
   #rest = 0;
   #left = new Uint32Array(0);
   #told = false;
+  #toldOfCamera = false;
 
   constructor(scene: Scene, options?: SightlineOptions) {
     if (!reading('SightlineCuller', () => scene?.isScene)) refuse('SightlineCuller: expected a Scene');
-    const { occlusion = true, bufferWidth = 512 } = options ?? {};
+    const { occlusion = true, bufferWidth = 512 } = readOptions('SightlineCuller', options, ['occlusion', 'bufferWidth']);
+    if (typeof occlusion !== 'boolean') refuse(`SightlineCuller: an occlusion of ${said(occlusion)}, expected true or false`);
     if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
       refuse(`SightlineCuller: a bufferWidth of ${said(bufferWidth)}, expected an integer from 16 to 4096`);
     if (taken.has(scene)) refuse('SightlineCuller: the scene has one already, expected dispose() of that first');
@@ -166,8 +169,17 @@ export class SightlineCuller {
     if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
     if (isDisplaced(this.#scene.overrideMaterial as Material | null)) return; // then all of it may be elsewhere
     this.#layers = camera.layers;
-    this.#try(() => this.#cull(renderer, this.camera ?? camera, frame, outer !== undefined));
+    this.#try(() => this.#cull(renderer, this.#cameraOr(camera), frame, outer !== undefined));
     this.#scene.children = frame.list;
+  }
+
+  // The one that is set, or the one that draws.
+  #cameraOr(drawing: Camera): Camera {
+    const { camera } = this;
+    if (camera == null || camera.isCamera) return camera ?? drawing;
+    if (!this.#toldOfCamera) console.warn(`Sightline culls for the camera that draws: culler.camera is ${said(camera)}, expected a Camera`);
+    this.#toldOfCamera = true;
+    return drawing;
   }
 
   #end(): void {

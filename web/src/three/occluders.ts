@@ -1,6 +1,7 @@
 // Which things occlude, frame by frame: those that look largest. Whatever picks better takes this file's place.
 import { Frustum, Matrix4, Object3D } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh } from 'three';
+import { said } from '../errors.js';
 import type { OcclusionBuffer } from '../occlusion.js';
 import { convexOf, convexOfInstance, type Convex } from './convex.js';
 import type { Range } from './instances.js';
@@ -34,8 +35,8 @@ export function isSolid(material: Material): boolean {
 
 // With what an object is drawn, if its own materials are visible.
 const materialsOf = (object: Object3D, override: Material | null): Material[] => {
-  const { material } = object as Mesh, own = Array.isArray(material) ? material : material ? [material] : [];
-  return own.map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
+  const { material } = object as Mesh, own = Array.isArray(material) ? material : [material];
+  return own.filter(Boolean).map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
 
 // What is called when an object is drawn may move it, or empty the depth buffer before it.
@@ -59,14 +60,25 @@ export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
     !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap && !writesDepth(m));
 }
 
-const markOf = (mesh: Mesh) => (mesh.userData.occluder ?? undefined) as boolean | BufferGeometry | undefined;
+const wrong = new WeakSet<Mesh>();
+
+/** What a mesh's userData.occluder says: that it may, must not, or by which geometry; what says none of that forbids, too. */
+function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
+  const mark = (mesh.userData?.occluder ?? undefined) as boolean | BufferGeometry | undefined;
+  if (mark === undefined || typeof mark === 'boolean' || (mark.isBufferGeometry && mark.attributes.position)) return mark;
+  if (!wrong.has(mesh)) console.warn(`Sightline lets ${mesh.type} "${mesh.name}" hide nothing: its userData.occluder is ` +
+    `${mark.isBufferGeometry ? 'a geometry without positions' : said(mark)}, expected true, false or a closed convex BufferGeometry`);
+  return wrong.add(mesh), false;
+}
 
 function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
   const mark = markOf(mesh), { material } = mesh;
   if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalled(mesh)) return false;
   // Of several materials nobody says that they are all there are faces for.
-  if (Array.isArray(material) ? !mark : !material.visible) return false;
-  return materialsOf(mesh, override).every(mark ? isWhole : isSolid);
+  if (Array.isArray(material) ? !mark : !material?.visible) return false;
+  const materials = materialsOf(mesh, override);
+  if (Array.isArray(material) && materials.length < material.length) return false; // three draws holes there
+  return materials.every(mark ? isWhole : isSolid);
 }
 
 const frustum = new Frustum(), toClip = new Matrix4();

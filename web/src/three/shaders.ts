@@ -23,5 +23,5 @@ export const writesDepth = has('fragmentShader', 'gl_FragDepth');
 export const isPatched = (material: Material): boolean => material.onBeforeCompile !== Material.prototype.onBeforeCompile;
 
 /** Whether it may draw another instance where other instances are left out. */
-export const countsInstances = (material: Material | undefined): boolean =>
-  material !== undefined && (numbersInstances(material) || isPatched(material));
+export const countsInstances = (material: Material | null | undefined): boolean =>
+  material != null && (numbersInstances(material) || isPatched(material));

@@ -44,7 +44,7 @@ export interface Known { boxes: Float64Array; matrices: Float64Array; moved: num
 // Lines as wide as one likes are meshes of instanced geometries, and displaced points are where no box says.
 const isPlain = (mesh: Mesh): boolean =>
   mesh.children.length === 0 && mesh.frustumCulled && !(mesh as { isSkinnedMesh?: boolean }).isSkinnedMesh &&
-  !mesh.morphTargetInfluences?.length && mesh.userData.sightline !== false &&
+  !mesh.morphTargetInfluences?.length && mesh.userData?.sightline !== false &&
   mesh.geometry?.attributes.position !== undefined && !isDisplaced(mesh.material) &&
   ((mesh as { isInstancedMesh?: boolean }).isInstancedMesh || !(mesh.geometry as { isInstancedBufferGeometry?: boolean }).isInstancedBufferGeometry);
 
@@ -62,7 +62,7 @@ export const isCalled = (mesh: Mesh): boolean => mesh.onAfterRender !== own.onAf
 function isSimple(mesh: InstancedMesh): boolean {
   if (mesh.morphTexture || mesh.instanceMatrix.count === 0) return false;
   const { material, customDepthMaterial, customDistanceMaterial, userData } = mesh;
-  if (userData.sightline !== true && [material, customDepthMaterial, customDistanceMaterial].flat().some(countsInstances)) return false;
+  if (userData?.sightline !== true && [material, customDepthMaterial, customDistanceMaterial].flat().some(countsInstances)) return false;
   return Object.values(mesh.geometry.attributes).every((attribute) => {
     const { isInstancedBufferAttribute, data } = attribute as unknown as {
       isInstancedBufferAttribute?: boolean; data?: { isInstancedInterleavedBuffer?: boolean } };
