@@ -26,5 +26,6 @@ export function refuse(message: string, code: Code = 'bad_argument'): never {
   throw new SightlineError(code, message);
 }
 
-/** Of what is called on something that has not what is private to it, as frameworks wrap what stands in a page's state. */
+/** Of what is called on something that has not what is private to it: frameworks wrap what stands in a page's state, and methods
+ * are taken off their objects. */
 export const refuseProxy = (what: unknown): never => refuse(`${said(what)}: called on a Proxy or a copy of it, expected the object itself`);

@@ -6,6 +6,10 @@ export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
 const kinds: readonly unknown[] = [Float32Array, Float64Array, Uint32Array, Uint8Array];
 type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
 
+// What typed arrays are, whatever stands on one under the same name.
+const truly = <K extends 'buffer' | 'byteOffset' | 'byteLength' | 'length'>(array: Numbers, name: K): Numbers[K] =>
+  Reflect.get(Object.getPrototypeOf(Uint8Array.prototype) as object, name, array) as Numbers[K];
+
 // 0 where there is no room; the module itself would take the size modulo 2^32.
 const allocate = (size: number): number => (size < 2 ** 32 - 64 ? wasm().allocate!(Math.max(size, 64)) >>> 0 : 0);
 
@@ -25,6 +29,7 @@ export class Block<T extends Numbers> {
     this.length = length;
     this.#pointer = allocate(length * kind.BYTES_PER_ELEMENT);
     if (this.#pointer === 0) refuse(`Block: no memory for ${length} numbers`, 'too_many');
+    Object.freeze(this); // a length that was written would have calls write beyond
   }
   /** @internal Not what merely claims to be one, as a Proxy of one does. */
   static is(given: unknown): given is Block<Numbers> {
@@ -62,11 +67,15 @@ export const bytes = (length: number): Block<Uint8Array> => new Block(Uint8Array
 /** An array of numbers: a Block, or any typed array, which is copied unless it lies in the module's memory. */
 export type Input<T extends Numbers> = T | Block<T>;
 
-/** Whether an array's buffer is gone, as after the module's memory has grown. */
-function detached(array: Numbers): boolean {
-  if (array.buffer.byteLength > 0) return false;
+/** How many numbers there are. */
+export const lengthOf = (input: Input<Numbers>): number => (Block.is(input) ? input.length : truly(input, 'length'));
+
+/** Whether an array's buffer is gone, as after the module's memory has grown or it was transferred. */
+export function detached(array: Numbers): boolean {
+  const own = truly(array, 'buffer');
+  if (own.byteLength > 0) return false;
   try {
-    return new Uint8Array(array.buffer) === undefined;
+    return new Uint8Array(own) === undefined;
   } catch {
     return true; // only of such a buffer nothing can be made
   }
@@ -93,9 +102,8 @@ export class Call {
   }
 
   #copy(array: Numbers): number {
-    const pointer = this.room(array.byteLength);
-    new Uint8Array(buffer(), pointer, array.byteLength)
-      .set(new Uint8Array(array.buffer as ArrayBuffer, array.byteOffset, array.byteLength));
+    const size = truly(array, 'byteLength'), pointer = this.room(size);
+    new Uint8Array(buffer(), pointer, size).set(new Uint8Array(truly(array, 'buffer'), truly(array, 'byteOffset'), size));
     return pointer;
   }
 }
@@ -103,9 +111,9 @@ export class Call {
 // Undefined where it has to be copied.
 function where(input: Input<Numbers>): number | undefined {
   if (Block.is(input)) return input.pointer;
-  if (input.buffer === buffer()) return input.byteOffset;
+  if (truly(input, 'buffer') === buffer()) return truly(input, 'byteOffset');
   if (detached(input))
-    refuse('sightline: an array is detached; the memory has grown since it was fetched, fetch it from its Block anew', 'detached');
+    refuse('sightline: an array is detached: transferred, or from before the memory grew; fetch it from its Block anew', 'detached');
   return undefined;
 }
 
@@ -123,6 +131,14 @@ export function calling<R>(body: (call: Call) => R): R {
 export function expectKind<T extends Numbers>(what: string, input: unknown, kind: Kind<T>): asserts input is Input<T> {
   if (Block.is(input) ? (input.kind as unknown) === kind : ArrayBuffer.isView(input) && input instanceof kind) return;
   refuse(`${what}: expected a ${(kind as unknown as { name: string }).name} or a Block of one`);
+}
+
+/** How many elements of so many numbers each an array of that kind has. */
+export function countOf<T extends Numbers>(what: string, name: string, input: Input<T>, kind: Kind<T>, numbers: number, code?: Code): number {
+  expectKind(`${what}: ${name}`, input, kind);
+  const length = lengthOf(input);
+  if (length % numbers !== 0) refuse(`${what}: ${length} numbers of ${name}, expected a multiple of ${numbers}`, code);
+  return length / numbers;
 }
 
 /** Throws unless it is a Block of that kind, for what a call writes. */
@@ -144,6 +160,21 @@ export function reading<R>(what: string, read: () => R, code?: Code): R {
 /** What stands under some names, each read once. */
 export const fields = <T extends object, K extends (keyof T)[]>(what: string, given: T | null | undefined, names: [...K], code?: Code) =>
   reading(what, () => names.map((name) => given?.[name]), code) as { [I in keyof K]: T[K[I]] | undefined };
+
+/** Throws at another name, as what is misspelt would do nothing, and at what is no plain object. */
+export function expectNames(what: string, given: object, names: readonly string[]): void {
+  reading(what, () => {
+    const plain = typeof given === 'object' && !Array.isArray(given) && !ArrayBuffer.isView(given);
+    const other = plain ? Object.keys(given).find((name) => !names.includes(name)) : said(given);
+    if (other !== undefined) refuse(`${what}: ${other} is no option, expected an object of ${names.join(', ')}`);
+  });
+}
+
+/** Options under these names and no others, each read once. Null is none. */
+export function readOptions<T extends object, K extends (keyof T & string)[]>(what: string, given: T | null | undefined, names: [...K]) {
+  if (given != null) expectNames(what, given, names);
+  return fields(what, given, names);
+}
 
 /** instanceof, which throws for a Proxy that was revoked. */
 export function isA<T>(given: unknown, kind: abstract new (...all: never[]) => T): given is T {
@@ -168,9 +199,16 @@ export function readNumbers(what: string, name: string, given: ArrayLike<number>
 export const readOrigin = (what: string, origin: ArrayLike<number>, code?: Code): number[] =>
   readNumbers(what, 'an origin', origin, 3, code);
 
+/** Throws unless it is an array of that kind with so many elements. */
+export function expectColumn<T extends Numbers>(what: string, input: Input<T>, kind: Kind<T>, length: number): void {
+  expectKind(what, input, kind);
+  expectLength(what, input, length);
+}
+
 /** Throws unless it has so many elements. */
 export function expectLength(what: string, input: Input<Numbers>, length: number): void {
-  if (input.length === length) return;
+  const own = lengthOf(input);
+  if (own === length) return;
   if (!Block.is(input) && length > 0 && detached(input)) where(input);
-  refuse(`${what}: ${input.length} elements, expected ${length}`);
+  refuse(`${what}: ${own} elements, expected ${length}`);
 }

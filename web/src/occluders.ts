@@ -1,10 +1,10 @@
 // What the whole module's World has beside that of `core`: occluders that its objects carry.
 import { refuse, said } from './errors.js';
-import { Block, calling, expectKind, expectLength, fields, readOrigin } from './memory.js';
-import type { Call, Input, Numbers } from './memory.js';
+import { Block, calling, countOf, expectColumn, lengthOf, readOptions, readOrigin } from './memory.js';
+import type { Input, Numbers } from './memory.js';
 import { sidesNumber, type Sides } from './occlusion.js';
-import { buffer, check, need } from './runtime.js';
-import { handleList, World as CoreWorld, type Handle, type Handles } from './world.js';
+import { buffer, check, need, pointerOf } from './runtime.js';
+import { expectObject, handleList, World as CoreWorld, type Handle, type Handles } from './world.js';
 
 /** The name of an occluder that a world keeps for its objects to carry. */
 export type OccluderId = number;
@@ -28,43 +28,34 @@ export interface Occluder {
   spheres?: Input<Float32Array>;
 }
 
-// Pointers and counts of positions, indices and sides.
-function placeMesh(what: string, call: Call, { positions, indices, sides }: Occluder): number[] {
-  const [at, points] = column(what, call, 'positions', positions, Float32Array, 3);
-  const [index, corners] = column(what, call, 'indices', indices, Uint32Array, 1);
-  return [at, points, index, corners, ...column(what, call, 'sides', sides, Uint8Array, 1)];
-}
-
-// Where an array lies, and how many elements of so many numbers it has.
-function column<T extends Numbers>(what: string, call: Call, name: string, given: Input<T> | undefined,
-  kind: Parameters<typeof expectKind<T>>[2], numbers: number): [number, number] {
-  if (given === undefined) return [0, 0];
-  expectKind(`${what}: ${name}`, given, kind);
-  if (given.length % numbers !== 0)
-    refuse(`${what}: ${given.length} numbers of ${name}, expected a multiple of ${numbers}`);
-  return [call.place(given)[0]!, given.length / numbers];
-}
+// How many elements of so many numbers an array has, if there is one.
+const countIn = <T extends Numbers>(name: string, given: Input<T> | undefined, kind: Parameters<typeof countOf<T>>[3], numbers: number): number =>
+  given === undefined ? 0 : countOf('addOccluder', name, given, kind, numbers);
 
 /** A world of boxes, anywhere within 10¹¹ m of 0, whose objects may carry occluders. A refused call changes nothing. */
 export class World extends CoreWorld {
   /** Keeps an occluder for objects to carry, as many as like. Some microseconds a triangle. */
   addOccluder(occluder: Occluder): OccluderId {
     return calling((call) => {
-      const [positions, indices, sides, solidTriangles = 0, cubes, balls] =
-        fields('addOccluder', occluder, ['positions', 'indices', 'sides', 'solidTriangles', 'boxes', 'spheres']);
+      const [positions, indices, sides, solidTriangles = 0, boxes, spheres] =
+        readOptions('addOccluder', occluder, ['positions', 'indices', 'sides', 'solidTriangles', 'boxes', 'spheres']);
+      const triangles = positions !== undefined;
+      if (triangles !== (indices !== undefined) || (sides !== undefined && !triangles) || !(triangles || boxes || spheres))
+        refuse('addOccluder: expected positions with indices, boxes or spheres');
       if (!Number.isInteger(solidTriangles) || solidTriangles < 0 || solidTriangles > 2 ** 31)
         refuse(`addOccluder: ${said(solidTriangles)} solid triangles, expected as many as there are triangles or fewer`);
-      const mesh = placeMesh('addOccluder', call, { positions, indices, sides });
-      const boxes = column('addOccluder', call, 'boxes', cubes, Float32Array, 6);
-      const spheres = column('addOccluder', call, 'spheres', balls, Float32Array, 4);
+      const counts = [countIn('positions', positions, Float32Array, 3), countIn('indices', indices, Uint32Array, 1),
+        countIn('sides', sides, Uint8Array, 1), countIn('boxes', boxes, Float32Array, 6), countIn('spheres', spheres, Float32Array, 4)];
+      // All at once: placing one may have the memory grow, which takes the next away.
+      const columns = call.place(positions, indices, sides, boxes, spheres).flatMap((at, i) => [at, counts[i]!]);
       const out = call.room(8);
-      check(need('world_add_occluder')(this.pointer, ...mesh, solidTriangles, ...boxes, ...spheres, out));
+      check(need('world_add_occluder')(pointerOf('World', this), ...columns.slice(0, 6), solidTriangles, ...columns.slice(6), out));
       return new Float64Array(buffer(), out, 1)[0]!;
     });
   }
   /** Forgets an occluder that no object carries; its name may be used again. */
   removeOccluder(occluder: OccluderId): void {
-    check(need('world_remove_occluder')(this.pointer, named('removeOccluder', occluder)));
+    check(need('world_remove_occluder')(pointerOf('World', this), named('removeOccluder', occluder)));
   }
   /** Gives each object an occluder, switched on, which hides what lies behind it from culls with automatic occlusion.
    * `transforms`: 16 numbers each, column-major and affine, from the occluder's space to metres about the object's origin; the
@@ -73,28 +64,23 @@ export class World extends CoreWorld {
   setOccluders(handles: Handles, occluders: OccluderId | Input<Uint32Array>, transforms?: Input<Float32Array>,
     origins?: Input<Float64Array> | readonly [number, number, number]): void {
     calling((call) => {
-      const all = handleList(handles), count = all.length;
+      const all = handleList(handles), count = lengthOf(all);
       const names = typeof occluders === 'number' ? new Uint32Array(count).fill(named('setOccluders', occluders)) : occluders;
-      expectKind('setOccluders: occluders', names, Uint32Array);
-      expectLength('setOccluders: occluders', names, count);
-      if (transforms !== undefined) {
-        expectKind('setOccluders: transforms', transforms, Float32Array);
-        expectLength('setOccluders: transforms', transforms, 16 * count);
-      }
+      expectColumn('setOccluders: occluders', names, Uint32Array, count);
+      if (transforms !== undefined) expectColumn('setOccluders: transforms', transforms, Float32Array, 16 * count);
       const from = origins === undefined ? undefined : placeOrigins(origins, count);
       const [numbers, name, matrix, origin] = call.place(all, names, transforms, from);
-      check(need('world_set_occluders')(this.pointer, numbers!, name!, matrix!, origin!, count));
+      check(need('world_set_occluders')(pointerOf('World', this), numbers!, name!, matrix!, origin!, count));
     });
   }
   /** Switches what the objects carry on (1, true) or off (0, false), as doors do; those that carry nothing stay so. */
   setOccluding(handles: Handles, on: boolean | Input<Uint8Array>): void {
     calling((call) => {
-      const all = handleList(handles);
-      const switches = typeof on === 'boolean' ? new Uint8Array(all.length).fill(on ? 1 : 0) : on;
-      expectKind('setOccluding', switches, Uint8Array);
-      expectLength('setOccluding', switches, all.length);
+      const all = handleList(handles), count = lengthOf(all);
+      const switches = typeof on === 'boolean' ? new Uint8Array(count).fill(on ? 1 : 0) : on;
+      expectColumn('setOccluding', switches, Uint8Array, count);
       const [numbers, at] = call.place(all, switches);
-      check(need('world_set_occluding')(this.pointer, numbers!, at!, all.length));
+      check(need('world_set_occluding')(pointerOf('World', this), numbers!, at!, count));
     });
   }
   /** Gives an object its triangles, nine numbers each, in metres about `origin`: all that it shows. Culls with automatic
@@ -103,10 +89,10 @@ export class World extends CoreWorld {
    * away. */
   setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0], sides: Sides = 'both'): void {
     calling((call) => {
-      this.expect('setTriangles', handle);
+      expectObject(this, 'setTriangles', handle);
       const [x, y, z] = readOrigin('setTriangles', origin);
-      const [at, count] = column('setTriangles', call, 'corners', corners, Float32Array, 3);
-      check(need('world_set_triangles')(this.pointer, handle, at, count, x!, y!, z!, sidesNumber('setTriangles', sides)));
+      const count = countOf('setTriangles', 'corners', corners, Float32Array, 3), [at] = call.place(corners);
+      check(need('world_set_triangles')(pointerOf('World', this), handle, at!, count, x!, y!, z!, sidesNumber('setTriangles', sides)));
     });
   }
 }
@@ -118,9 +104,8 @@ function named(what: string, occluder: OccluderId): OccluderId {
 
 function placeOrigins(origins: Input<Float64Array> | readonly [number, number, number], count: number): Input<Float64Array> {
   if (ArrayBuffer.isView(origins) || Block.is(origins)) {
-    expectKind('setOccluders: origins', origins, Float64Array);
-    expectLength('setOccluders: origins', origins, 3 * count);
-    return origins;
+    expectColumn('setOccluders: origins', origins as Input<Float64Array>, Float64Array, 3 * count);
+    return origins as Input<Float64Array>;
   }
   const origin = readOrigin('setOccluders', origins);
   return Float64Array.from({ length: 3 * count }, (_, i) => origin[i % 3]!);

@@ -1,8 +1,8 @@
 // Occluders are drawn into a depth buffer on the CPU, then boxes are tested against it.
 import { placeBoxes, type Boxes } from './boxes.js';
 import { refuse, said } from './errors.js';
-import { calling, expectBlock, expectKind, expectLength, fields, isA, readNumbers, type Block, type Input } from './memory.js';
-import { buffer, check, need, Owned, wasm } from './runtime.js';
+import { calling, countOf, expectBlock, expectLength, isA, readNumbers, readOptions, type Block, type Input } from './memory.js';
+import { buffer, check, need, Owned, pointerOf, wasm } from './runtime.js';
 import { readView, viewBytes, writeView, type View } from './views.js';
 
 /** From which sides triangles are there: the front is that from which corners turn counter-clockwise. */
@@ -18,20 +18,18 @@ export class OccluderMesh extends Owned {
    * counter-clockwise occludes. Some microseconds a triangle: build once. */
   constructor(positions: Input<Float32Array>, indices: Input<Uint32Array>, sides: Sides = 'both') {
     super('OccluderMesh', 'mesh_create', 'mesh_destroy', calling((call) => {
-      expectKind('OccluderMesh: positions', positions, Float32Array);
-      expectKind('OccluderMesh: indices', indices, Uint32Array);
+      const points = countOf('OccluderMesh', 'positions', positions, Float32Array, 3, 'bad_mesh');
+      const corners = countOf('OccluderMesh', 'indices', indices, Uint32Array, 1);
       const drawn = sidesNumber('OccluderMesh', sides);
-      if (positions.length % 3 !== 0)
-        refuse(`OccluderMesh: ${positions.length} numbers of positions, expected a multiple of 3`, 'bad_mesh');
       const [at, index] = call.place(positions, indices);
-      const made = need('mesh_create')(at!, positions.length / 3, index!, indices.length, drawn);
+      const made = need('mesh_create')(at!, points, index!, corners, drawn);
       if (made === 0) check(wasm().last_code!());
       return made;
     }));
   }
   /** Triangles that are left. */
   get triangles(): number {
-    return wasm().mesh_triangles!(this.pointer);
+    return wasm().mesh_triangles!(pointerOf('OccluderMesh', this));
   }
 }
 
@@ -55,13 +53,13 @@ export class OcclusionBuffer extends Owned {
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
   begin(view: View, options?: OcclusionOptions): void {
-    const [coverage = 'centres', scale = 1] = fields('begin', options, ['coverage', 'scale']);
+    const [coverage = 'centres', scale = 1] = readOptions('begin', options, ['coverage', 'scale']);
     const places = coverages.indexOf(coverage);
     if (places < 0) refuse(`begin: a coverage of ${said(coverage)}, expected ${coverages.join(', ')}`);
     calling((call) => {
       const read = readView('begin', view), at = call.room(viewBytes);
       writeView(read, at);
-      check(wasm().occlusion_begin!(this.pointer, at, places, [1, 2, 4].includes(scale) ? scale : 0));
+      check(wasm().occlusion_begin!(pointerOf('OcclusionBuffer', this), at, places, [1, 2, 4].includes(scale) ? scale : 0));
       this.#begun = true;
     });
   }
@@ -69,16 +67,15 @@ export class OcclusionBuffer extends Owned {
   drawBoxes(boxes: Boxes): void {
     calling((call) => {
       const { args } = placeBoxes('drawBoxes', call, boxes);
-      check(wasm().occlusion_draw_boxes!(this.pointer, ...args));
+      check(wasm().occlusion_draw_boxes!(pointerOf('OcclusionBuffer', this), ...args));
     });
   }
   /** Draws solid spheres about the view's origin: four columns, centre x, y, z and radius. */
   drawSpheres(spheres: Input<Float32Array>): void {
     calling((call) => {
-      expectKind('drawSpheres', spheres, Float32Array);
-      if (spheres.length % 4 !== 0) refuse(`drawSpheres: ${spheres.length} numbers, expected a multiple of 4`);
+      const count = countOf('drawSpheres', 'spheres', spheres, Float32Array, 4);
       const [at] = call.place(spheres);
-      check(wasm().occlusion_draw_spheres!(this.pointer, at!, spheres.length / 4));
+      check(wasm().occlusion_draw_spheres!(pointerOf('OcclusionBuffer', this), at!, count));
     });
   }
   /** Draws a mesh, moved by an affine matrix about the view's origin. */
@@ -88,24 +85,24 @@ export class OcclusionBuffer extends Owned {
     calling((call) => {
       const at = call.room(64);
       new Float32Array(buffer(), at, 16).set(numbers);
-      check(wasm().occlusion_draw_mesh!(this.pointer, mesh.pointer, at));
+      check(wasm().occlusion_draw_mesh!(pointerOf('OcclusionBuffer', this), pointerOf('OccluderMesh', mesh), at));
     });
   }
   /** Whether some pixel centre, or place on the image, may see each box: 1 or 0, where 0 is certain. */
   maySee(boxes: Boxes, out: Block<Uint8Array>): void {
-    void this.pointer; // a Proxy of it has nothing that is private
+    void pointerOf('OcclusionBuffer', this); // a Proxy of it has nothing that is private
     calling((call) => {
       if (!this.#begun) refuse('maySee: the buffer was never begun, expected begin() first', 'stale_buffer');
       const { count, args } = placeBoxes('maySee', call, boxes);
       expectBlock('maySee: out', out, Uint8Array);
       expectLength('maySee: out', out, count);
-      check(wasm().occlusion_may_see!(this.pointer, ...args, out.pointer));
+      check(wasm().occlusion_may_see!(pointerOf('OcclusionBuffer', this), ...args, out.pointer));
     });
   }
   /** 1 / depth of the occluder at each pixel (perspective), -depth (orthographic), -infinity where there is none; row by
    * row from the top, as many as the view has pixels. */
   readNearness(out: Block<Float32Array>): void {
     expectBlock('readNearness: out', out, Float32Array);
-    check(wasm().occlusion_read_nearness!(this.pointer, out.pointer, out.length));
+    check(wasm().occlusion_read_nearness!(pointerOf('OcclusionBuffer', this), out.pointer, out.length));
   }
 }

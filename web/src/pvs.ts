@@ -1,7 +1,7 @@
 // Visible sets that were baked for the cells of a grid, as arrays. (The library's files are packed with zstd, which
 // browsers do not unpack; whoever bakes writes the arrays, see docs/web.md.)
 import { refuse, refuseProxy, said } from './errors.js';
-import { fields, readNumbers } from './memory.js';
+import { detached, fields, readNumbers } from './memory.js';
 
 /** As CellPvs of <sightline/pvs.hpp>. Cells run x first, then y, then z. */
 export interface PvsArrays {
@@ -28,12 +28,14 @@ export class CellPvs {
       fields('CellPvs', arrays, ['bounds', 'counts', 'objects', 'open', 'first', 'visible']);
     if (!([open, first, visible].every(ArrayBuffer.isView) && open instanceof Uint8Array && first instanceof Uint32Array &&
       visible instanceof Uint32Array)) refuse('CellPvs: expected open as a Uint8Array, first and visible as Uint32Arrays');
-    const bounds = readNumbers('CellPvs', 'bounds', box, 6), counts = readNumbers('CellPvs', 'counts', along, 3);
+    // In single precision, as points are asked.
+    const bounds = readNumbers('CellPvs', 'bounds', box, 6).map(Math.fround), counts = readNumbers('CellPvs', 'counts', along, 3);
     if (!Number.isInteger(objects) || objects! < 0) refuse(`CellPvs: ${said(objects)} objects, expected a whole number of them`);
     const cells = counts[0]! * counts[1]! * counts[2]!;
     for (let axis = 0; axis < 3; ++axis) {
-      if (!(bounds[axis]! < bounds[3 + axis]!) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
-        refuse('CellPvs: bounds without extent or a count below 1, expected minimum < maximum and whole cells');
+      const extent = bounds[3 + axis]! - bounds[axis]!;
+      if (!(extent > 0 && extent < Infinity) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
+        refuse('CellPvs: bounds without extent in single precision or a count below 1, expected minimum < maximum and whole cells');
     }
     if (open.length !== cells || first.length !== cells + 1)
       refuse(`CellPvs: ${open.length} open and ${first.length} first for ${cells} cells, expected one each and one more`);
@@ -50,7 +52,9 @@ export class CellPvs {
   }
 
   static #of(set: CellPvs): PvsArrays {
-    if (!(#arrays in set)) refuseProxy('CellPvs');
+    if (!(#arrays in Object(set))) refuseProxy('CellPvs');
+    const { open, first, visible } = set.#arrays;
+    if ([open, first, visible].some(detached)) refuse('CellPvs: an array was transferred, expected it to stay', 'detached');
     return set.#arrays;
   }
 
@@ -59,7 +63,7 @@ export class CellPvs {
     const { bounds, counts, open } = CellPvs.#of(this);
     let cell = 0, step = 1;
     for (const [axis, at] of [x, y, z].entries()) {
-      const low = Math.fround(bounds[axis]!), high = Math.fround(bounds[3 + axis]!), count = counts[axis]!;
+      const low = bounds[axis]!, high = bounds[3 + axis]!, count = counts[axis]!;
       if (typeof at !== 'number') refuse(`cellAt: a coordinate of ${said(at)}, expected a number`);
       const p = Math.fround(at);
       if (!(p >= low && p <= high)) return undefined;

@@ -163,30 +163,38 @@ export abstract class Owned {
   #pointer: number;
   readonly #destroy: string;
   /** @internal */
-  readonly what: string;
+  declare readonly what: string;
   /** `what` names it in refusals: a class's own name is another in a bundle that was minified. */
   constructor(what: string, create: string, destroy: string, pointer = need(create)()) {
-    this.what = what;
+    Object.defineProperty(this, 'what', { value: what }); // never another: see at()
     this.#pointer = pointer;
     this.#destroy = destroy;
   }
-  /** @internal Whatever a call's arguments do when they are read has to be done by then. */
+  /** @internal Where it stands in the module, 0 once it was disposed of; refuses what is none, or another kind's. */
+  static at(it: Owned, what: string | undefined = it?.what): number {
+    if (!(#pointer in Object(it)) || it.what !== what) refuseProxy(what ?? 'sightline');
+    return it.#pointer;
+  }
+  /** @internal */
   get pointer(): number {
-    if (this.disposed) refuse(`${this.what}: used after dispose()`, 'disposed');
-    return this.#pointer;
+    return pointerOf(this.what, this);
   }
   /** Whether dispose() was called. */
   get disposed(): boolean {
-    if (!(#pointer in this)) refuseProxy((this as Owned).what);
-    return this.#pointer === 0;
+    return Owned.at(this) === 0;
   }
   /** Gives its memory back; using it afterwards throws. Doing so twice is nothing. */
   dispose(): void {
-    if (this.disposed) return;
+    if (Owned.at(this) === 0) return;
     need(this.#destroy)(this.#pointer);
     this.#pointer = 0;
   }
 }
+
+/** The pointer of what a method was called on: anything, where the method was taken off its object. Whatever a call's arguments do
+ * when they are read has to be done by then. */
+export const pointerOf = (what: string, it: Owned): number =>
+  Owned.at(it, what) || refuse(`${what}: used after dispose()`, 'disposed');
 
 /** A function that only the whole module has. */
 export function need(name: string): (...args: number[]) => number {

@@ -10,12 +10,11 @@ import type { BufferGeometry, Camera, Material, Mesh, Object3D } from 'three';
 import { Box3, Matrix4, Vector3 } from 'three';
 import { refuse, said } from './errors.js';
 import './index.js';
-import { bytes, reading, type Block } from './memory.js';
+import { bytes, reading, readOptions, type Block } from './memory.js';
 import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
 import { isLoaded, ready, supported } from './runtime.js';
 import { eyeOf, isRigid } from './three/eye.js';
 import { determinantOf, isSolid, type Eye } from './three/occluders.js';
-import { readOptions } from './three/options.js';
 import { release } from './three/release.js';
 
 export { ready, supported };
@@ -63,7 +62,7 @@ export class SightlineTilesPlugin {
   #told = false;
 
   constructor(options?: SightlineTilesOptions) {
-    const { mostTriangles = 60_000 } = readOptions('SightlineTilesPlugin', options, ['mostTriangles']);
+    const [mostTriangles = 60_000] = readOptions('SightlineTilesPlugin', options, ['mostTriangles']);
     if (!Number.isInteger(mostTriangles) || mostTriangles < 1)
       refuse(`SightlineTilesPlugin: ${said(mostTriangles)} triangles, expected an integer of 1 or more`);
     this.#mostTriangles = mostTriangles;

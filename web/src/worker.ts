@@ -1,7 +1,7 @@
 // `sightline-culling/worker`: a world on another thread, which culls the next frame while this one is drawn. No shared
 // memory, so no special headers; what is seen is copied once a frame.
 import type { Boxes } from './boxes.js';
-import { refuseProxy, SightlineError, type Code } from './errors.js';
+import { refuse, refuseProxy, SightlineError, type Code } from './errors.js';
 import type { View } from './views.js';
 import type { CullOptions } from './world.js';
 
@@ -42,6 +42,7 @@ export class WorkerWorld {
   #ended: SightlineError | undefined; // what calls are refused with from then on
 
   private constructor(thread: Thread) {
+    if (typeof thread?.postMessage !== 'function') refuse('WorkerWorld: made by `new`, expected `await WorkerWorld.start()`');
     this.#thread = thread;
     const settle = (reply: Reply): void => {
       const waiting = this.#waiting.get(reply.id);
@@ -87,7 +88,7 @@ export class WorkerWorld {
   }
   /** Ends the thread; calls that still wait are refused. */
   dispose(): void {
-    if (!(#ended in this)) refuseProxy('WorkerWorld');
+    if (!(#ended in Object(this))) refuseProxy('WorkerWorld');
     this.#end(new SightlineError('disposed', 'WorkerWorld: disposed before it answered'));
     this.#ended = new SightlineError('disposed', 'WorkerWorld: used after dispose()');
   }
@@ -101,7 +102,7 @@ export class WorkerWorld {
   }
 
   static async #post<R>(to: WorkerWorld, name: string, ...args: unknown[]): Promise<R> {
-    if (!(#ended in to)) refuseProxy('WorkerWorld');
+    if (!(#ended in Object(to))) refuseProxy('WorkerWorld');
     if (to.#ended) throw to.#ended;
     return new Promise<R>((resolve, reject) => {
       const id = to.#next++;

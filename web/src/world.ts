@@ -1,15 +1,18 @@
 // Boxes that come, move and go, and their cull.
 import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
 import { refuse, said } from './errors.js';
-import { Block, bytes, calling, doubles, expectKind, expectLength, fields, integers, isA, reading, type Input } from './memory.js';
-import { buffer, check, Owned, wasm } from './runtime.js';
+import {
+  bytes, calling, countOf, doubles, expectBlock, expectColumn, expectKind, expectLength, fields, integers, isA, lengthOf, reading, readOptions, type Block,
+  type Call, type Input } from './memory.js';
+import { buffer, check, Owned, pointerOf, wasm } from './runtime.js';
 import { cullViewBytes, readView, writeView, type ReadView, type View } from './views.js';
 
-/** Names an object for as long as it stands in its world: 31 bits of id and 22 of generation in one number. */
+/** Names an object for as long as it stands in its world: 31 bits of id and 22 of generation in one number. Good in that world
+ * alone: in another it may name another object, and is taken for that. */
 export type Handle = number;
 /** The id of a handle: what cull() writes. */
 export const idOf = (handle: Handle): number =>
-  typeof handle === 'number' ? handle % 2 ** 31 : refuse(`idOf: ${said(handle)}, expected a number`);
+  Number.isSafeInteger(handle) && handle >= 0 ? handle % 2 ** 31 : refuse(`idOf: ${said(handle)}, expected a handle`);
 /** In all layers. */
 export const allLayers = 0xffffffff;
 
@@ -30,11 +33,6 @@ export const handleList = (handles: Handles): Input<Float64Array> => {
   return all;
 };
 
-function expectColumn(what: string, column: Input<Uint32Array>, length: number): void {
-  expectKind(what, column, Uint32Array);
-  expectLength(what, column, length);
-}
-
 /** A world of boxes, anywhere within 10¹¹ m of 0. A refused call changes nothing. */
 export class World extends Owned {
   constructor() {
@@ -45,11 +43,11 @@ export class World extends Owned {
   insert(boxes: Boxes, columns?: Columns): Float64Array {
     return calling((call) => {
       const { data, count, args } = readBoxes('insert', boxes), names = ['layers', 'values'] as const;
-      const given = fields('insert', columns, [...names]);
-      given.forEach((column, i) => column !== undefined && expectColumn(`insert: ${names[i]}`, column, count));
+      const given = readOptions('insert', columns, [...names]);
+      given.forEach((column, i) => column !== undefined && expectColumn(`insert: ${names[i]}`, column, Uint32Array, count));
       const [at, layers, values] = call.place(data, ...given);
       const out = call.room(8 * count);
-      check(wasm().world_insert!(this.pointer, ...args(at!), layers!, values!, out));
+      check(wasm().world_insert!(pointerOf('World', this), ...args(at!), layers!, values!, out));
       return new Float64Array(buffer(), out, count).slice();
     });
   }
@@ -60,7 +58,7 @@ export class World extends Owned {
       const named = handleList(handles);
       expectLength('move: handles', named, count);
       const [at, numbers] = call.place(data, named);
-      check(wasm().world_move!(this.pointer, numbers!, ...args(at!)));
+      check(wasm().world_move!(pointerOf('World', this), numbers!, ...args(at!)));
     });
   }
   /** Takes objects out; their handles are stale from then on. */
@@ -68,7 +66,7 @@ export class World extends Owned {
     calling((call) => {
       const named = handleList(handles);
       const [numbers] = call.place(named);
-      check(wasm().world_remove!(this.pointer, numbers!, named.length));
+      check(wasm().world_remove!(pointerOf('World', this), numbers!, lengthOf(named)));
     });
   }
   /** Gives each object new layers. */
@@ -82,53 +80,54 @@ export class World extends Owned {
 
   /** Objects. */
   get size(): number {
-    return wasm().world_size!(this.pointer);
+    return wasm().world_size!(pointerOf('World', this));
   }
   /** All ids lie below this: the length of an array by id. */
   get idLimit(): number {
-    return wasm().world_id_limit!(this.pointer);
+    return wasm().world_id_limit!(pointerOf('World', this));
   }
   /** Whether the handle names an object of this world. */
   contains(handle: Handle): boolean {
-    return typeof handle === 'number' && wasm().world_contains!(this.pointer, handle) !== 0;
+    return typeof handle === 'number' && wasm().world_contains!(pointerOf('World', this), handle) !== 0;
   }
   /** The handle of the object that has this id now. */
   handle(id: number): Handle | undefined {
     // The module would take other numbers modulo 2^32.
-    const handle = typeof id === 'number' && id >>> 0 === id ? wasm().world_handle!(this.pointer, id) : -1;
+    const handle = typeof id === 'number' && id >>> 0 === id ? wasm().world_handle!(pointerOf('World', this), id) : -1;
     return handle < 0 ? undefined : handle;
   }
   /** The box as it is kept, minimum and maximum: it holds what was given. */
   box(handle: Handle): Float64Array {
-    this.expect('box', handle);
+    expectObject(this, 'box', handle);
     return calling((call) => {
       const out = call.room(48);
-      wasm().world_box!(this.pointer, handle, out);
+      wasm().world_box!(pointerOf('World', this), handle, out);
       return new Float64Array(buffer(), out, 6).slice();
     });
   }
   /** The object's layers. */
   layers(handle: Handle): number {
-    this.expect('layers', handle);
-    return wasm().world_layers!(this.pointer, handle) >>> 0;
+    expectObject(this, 'layers', handle);
+    return wasm().world_layers!(pointerOf('World', this), handle) >>> 0;
   }
   /** The object's value. */
   value(handle: Handle): number {
-    this.expect('value', handle);
-    return wasm().world_value!(this.pointer, handle) >>> 0;
+    expectObject(this, 'value', handle);
+    return wasm().world_value!(pointerOf('World', this), handle) >>> 0;
   }
-  /** @internal Throws unless it names an object. */
-  expect(what: string, handle: Handle): void {
-    if (!this.contains(handle)) refuse(`${what}: no object has this handle`, 'stale_handle');
-  }
+}
+
+/** @internal Throws unless it names an object. */
+export function expectObject(world: World, what: string, handle: Handle): void {
+  if (!World.prototype.contains.call(world, handle)) refuse(`${what}: no object has this handle`, 'stale_handle');
 }
 
 function setColumn(world: World, name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
   calling((call) => {
     const named = handleList(handles);
-    expectColumn(what, column, named.length);
+    expectColumn(what, column, Uint32Array, lengthOf(named));
     const [numbers, at] = call.place(named, column);
-    check(wasm()[name]!(world.pointer, numbers!, at!, named.length));
+    check(wasm()[name]!(pointerOf('World', world), numbers!, at!, lengthOf(named)));
   });
 }
 
@@ -205,7 +204,7 @@ export class Culler extends Owned {
   /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
    * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
   cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
-    void this.pointer; // a Proxy of it could call nothing that is private
+    void pointerOf('Culler', this); // a Proxy of it could call nothing that is private
     const count = this.#run(world, reading('cull', () => [views].flat() as CullView[]), options);
     const [, tested, nodesVisited, culledOcclusion, cost, frustumCost] = this.#result.array;
     return {
@@ -226,11 +225,11 @@ export class Culler extends Owned {
    * left. It is learned once frames differ in how many they draw. */
   reportFrameTime(nanoseconds: number): void {
     if (typeof nanoseconds !== 'number') refuse(`reportFrameTime: ${said(nanoseconds)}, expected a number`);
-    check(wasm().report_frame_time!(this.pointer, nanoseconds));
+    check(wasm().report_frame_time!(pointerOf('Culler', this), nanoseconds));
   }
 
   override dispose(): void {
-    if (this.disposed) return;
+    if (Owned.at(this, 'Culler') === 0) return;
     for (const block of [this.#ids, this.#masks, this.#views, this.#costs, this.#result]) block?.dispose();
     super.dispose();
   }
@@ -239,9 +238,10 @@ export class Culler extends Owned {
     if (!isA(world, World)) refuse('cull: expected a World');
     if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
     const read = views.map(readCullView);
-    const [valuesForIds, occlusion, costs] = fields('cull', options, ['valuesForIds', 'occlusion', 'costs']);
+    const [valuesForIds = false, occlusion, costs] = readOptions('cull', options, ['valuesForIds', 'occlusion', 'costs']);
+    if (typeof valuesForIds !== 'boolean') refuse(`cull: valuesForIds of ${said(valuesForIds)}, expected true or false`);
     const numbers = readCosts(occlusion, costs), { pointer } = this;
-    const capacity = wasm().cull_capacity!(world.pointer);
+    const capacity = wasm().cull_capacity!(pointerOf('World', world));
     if (!this.#ids || this.#ids.length < capacity) {
       this.#ids?.dispose(), this.#masks?.dispose();
       this.#ids = integers(capacity + (capacity >> 2));
@@ -249,7 +249,7 @@ export class Culler extends Owned {
     }
     read.forEach((view, v) => writeCullView(view, this.#views.pointer + v * cullViewBytes));
     if (numbers) new Float32Array(buffer(), this.#costs.pointer, costBytes / 4).set(numbers);
-    check(wasm().cull!(pointer, world.pointer, this.#views.pointer, views.length, valuesForIds ? 1 : 0,
+    check(wasm().cull!(pointer, pointerOf('World', world), this.#views.pointer, views.length, valuesForIds ? 1 : 0,
       numbers ? this.#costs.pointer : 0, this.#ids.pointer, this.#masks!.pointer, this.#ids.length, this.#result.pointer));
     return this.#result.array[0]!;
   }
@@ -257,13 +257,13 @@ export class Culler extends Owned {
 
 // Undefined where occlusion is not automatic.
 function readCosts(occlusion: CullOptions['occlusion'] = 'none', costs?: CullCosts): number[] | undefined {
-  if (occlusion === 'none') return undefined;
-  if (occlusion !== 'automatic') refuse(`cull: an occlusion of ${said(occlusion)}, expected none or automatic`);
-  const all = reading('cull', () => Object.entries({ ...defaultCosts, ...costs }));
-  if (all.length > costBytes / 4) refuse(`cull: a cost named ${all[costBytes / 4]![0]}, expected one of CullCosts`);
-  for (const [name, cost] of all)
-    if (typeof cost !== 'number') refuse(`cull: a cost of ${said(cost)} for ${name}, expected a number`);
-  return all.map(([, cost]) => cost);
+  if (occlusion !== 'none' && occlusion !== 'automatic') refuse(`cull: an occlusion of ${said(occlusion)}, expected none or automatic`);
+  const names = Object.keys(defaultCosts) as (keyof CullCosts)[], given = readOptions('cull: costs', costs, names);
+  const all = names.map((name, i) => {
+    const cost = given[i] ?? defaultCosts[name];
+    return typeof cost === 'number' ? cost : refuse(`cull: a cost of ${said(cost)} for ${name}, expected a number`);
+  });
+  return occlusion === 'automatic' ? all : undefined;
 }
 
 interface ReadCullView { view: ReadView; layers: number; minArea: number; occlusion: CullView['occlusion'] }
@@ -292,29 +292,24 @@ function writeCullView({ view, layers, minArea, occlusion }: ReadCullView, at: n
 /** The indices of the boxes that a view overlaps, ascending, into `out`, which has room for 64 more than there are boxes;
  * returns how many. Linear: columns of single precision cost least. */
 export function cullBoxes(view: View, boxes: Boxes, out: Block<Uint32Array>): number {
-  return flat(view, out, (call, viewAt, result) => {
-    const { args } = placeBoxes('cullBoxes', call, boxes);
-    return wasm().flat_boxes!(viewAt, ...args, out.pointer, out.length, result);
-  });
+  return flat('flat_boxes', view, out, (call) => placeBoxes('cullBoxes', call, boxes).args);
 }
 
 /** The same for spheres about the view's origin: four columns, centre x, y, z and radius. */
 export function cullSpheres(view: View, spheres: Input<Float32Array>, out: Block<Uint32Array>): number {
-  return flat(view, out, (call, viewAt, result) => {
-    expectKind('cullSpheres', spheres, Float32Array);
-    if (spheres.length % 4 !== 0) refuse(`cullSpheres: ${spheres.length} numbers, expected a multiple of 4`);
-    const [at] = call.place(spheres);
-    return wasm().flat_spheres!(viewAt, at!, spheres.length / 4, out.pointer, out.length, result);
+  return flat('flat_spheres', view, out, (call) => {
+    const count = countOf('cullSpheres', 'spheres', spheres, Float32Array, 4), [at] = call.place(spheres);
+    return [at!, count];
   });
 }
 
-function flat(view: View, out: Block<Uint32Array>,
-  run: (call: import('./memory.js').Call, view: number, result: number) => number): number {
-  if (!Block.is(out) || (out.kind as unknown) !== Uint32Array) refuse('cull: expected a Block from integers() to write to');
+function flat(name: string, view: View, out: Block<Uint32Array>, place: (call: Call) => number[]): number {
+  expectBlock('cull: out', out, Uint32Array);
   return calling((call) => {
-    const read = readView('cull', view), viewAt = call.room(176), result = viewAt + 168;
+    // Room comes last: it may have the memory grow, which takes away what is not placed yet.
+    const read = readView('cull', view), args = place(call), viewAt = call.room(176), result = viewAt + 168;
     writeView(read, viewAt);
-    check(run(call, viewAt, result));
+    check(wasm()[name]!(viewAt, ...args, out.pointer, out.length, result));
     return new Float64Array(buffer(), result, 1)[0]!;
   });
 }

@@ -127,6 +127,7 @@ test('null is no options of a culler for three.js and of its peers', async () =>
   new SightlineTilesPlugin(null).dispose();
   await assert.rejects(GpuRays.start(null), isRefusal); // without WebGPU
   await assert.rejects(GpuRays.start({ device: {} }), isRefusal);
+  await assert.rejects(GpuRays.start({ devise: {} }), /devise is no option, expected an object of device/);
 });
 
 test('a Proxy of what the package makes is refused, as of a page\'s reactive state', async (given) => {
@@ -145,8 +146,124 @@ test('a Proxy of what the package makes is refused, as of a page\'s reactive sta
   assert.throws(() => wrap(worker).dispose(), isRefusal);
 });
 
+test('a method that was taken off its object is refused, and the module goes on', async () => {
+  const ray = Float32Array.of(0, 0, 0, 0, 0, -1, Infinity), one = Uint32Array.of(1);
+  const methods = new Map([
+    [world, { insert: [box], move: [handle, box], remove: [handle], setLayers: [handle, one], setValues: [handle, one], contains: [handle],
+      handle: [0], box: [handle], layers: [handle], value: [handle], addOccluder: [{ boxes: box }], removeOccluder: [0],
+      setOccluders: [handle, 0], setOccluding: [handle, true], setTriangles: [handle, new Float32Array(9)], dispose: [] }],
+    [culler, { cull: [world, view], reportFrameTime: [1], dispose: [] }],
+    [buffer, { begin: [view], drawBoxes: [box], drawSpheres: [new Float32Array(4)], drawMesh: [mesh, identity], maySee: [box, bytes(1)],
+      readNearness: [floats(64 * 64)], dispose: [] }],
+    [bvh, { build: [box], refit: [box], cast: [ray, integers(1), floats(1)], visibleSet: [view, 2, 2], dispose: [] }],
+    [rays, { update: [box], aim: [view, 2, 2], cast: ['toca', { objects: new Uint32Array(4), distances: new Float32Array(4) }] }],
+    [pvs, { cellAt: [0.5, 0.5, 0.5], seenFrom: [0] }], [floats(6), { dispose: [] }], [mesh, { dispose: [] }]]);
+  for (const [it, calls] of methods) {
+    for (const [name, given] of Object.entries(calls)) {
+      // Another kind's pointer would be as wrong as none.
+      for (const self of [undefined, {}, { [name]: it[name] }, ...(name === 'dispose' ? [] : [it === bvh ? rays : bvh])])
+        assert.throws(() => it[name].call(self, ...given), /a Proxy or a copy of it, expected the object itself/, `${name} of ${self}`);
+    }
+  }
+  for (const name of ['size', 'idLimit'])
+    assert.throws(() => Object.getOwnPropertyDescriptor(Object.getPrototypeOf(World.prototype), name).get.call(bvh), isRefusal);
+  for (const call of [WorkerWorld.prototype.insert, WorkerWorld.prototype.cull]) await assert.rejects(async () => call(box), isRefusal);
+  await assert.rejects(async () => (0, GpuRays.prototype.cast)(rays, 'saa'), isRefusal);
+  assert.throws(() => GpuRays.prototype.dispose.call({}), isRefusal);
+  assert.equal(world.size, 1);
+});
+
+test('what is no handle has no id', () => {
+  assert.equal(idOf(2 ** 53 - 1), 2 ** 31 - 1);
+  for (const nonsense of [NaN, -1, 0.5, Infinity, 2 ** 53]) assert.throws(() => idOf(nonsense), /^SightlineError: idOf: .*, expected a handle$/);
+});
+
+test('cells without extent in single precision, and without end, are refused, and what was transferred since', () => {
+  for (const [least, most] of [[1, 1 + 1e-9], [0, 1e-60], [0, Infinity], [-Infinity, 0], [0, 1e39], [NaN, 1]])
+    assert.throws(() => new CellPvs({ ...cells, bounds: [least, 0, 0, most, 1, 1] }), /bounds without extent/, `${least} to ${most}`);
+  for (const name of ['open', 'first', 'visible']) {
+    const arrays = { ...cells, objects: 1, open: Uint8Array.of(1), first: Uint32Array.of(0, 1), visible: Uint32Array.of(0) }, set = new CellPvs(arrays);
+    structuredClone(arrays[name], { transfer: [arrays[name].buffer] });
+    for (const call of [() => set.seenFrom(0), () => set.cellAt(0.5, 0.5, 0.5)])
+      assert.throws(call, (error) => error.code === 'detached' && isRefusal(error));
+  }
+});
+
+test('a stride beyond memory and an array that was transferred are refused for what they are', () => {
+  for (const stride of [2 ** 30, 2 ** 29, 2 ** 28 + 1])
+    assert.throws(() => world.insert({ data: box, stride }), /a stride of \d+, expected an integer from 6 to 2\^28/);
+  const gone = box.slice();
+  structuredClone(gone, { transfer: [gone.buffer] });
+  assert.throws(() => world.insert(gone), (error) => error.code === 'detached' && /transferred, or from before the memory grew/.test(error.message));
+});
+
+test('what is started is not made by new', () => {
+  for (const make of [() => new WorkerWorld(), () => new GpuRays()])
+    assert.throws(make, (error) => isRefusal(error) && /made by `new`, expected `await/.test(error.message));
+});
+
+test('what stands on an array as its length, and a length that is written, have no call read or write beyond', () => {
+  const out = integers(65), beyond = integers(5000), many = Float32Array.from({ length: 24000 }, (_, i) => box[i % 6]);
+  beyond.array.fill(7);
+  for (const [name, value] of [['length', 100000], ['kind', Float64Array], ['pointer', 64]]) {
+    assert.throws(() => { out[name] = value; }, TypeError);
+    assert.throws(() => Object.defineProperty(out, name, { value }), TypeError);
+  }
+  assert.throws(() => cullBoxes(view, many, out), (error) => error.code === 'buffer_too_small');
+  assert.ok(beyond.array.every((number) => number === 7));
+  const long = (array) => Object.defineProperty(array, 'length', { value: 60_000_000 });
+  const other = new World(), [made] = other.insert(long(box.slice())), seen = integers(66);
+  other.move(made, long(box.slice())), other.setLayers(made, long(Uint32Array.of(1))), other.setOccluding(long(Float64Array.of(made)), true);
+  other.addOccluder({ boxes: long(box.slice()) }), other.setTriangles(made, long(new Float32Array(9)));
+  assert.equal(cullSpheres(view, long(Float32Array.of(0, 0, -5, 1)), seen), 1);
+  assert.equal(cullBoxes(view, long(box.slice()), seen), 1);
+  buffer.drawSpheres(long(Float32Array.of(0, 0, -5, 1))), new OccluderMesh(long(new Float32Array(9)), long(Uint32Array.of(0, 1, 2)));
+  bvh.cast(long(Float32Array.of(0, 0, 0, 0, 0, -1, Infinity)), integers(1), floats(1)), rays.update(long(box.slice())), rays.aim(view, 2, 2);
+  other.remove(long(Float64Array.of(made)));
+  assert.equal(other.size, 0);
+  assert.equal(rays.size, 1);
+});
+
+test('a misspelt option, and what is no options, are refused', () => {
+  const none = (call, words) => assert.throws(call, (error) => isRefusal(error) && words.test(error.message), String(call));
+  for (const given of ['area', 5, true, [], new Float32Array(0), () => 6]) {
+    for (const call of [() => buffer.begin(view, given), () => culler.cull(world, view, given), () => world.insert(box, given),
+      () => world.addOccluder(given), () => culler.cull(world, view, { costs: given })]) none(call, /is no option, expected an object of [a-z]/);
+  }
+  none(() => buffer.begin(view, { coverages: 'area' }), /^begin: coverages is no option, expected an object of coverage, scale$/);
+  none(() => culler.cull(world, view, { oclusion: 'automatic' }), /oclusion is no option/);
+  none(() => culler.cull(world, view, { valuesForIds: 'yes' }), /yes, expected true or false/);
+  none(() => culler.cull(world, view, { costs: { cube: 1 } }), /cube is no option, expected an object of object, node/);
+  none(() => culler.cull(world, view, { costs: { node: '1' } }), /1 for node/);
+  none(() => world.insert(box, { layer: Uint32Array.of(1) }), /layer is no option/);
+  none(() => world.insert({ data: box, layuot: 'columns' }), /layuot is no option/);
+  none(() => world.addOccluder({ box }), /box is no option/);
+  for (const given of [null, undefined, {}, { positions: triangle[0] }, { indices: triangle[1] }, { sides: new Uint8Array(1) },
+    { boxes: box, sides: new Uint8Array(1) }, { solidTriangles: 0 }]) none(() => world.addOccluder(given), /expected positions with indices/);
+  assert.equal(world.size, 1);
+});
+
 // An object whose named property is read by way of a getter that does something first.
 const doing = (it, name, does) => Object.defineProperty({ ...it }, name, { enumerable: true, get: () => (does(), it[name]) });
+
+// Takes what is free, so that what needs much has the memory grow.
+function hoard() {
+  for (let size = 2 ** 20; size >= 2 ** 12; size >>= 1)
+    for (const { buffer: now } = bytes(1).array; bytes(size).array.buffer === now;);
+}
+
+test('what lies in the module is taken where the call itself has the memory grow', () => {
+  const own = integers(3), ball = floats(4), cube = floats(6), seen = integers(66);
+  own.array.set([0, 1, 2]), ball.array.set([0, 0, -5, 1]), cube.array.set(box);
+  let before = own.array.buffer;
+  world.addOccluder({ positions: new Float32Array(3 * 4e6), indices: own.array });
+  assert.notEqual(own.array.buffer, before);
+  for (const call of [() => cullSpheres(view, ball.array, seen), () => cullBoxes(view, cube.array, seen)]) {
+    hoard();
+    // There is less and less room, until there is none for what the call needs beside.
+    for (before = own.array.buffer; assert.equal(call(), 1), own.array.buffer === before; before = own.array.buffer) bytes(64);
+  }
+});
 
 test('a getter that has the memory grow finds nothing half written', () => {
   let grown = 0;
@@ -156,12 +273,7 @@ test('a getter that has the memory grow finds nothing half written', () => {
     for (const block of kept.splice(0)) block.dispose();
     ++grown;
   };
-  // From some place on every allocation grows the memory, as all that was free is taken.
-  const hoard = [];
-  for (let size = 2 ** 20; size >= 2 ** 12; size >>= 1) {
-    const { buffer: now } = bytes(1).array;
-    for (let block = bytes(size); hoard.push(block), block.array.buffer === now;) block = bytes(size);
-  }
+  hoard();
   const lately = Array.from({ length: 16 }, (_, i) => identity[i]);
   Object.defineProperty(lately, 7, { enumerable: true, get: () => (grow(), 0) });
   for (const name of ['eyeToClip', 'width', 'origin', 'layers', 'minArea'])

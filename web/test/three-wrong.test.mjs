@@ -59,12 +59,12 @@ test('a camera that is none is told of once, and the one that draws is culled fo
 test('options of other names and kinds are refused, and init() without a renderer', () => {
   const refused = (call, expected) => assert.throws(call, (error) => error instanceof SightlineError && expected.test(error.message));
   const make = (options) => () => new SightlineCuller(new THREE.Scene(), options);
-  refused(make({ oclusion: false }), /SightlineCuller: an option named oclusion, expected occlusion or bufferWidth/);
-  for (const options of [512, 'x', () => 1]) refused(make(options), /SightlineCuller: options of .*, expected an object/);
+  refused(make({ oclusion: false }), /SightlineCuller: oclusion is no option, expected an object of occlusion, bufferWidth/);
+  for (const options of [512, 'x', () => 1]) refused(make(options), /SightlineCuller: .* is no option, expected an object of occlusion/);
   for (const occlusion of ['no', 1, null]) refused(make({ occlusion }), /an occlusion of (no|1|null), expected true or false/);
   for (const options of [undefined, null, {}, { occlusion: undefined }]) make(options)().dispose();
-  refused(() => new SightlineTilesPlugin(60_000), /SightlineTilesPlugin: options of 60000, expected an object/);
-  refused(() => new SightlineTilesPlugin({ triangles: 1 }), /an option named triangles, expected mostTriangles/);
+  refused(() => new SightlineTilesPlugin(60_000), /SightlineTilesPlugin: 60000 is no option, expected an object of mostTriangles/);
+  refused(() => new SightlineTilesPlugin({ triangles: 1 }), /triangles is no option, expected an object of mostTriangles/);
   const plugin = new SightlineTilesPlugin();
   for (const tiles of [undefined, null, {}, 5, new THREE.Group()]) refused(() => plugin.init(tiles), /expected registerPlugin\(\)/);
   plugin.dispose();

@@ -10,7 +10,7 @@ import type { ArrayCamera, BufferGeometry, Camera, InstancedMesh, Light, LightSh
 import type { PerspectiveCamera } from 'three';
 import { refuse, said } from '../errors.js';
 import '../index.js';
-import { floats, reading } from '../memory.js';
+import { floats, reading, readOptions } from '../memory.js';
 import { OcclusionBuffer } from '../occlusion.js';
 import { buffer as memory, isLoaded, ready, supported } from '../runtime.js';
 import { Culler, type CullView } from '../world.js';
@@ -20,7 +20,6 @@ import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
 import { fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
-import { readOptions } from './options.js';
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
@@ -92,7 +91,7 @@ export class SightlineCuller {
 
   constructor(scene: Scene, options?: SightlineOptions) {
     if (!reading('SightlineCuller', () => scene?.isScene)) refuse('SightlineCuller: expected a Scene');
-    const { occlusion = true, bufferWidth = 512 } = readOptions('SightlineCuller', options, ['occlusion', 'bufferWidth']);
+    const [occlusion = true, bufferWidth = 512] = readOptions('SightlineCuller', options, ['occlusion', 'bufferWidth']);
     if (typeof occlusion !== 'boolean') refuse(`SightlineCuller: an occlusion of ${said(occlusion)}, expected true or false`);
     if (!Number.isInteger(bufferWidth) || bufferWidth < 16 || bufferWidth > 4096)
       refuse(`SightlineCuller: a bufferWidth of ${said(bufferWidth)}, expected an integer from 16 to 4096`);

@@ -232,6 +232,7 @@ export class Inventory {
       this.#changed = true, this.#tell(error as Error);
     }
   }
+
   // Meshes come and go one by one; for all else the scene is walked anew.
   #add(child: Object3D, parent: Object3D, more: number): void {
     const taken = classify(child);

@@ -1,6 +1,6 @@
 // The device, its buffers and passes: what casts the rays of iwcpa, bvha and saa.
-import { refuse, said } from '../errors.js';
-import { isA } from '../memory.js';
+import { refuse, refuseProxy, said } from '../errors.js';
+import { isA, readOptions } from '../memory.js';
 import { RaySet, type RayHits } from './rays.js';
 import * as shaders from './shaders.js';
 
@@ -14,6 +14,8 @@ export interface GpuHits extends RayHits { times: CastTimes }
 
 /** Whether this browser has WebGPU at all; GpuRays.start() says whether it has a device. */
 export const hasWebGpu: boolean = typeof navigator === 'object' && Boolean(navigator.gpu);
+
+const isDevice = (given: GPUDevice | undefined): boolean => typeof given?.createShaderModule === 'function';
 
 type Pipelines = Record<keyof typeof shaders, GPUComputePipeline>;
 type Pass = { pipeline: GPUComputePipeline; buffers: GPUBuffer[]; call: [number, number, number, number]; x: number; y: number };
@@ -38,6 +40,7 @@ export class GpuRays {
   #busy: Promise<unknown> = Promise.resolve();
 
   private constructor(device: GPUDevice, own: boolean, name: string, pipelines: Pipelines) {
+    if (!isDevice(device)) refuse('GpuRays: made by `new`, expected `await GpuRays.start()`');
     this.#device = device;
     this.#own = own;
     this.#pipelines = pipelines;
@@ -52,9 +55,9 @@ export class GpuRays {
   /** Asks the browser for a device, or takes a `GPUDevice` of yours, and compiles. Rejects with code `unsupported` where there is
    * no WebGPU, no adapter or no device. */
   static async start(options?: { device?: unknown }): Promise<GpuRays> {
-    const given = options?.device as GPUDevice | undefined;
+    const given = readOptions('GpuRays.start', options, ['device'])[0] as GPUDevice | undefined;
     let device = given, name = '';
-    if (given && typeof given.createShaderModule !== 'function') refuse('GpuRays.start: a device that is none, expected a GPUDevice');
+    if (given && !isDevice(given)) refuse('GpuRays.start: a device that is none, expected a GPUDevice');
     if (!device) {
       if (!hasWebGpu) refuse('sightline: this browser has no WebGPU, expected one that has; cast on the CPU', 'unsupported');
       const adapter = await navigator.gpu.requestAdapter().catch(() => null);
@@ -79,7 +82,7 @@ export class GpuRays {
 
   /** Resolves with a sentence when the device is lost. */
   get lost(): Promise<string> {
-    return this.#lost.catch((error: Error) => error.message);
+    return GpuRays.#of(this).#lost.catch((error: Error) => error.message);
   }
 
   /** Casts a set's rays. One cast at a time; others wait. Rejects with code `lost` where the device is lost meanwhile, and
@@ -87,15 +90,14 @@ export class GpuRays {
   async cast(set: RaySet, method: GpuMethod): Promise<GpuHits> {
     if (!isA(set, RaySet)) refuse('cast: expected a RaySet');
     if (!gpuMethods.includes(method)) refuse(`cast: a method of ${said(method)}, expected ${gpuMethods.join(', ')}`);
-    const before = this.#busy;
-    const cast = before.then(() => this.#cast(set, method));
-    this.#busy = cast.catch(() => {});
+    const gpu = GpuRays.#of(this), cast = gpu.#busy.then(() => gpu.#cast(set, method));
+    gpu.#busy = cast.catch(() => {});
     return cast;
   }
 
   /** Gives the GPU's memory back, and the device unless it was yours. */
   dispose(): void {
-    if (this.#end) return;
+    if (GpuRays.#of(this).#end) return;
     this.#end = disposed;
     for (const buffer of this.#buffers.values()) buffer.destroy();
     this.#buffers.clear();
@@ -127,6 +129,9 @@ export class GpuRays {
     return hits;
   }
 
+  static #of(gpu: GpuRays): GpuRays {
+    return #busy in Object(gpu) ? gpu : refuseProxy('GpuRays');
+  }
   #check(): void {
     if (this.#end) this.#refuse();
   }

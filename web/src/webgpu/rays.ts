@@ -1,7 +1,7 @@
 // Boxes and the rays of a view, and what of Ye et al. 2023 runs on the CPU.
 import { refuse, said } from '../errors.js';
-import { calling, expectKind, expectLength, fields, type Input } from '../memory.js';
-import { buffer, check, Owned, wasm } from '../runtime.js';
+import { calling, countOf, expectLength, fields, type Input } from '../memory.js';
+import { buffer, check, Owned, pointerOf, wasm } from '../runtime.js';
 import { readView, viewBytes, writeView, type View } from '../views.js';
 
 /** What each ray meets first. */
@@ -35,9 +35,8 @@ export class RaySet extends Owned {
   }
   /** Takes other boxes, and builds the tree anew. */
   update(boxes: Input<Float32Array>): void {
-    expectKind('RaySet: boxes', boxes, Float32Array);
-    if (boxes.length % 6 !== 0) refuse(`RaySet: ${boxes.length} numbers of boxes, expected a multiple of 6`);
-    calling((call) => check(wasm().rays_build!(this.pointer, call.place(boxes)[0]!, boxes.length / 6)));
+    const count = countOf('RaySet', 'boxes', boxes, Float32Array, 6);
+    calling((call) => check(wasm().rays_build!(pointerOf('RaySet', this), call.place(boxes)[0]!, count)));
     ++this.version;
   }
   /** Changes whenever the boxes do. */
@@ -55,12 +54,13 @@ export class RaySet extends Owned {
     calling((call) => {
       const at = call.room(viewBytes);
       writeView(read, at);
-      check(wasm().rays_aim!(this.pointer, at, columns, rows));
+      check(wasm().rays_aim!(pointerOf('RaySet', this), at, columns, rows));
     });
   }
   /** Casts the rays here. The arrays are copies; those of `into`, of an element a ray, are filled instead of new ones, so that
    * casting every frame allocates nothing. */
   cast(method: CpuMethod, into?: RayHits): RayHits {
+    void pointerOf('RaySet', this);
     const number = cpuMethods.indexOf(method);
     if (number < 0) refuse(`cast: a method of ${said(method)}, expected ${cpuMethods.join(', ')}`);
     const given = into && fields('cast: into', into, ['objects', 'distances']);
@@ -71,7 +71,7 @@ export class RaySet extends Owned {
       for (const column of given) expectLength('cast: into', column!, this.rays);
     };
     fits();
-    wasm().rays_cast!(this.pointer, number);
+    wasm().rays_cast!(pointerOf('RaySet', this), number);
     fits(); // the module's memory may have grown, and they may lie there
     const { rays } = this;
     const objects = new Uint32Array(buffer(), where(this, 'objects')[0], rays);
@@ -96,7 +96,7 @@ export class RaySet extends Owned {
 
   /** @internal Walks the tree: what bvha's GPU is to test. */
   collect(): void {
-    wasm().rays_collect!(this.pointer);
+    wasm().rays_collect!(pointerOf('RaySet', this));
   }
   /** @internal */
   count(name: (typeof arrays)[number]): number {
@@ -113,7 +113,7 @@ export class RaySet extends Owned {
 function where(set: RaySet, name: (typeof arrays)[number]): [number, number] {
   return calling((call) => {
     const out = call.room(16 * arrays.length);
-    wasm().rays_arrays!(set.pointer, out);
+    wasm().rays_arrays!(pointerOf('RaySet', set), out);
     const found = new Float64Array(buffer(), out + 16 * arrays.indexOf(name), 2);
     return [found[0]!, found[1]!];
   });
