@@ -136,6 +136,9 @@ refused "one place" "$sightline" compare "$world" --report page --json page/inde
 refused "no visible sets of its own" "$sightline" bake "$world" -o no.pvs --cells no.csv
 refused "not a regular file" "$sightline" bake "$world" -o /dev/null
 refused "expected a name" "$sightline" compare "$world" --report ""
+mkdir here
+(cd here && expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 1 --size 16x12 --no-draw --path near --report . && [ -s index.html ] && exit $failed) ||
+  fail "compare --report . wrote no page"
 [ ! -e no.pvs ] && [ ! -e same.pvs ] || fail "bake wrote what it refused"
 grep -q "<html" page/index.html || fail "a refused call changed an earlier page"
 

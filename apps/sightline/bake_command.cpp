@@ -66,7 +66,7 @@ void print_level(const Scene& scene, const CellPvs& cells, const BakeOptions& op
 
 // What would only be found out once all was baked.
 void expect_sense(const BakeOptions& options) {
-  expect_apart({{"SCENE", options.scene}, {"--output", options.file}, {"--cells", options.cells}});
+  expect_apart({{"SCENE", options.scene}}, {{"--output", options.file}, {"--cells", options.cells}});
   std::error_code ignored;
   if (std::filesystem::exists(options.file, ignored) &&
       !std::filesystem::is_regular_file(options.file, ignored))

@@ -28,7 +28,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 int run_casters(CastersCall& call) {
-  expect_apart({{"SCENE", call.scene}, {"--picture", call.picture}});
+  expect_apart({{"SCENE", call.scene}}, {{"--picture", call.picture}});
   std::tie(call.options.width, call.options.height) = parse_size(call.size);
   call.options.light = call.light == "spot" ? LightKind::spot : LightKind::directional;
   const auto device = open_device(call.device);

@@ -61,13 +61,13 @@ CLI::Validator page_folder();
 CLI::Validator output_file();
 CLI::Validator not_empty();
 
-/// A file or folder and the option that names it; an empty path is of no matter.
+/// A file or folder and the option that names it; nothing where the path is empty.
 struct NamedPath {
   const char* option;
   std::string path;
 };
-/// Refuses paths of which one would be written over another.
-void expect_apart(const std::vector<NamedPath>& paths);
+/// Refuses what would be written over what is read, or over something else that is written.
+void expect_apart(const std::vector<NamedPath>& read, const std::vector<NamedPath>& written);
 
 /// What a parameter may be: "0 to 5", or its choices.
 std::string range_of(const ParameterInfo& parameter);

@@ -33,11 +33,8 @@ std::unique_ptr<device::Device> device_of(const CompareOptions& options) {
 }
 
 int run_compare(const CompareOptions& options) {
-  expect_apart({{"SCENE", options.scene},
-                {"--pvs", options.pvs},
-                {"--path", options.path},
-                {"--json", options.json},
-                {"--report", options.report}});
+  expect_apart({{"SCENE", options.scene}, {"--pvs", options.pvs}, {"--path", options.path}},
+               {{"--json", options.json}, {"--report", options.report}});
   measure::MeasureOptions measure;
   std::tie(measure.width, measure.height) = parse_size(options.size);
   measure.moving = options.moving;

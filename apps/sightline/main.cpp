@@ -99,9 +99,11 @@ int main(int argc, char** argv) {
     return sightline::app::run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "sightline: out of memory: the scene or the image is too large for this machine\n");
-  } catch (const std::system_error&) {
-    // All files are written by functions that say which.
-    std::fprintf(stderr, "sightline: standard output: cannot be written to\n");
+  } catch (const std::system_error& error) {
+    // Which is what is wrong where a print fails, but not with what is printed.
+    const bool printing = std::ferror(stdout) != 0;
+    std::fprintf(stderr, "sightline: %s\n",
+                 printing ? "standard output: cannot be written to" : error.what());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "sightline: %s\n", error.what());
   }

@@ -64,7 +64,7 @@ bool examine_all(const Scene& scene, const std::vector<measure::MadeOccluder>& o
 }
 
 int run_occluders(const OccludersCall& call) {
-  expect_apart({{"SCENE", call.scene}, {"--output", call.output}});
+  expect_apart({{"SCENE", call.scene}}, {{"--output", call.output}});
   Scene scene = load_scene(call.scene);
   set_raster_state(scene, call.faces);
   const auto occluders = measure::make_occluders(scene, call.options, progress("meshes"));

@@ -128,7 +128,7 @@ void add_reproduce(CLI::App& app, int& exit) {
         ->check(not_empty())
         ->type_name("NAME");
     on_run(of_paper, exit, [options, run = paper.run] {
-      expect_apart({{"--json", options->json}, {"--report", options->report}});
+      expect_apart({}, {{"--json", options->json}, {"--report", options->report}});
       if (options->report.empty()) return run(*options);
       report::PageFolder folder(options->report);
       ReproduceOptions here = *options;

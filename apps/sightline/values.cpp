@@ -76,6 +76,7 @@ namespace {
 
 // Where a file or folder is, or will be; of a level in an archive, the archive.
 fs::path place_of(const std::string& name) {
+  if (name.empty()) return {};
   std::error_code ignored;
   const std::size_t in_archive = name.find(".pk3:");
   const fs::path path = in_archive == std::string::npos ? name : name.substr(0, in_archive + 4);
@@ -89,15 +90,21 @@ bool holds(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-void expect_apart(const std::vector<NamedPath>& paths) {
-  for (auto a = paths.begin(); a != paths.end(); ++a) {
-    for (auto b = paths.begin(); b != a; ++b) {
-      if (a->path.empty() || b->path.empty()) continue;
-      const fs::path one = place_of(a->path), other = place_of(b->path);
-      if (holds(one, other) || holds(other, one))
-        throw Error(fmt::format("{} '{}' and {} '{}' are one place, expected two", b->option, b->path,
-                                a->option, a->path));
+void expect_apart(const std::vector<NamedPath>& read, const std::vector<NamedPath>& written) {
+  std::vector<NamedPath> taken;
+  // A world and a path along it have names, and no place.
+  for (const NamedPath& one : read)
+    if (std::error_code ignored; fs::exists(place_of(one.path), ignored)) taken.push_back(one);
+  for (const NamedPath& one : written) {
+    if (one.path.empty()) continue;
+    const fs::path place = place_of(one.path);
+    for (const auto& [option, path] : taken) {
+      const fs::path other = place_of(path);
+      if (holds(place, other) || holds(other, place))
+        throw Error(fmt::format("{} '{}' and {} '{}' are one place, expected two", option, path, one.option,
+                                one.path));
     }
+    taken.push_back(one);
   }
 }
 

@@ -1,6 +1,6 @@
 // Random meshes, boxes and spheres, drawn together and seen from anywhere, the near plane through them as
 // often as not: each pixel and each answer is held against exact rays, and every processor draws the same
-// bits. SIGHTLINE_RANDOM_SCENES says how many scenes to look at, from SIGHTLINE_RANDOM_SEED on.
+// bits.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -221,12 +221,8 @@ private:
 };
 
 TEST(RandomScenes, AreDrawnAndAnsweredAsExactRaysHaveThem) {
-  const std::uint64_t scenes = number_in("SIGHTLINE_RANDOM_SCENES", 100),
-                      first = number_in("SIGHTLINE_RANDOM_SEED", 1);
   Counts counts;
-  for (std::uint64_t seed = first; seed < first + scenes; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  const std::uint64_t scenes = for_random_scenes(100, [&](Random& random) {
     const Occluders of = any_occluders(random);
     const Result<OccluderMesh> mesh =
         OccluderMesh::make(of.shape.positions, of.shape.indices, of.sides, of.junctions);
@@ -236,8 +232,7 @@ TEST(RandomScenes, AreDrawnAndAnsweredAsExactRaysHaveThem) {
       look.hold_pixels();
       look.hold_answers();
     }
-    if (HasFailure()) return;
-  }
+  });
   EXPECT_GT(counts.drawn, 200 * scenes);
   EXPECT_GT(2 * counts.hidden, scenes);
 }

@@ -1,11 +1,14 @@
 // Meshes of every kind, placed anyhow, and how many of them a test that looks at random ones looks at.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -177,9 +180,22 @@ inline bool shows_front(const View& view, const Corners& t) {
                                : glm::dot(n, geometry::eye_of(view) - a) >= 0;
 }
 
-inline std::uint64_t number_in(const char* variable, std::uint64_t otherwise) {
-  const char* text = std::getenv(variable);
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+/// Looks at random scenes until one fails: how many, unless SIGHTLINE_RANDOM_SCENES says, from
+/// SIGHTLINE_RANDOM_SEED on. Returns how many it were to be.
+template <class Look>
+std::uint64_t for_random_scenes(std::uint64_t usual, const Look& look) {
+  const auto number_in = [](const char* variable, std::uint64_t otherwise) {
+    const char* text = std::getenv(variable);
+    return text ? std::strtoull(text, nullptr, 10) : otherwise;
+  };
+  const std::uint64_t scenes = number_in("SIGHTLINE_RANDOM_SCENES", usual),
+                      first = number_in("SIGHTLINE_RANDOM_SEED", 1);
+  for (std::uint64_t seed = first; seed < first + scenes && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    scene::Random random(seed);
+    look(random);
+  }
+  return scenes;
 }
 
 }  // namespace sightline::test

@@ -1,6 +1,5 @@
 // Random worlds whose objects carry whatever they may, move, come, go and are switched off, culled with
-// automatic occlusion by several views at once: what is left out is held against exact rays. The variables
-// that say how many are those of random_scenes_test.cpp.
+// automatic occlusion by several views at once: what is left out is held against exact rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -180,23 +179,18 @@ private:
 };
 
 TEST(RandomWorlds, LoseNothingThatExactRaysMeet) {
-  const std::uint64_t worlds = number_in("SIGHTLINE_RANDOM_SCENES", 40),
-                      first = number_in("SIGHTLINE_RANDOM_SEED", 1);
   Counts counts;
-  for (std::uint64_t seed = first; seed < first + worlds; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  for_random_scenes(40, [&](Random& random) {
     RandomWorld world(random);
     Culler culler, threaded;
     const std::size_t cameras = 1 + random.below(3);
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 5 && !HasFailure(); ++i) {
       Frame frame(random, world, cameras);
       // The second time with what the first one learned.
       frame.hold(culler, threaded, counts), frame.hold(culler, threaded, counts);
-      if (HasFailure()) return;
       world.change();
     }
-  }
+  });
   EXPECT_GT(8 * counts.hidden, counts.in_view);
 }
 
