@@ -7,8 +7,9 @@ const kinds: readonly unknown[] = [Float32Array, Float64Array, Uint32Array, Uint
 type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
 
 // What typed arrays are, whatever stands on one under the same name.
+const typedArray = Object.getPrototypeOf(Uint8Array.prototype) as object;
 const truly = <K extends 'buffer' | 'byteOffset' | 'byteLength' | 'length'>(array: Numbers, name: K): Numbers[K] =>
-  Reflect.get(Object.getPrototypeOf(Uint8Array.prototype) as object, name, array) as Numbers[K];
+  Reflect.get(typedArray, name, array) as Numbers[K];
 
 // 0 where there is no room; the module itself would take the size modulo 2^32.
 const allocate = (size: number): number => (size < 2 ** 32 - 64 ? wasm().allocate!(Math.max(size, 64)) >>> 0 : 0);

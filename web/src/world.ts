@@ -257,6 +257,7 @@ export class Culler extends Owned {
 
 // Undefined where occlusion is not automatic.
 function readCosts(occlusion: CullOptions['occlusion'] = 'none', costs?: CullCosts): number[] | undefined {
+  if (occlusion === 'none' && costs === undefined) return undefined;
   if (occlusion !== 'none' && occlusion !== 'automatic') refuse(`cull: an occlusion of ${said(occlusion)}, expected none or automatic`);
   const names = Object.keys(defaultCosts) as (keyof CullCosts)[], given = readOptions('cull: costs', costs, names);
   const all = names.map((name, i) => {
