@@ -156,6 +156,9 @@ mkdir ended
 (cd ended && exec timeout --signal=INT 3 "$sightline" reproduce object-frustum --quick --json o.json --report o >/dev/null 2>&1)
 [ -z "$(ls -A ended)" ] || fail "an ended reproduction leaves: $(ls -A ended)"
 
+# One that the caller has it ignore does not end it.
+expect 0 "holds" bash -c 'trap "" HUP; "$0" verify "$1" --views 400 & sleep 0.3; kill -HUP $!; wait $!' "$sightline" "$world"
+
 # Files that are none, or not what they claim to be.
 : >empty.glb
 head -c 3000 "$sightline" >random.glb

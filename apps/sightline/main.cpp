@@ -48,11 +48,16 @@ void expect_written() {
 }
 
 // Signals that end the program are blocked everywhere but in one thread that waits for them: it may do more
-// than a handler may.
+// than a handler may. Those that the caller has it ignore, as nohup does, would come too once they are
+// blocked.
 void end_tidily_on_signals() {
   sigset_t ends;
   sigemptyset(&ends);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&ends, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaddset(&ends, signal);
+  }
   pthread_sigmask(SIG_BLOCK, &ends, nullptr);
   std::thread([ends] {
     int signal = 0;

@@ -103,7 +103,7 @@ public:
     }
   }
 
-  // From within a thing as often as not, about the things' origin or another.
+  // At times from within a thing, about the things' origin or another.
   [[nodiscard]] WorldView any_view(scene::Random& random) const {
     const Vec3 to_origin =
         random.below(4) == 0 ? on_grid(random.inside({{-200, -9, -200}, {200, 9, 200}})) : Vec3{};
@@ -142,7 +142,7 @@ private:
     if (random_.below(2) == 0)
       for (std::size_t i = 0; i < out.shape.indices.size(); i += 3)
         std::swap(out.shape.indices[i + 1], out.shape.indices[i + 2]);
-    out.placement.m[0] = out.placement.m[5] = out.placement.m[10] = random_.between(3, 9);
+    out.placement = sized(random_.between(3, 9), {});
     out.sides = {any_sides()};
     carry_all(out);
     out.hides = true;
@@ -169,22 +169,7 @@ private:
       }
       case 2:
         out.spheres = {{at, on_grid(random_.between(0.1f, 3))}};
-        out.placement.m = {out.spheres[0].radius,
-                           0,
-                           0,
-                           0,
-                           0,
-                           out.spheres[0].radius,
-                           0,
-                           0,
-                           0,
-                           0,
-                           out.spheres[0].radius,
-                           0,
-                           at.x,
-                           at.y,
-                           at.z,
-                           1};
+        out.placement = sized(out.spheres[0].radius, at);
         out.occluder = ball_;
         break;
       case 3:  // a box that is turned
@@ -208,6 +193,13 @@ private:
   }
 
   Sides any_sides() { return random_.below(2) == 0 ? Sides::both : Sides::front; }
+
+  static Mat4 sized(float size, const Vec3& at) {
+    Mat4 out;
+    out.m[0] = out.m[5] = out.m[10] = size;
+    out.m[12] = at.x, out.m[13] = at.y, out.m[14] = at.z;
+    return out;
+  }
 
   Mat4 any_placement_at(const Vec3& at) {
     Mat4 out = any_placement(random_);

@@ -32,9 +32,8 @@ public:
   [[nodiscard]] const Thing& of(ObjectId id) const { return things_.at(id); }
 
   [[nodiscard]] double hit(const glm::dvec2& p, const Thing& thing) const {
-    const double more = 1e-3;  // so that the box's own surface is no matter
     if (!thing.told) return in_depth(rays_.hit(p.x, p.y, thing.box));
-    if (rays_.hit(p.x, p.y, grown(thing.box, more)) == ExactRays::kMiss) return ExactRays::kMiss;
+    if (rays_.hit(p.x, p.y, grown(thing.box)) == ExactRays::kMiss) return ExactRays::kMiss;
     double best = ExactRays::kMiss;
     for (std::size_t t = 0; t < thing.triangles.size(); ++t)
       if (shows(thing, t)) best = std::max(best, rays_.hit(p.x, p.y, thing.triangles[t]));
@@ -61,9 +60,9 @@ public:
   }
 
 private:
-  static Box grown(const Box& box, double by) {
-    const auto more = static_cast<float>(by);
-    return {along(box.min, -more, {1, 1, 1}), along(box.max, more, {1, 1, 1})};
+  // So that what lies in the box's own surface is within.
+  static Box grown(const Box& box) {
+    return {along(box.min, -1e-3f, {1, 1, 1}), along(box.max, 1e-3f, {1, 1, 1})};
   }
   [[nodiscard]] bool shows(const Thing& thing, std::size_t triangle) const {
     const Sides sides = thing.sides[thing.sides.size() == 1 ? 0 : triangle];
