@@ -149,7 +149,7 @@ std::vector<std::string> split(const std::string& option, const std::string& lis
 }
 
 std::string range_of(const ParameterInfo& parameter) {
-  return parameter.choices.empty() ? fmt::format("{:g} to {:g}", parameter.min, parameter.max)
+  return parameter.choices.empty() ? fmt::format("{} to {}", parameter.min, parameter.max)
                                    : std::string(parameter.choices);
 }
 
