@@ -44,6 +44,8 @@ public:
 
   /// How many elements there are.
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
+  /// Where the first element stands, or null.
+  [[nodiscard]] constexpr Pointer* data() const noexcept { return first_; }
   /// Bytes from an element to the next.
   [[nodiscard]] constexpr std::size_t stride() const noexcept { return stride_; }
   /// Whether there is memory, and elements do not overlap. What is not sound is refused by whoever is given

@@ -1,5 +1,7 @@
 // Movers that are listed in the order in which they stand: whole rows of boxes at a time.
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "library/world/chunk_runs.cpp"
@@ -155,17 +157,20 @@ float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
 bool are_sound(const float* values, std::size_t boxes, float reach) {
   constexpr std::size_t kStep = 48;
   const F f;
+  const hn::RebindToSigned<F> i32;
   const std::size_t lanes = hn::Lanes(f), count = 6 * boxes;
-  alignas(64) std::array<float, kStep> pattern;
-  for (std::size_t i = 0; i < kStep; ++i) pattern[i] = i % 6 < 3 ? 1.0f : 0.0f;
-  const auto top = hn::Set(f, reach), bottom = hn::Set(f, -reach);
-  auto sound = hn::Eq(top, top);
+  alignas(64) std::array<std::int32_t, kStep> minima;
+  for (std::size_t i = 0; i < kStep; ++i) minima[i] = i % 6 < 3 ? -1 : 0;
+  // As whole numbers all that is no number is greater than what is one.
+  const auto magnitude = hn::Set(i32, 0x7fffffff);
+  auto greatest = hn::Zero(i32);
+  auto least = hn::Zero(f);
   std::size_t i = 0;
   for (; i + kStep + 3 <= count; i += kStep) {
     for (std::size_t k = 0; k < kStep; k += lanes) {
       const auto low = hn::LoadU(f, values + i + k), high = hn::LoadU(f, values + i + k + 3);
-      const auto right = hn::And(hn::Le(low, high), hn::And(hn::Ge(low, bottom), hn::Le(high, top)));
-      sound = hn::And(sound, hn::Or(right, hn::Eq(hn::Load(f, &pattern[k]), hn::Zero(f))));
+      greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low), magnitude));
+      least = hn::Min(least, hn::And(hn::Sub(high, low), hn::BitCast(f, hn::Load(i32, &minima[k]))));
     }
   }
   bool rest = true;
@@ -173,7 +178,30 @@ bool are_sound(const float* values, std::size_t boxes, float reach) {
     for (std::size_t k = i; k < i + 3; ++k)
       rest = rest && values[k] <= values[k + 3] && values[k] >= -reach && values[k + 3] <= reach;
   }
-  return rest && hn::AllTrue(f, sound);
+  return rest && hn::GetLane(hn::MaxOfLanes(i32, greatest)) <= std::bit_cast<std::int32_t>(reach) &&
+         hn::GetLane(hn::MinOfLanes(f, least)) >= 0;
+}
+
+// Of so many pairs of an id and a generation: of how many, from the first on and in whole vectors, the table
+// knows that generation. It is read four bytes at a time.
+std::size_t known_handles(const std::uint32_t* handles, std::size_t count, const std::uint8_t* table,
+                          std::uint32_t ids, std::uint32_t unknown) {
+  const U u;
+  const hn::RebindToSigned<U> i32;
+  const std::size_t lanes = hn::Lanes(u);
+  if (ids < 4) return 0;
+  const auto limit = hn::Set(u, ids - 3), none = hn::Set(u, unknown), byte = hn::Set(u, 0xff);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::Vec<U> id, generation;
+    hn::LoadInterleaved2(u, handles + 2 * i, id, generation);
+    const auto inside = hn::Lt(id, limit);
+    const auto at = hn::BitCast(i32, hn::IfThenElseZero(inside, id));
+    const auto known = hn::And(hn::GatherOffset(u, reinterpret_cast<const std::uint32_t*>(table), at), byte);
+    const auto same = hn::And(hn::Eq(known, generation), hn::Ne(known, none));
+    if (!hn::AllTrue(u, hn::And(inside, same))) break;
+  }
+  return i;
 }
 
 }  // namespace sightline::world::HWY_NAMESPACE
@@ -183,6 +211,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::world {
 HWY_EXPORT(write_run);
 HWY_EXPORT(are_sound);
+HWY_EXPORT(known_handles);
 HWY_EXPORT(lay_out);
 HWY_EXPORT(take_out);
 
@@ -195,6 +224,14 @@ bool boxes_are_sound(std::span<const Box> boxes) noexcept {
   constexpr auto kReach = static_cast<float>(kWorldReach);
   static_assert(static_cast<double>(kReach) <= kWorldReach);
   return boxes.empty() || HWY_DYNAMIC_DISPATCH(are_sound)(&boxes[0].min.x, boxes.size(), kReach);
+}
+
+std::size_t known_handles(std::span<const Handle> handles, std::span<const std::uint8_t> table,
+                          std::uint8_t unknown) noexcept {
+  static_assert(sizeof(Handle) == 2 * sizeof(std::uint32_t) && offsetof(Handle, index) == 0);
+  if (handles.empty()) return 0;
+  return HWY_DYNAMIC_DISPATCH(known_handles)(&handles[0].index, handles.size(), table.data(),
+                                             static_cast<std::uint32_t>(table.size()), unknown);
 }
 
 float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include <sightline/types.hpp>
+#include <sightline/world.hpp>
 
 #include "library/geometry/box_reader.hpp"
 
@@ -30,5 +31,9 @@ Box bounds_of_rows(const float* first, std::size_t step, std::uint32_t count) no
 float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept;
 /// Whether all are valid: min <= max within ±kWorldReach.
 [[nodiscard]] bool boxes_are_sound(std::span<const Box> boxes) noexcept;
+/// Of how many handles, from the first on and some at a time, the table of generations, a byte an id, knows
+/// that it is theirs; where it says `unknown`, it knows none.
+[[nodiscard]] std::size_t known_handles(std::span<const Handle> handles, std::span<const std::uint8_t> table,
+                                        std::uint8_t unknown) noexcept;
 
 }  // namespace sightline::world

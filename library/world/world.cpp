@@ -21,6 +21,14 @@ std::int64_t cell_of(double low, double high) {
   return static_cast<std::int64_t>(std::floor((0.5 * low + 0.5 * high) / kSectorSide + 0.5));
 }
 
+// Handles that stand one after another, as they are; of others none.
+std::span<const Handle> packed_handles(const Strided<const Handle>& handles) noexcept {
+  if (handles.stride() != sizeof(Handle) ||
+      reinterpret_cast<std::uintptr_t>(handles.data()) % alignof(Handle) != 0)
+    return {};
+  return {static_cast<const Handle*>(handles.data()), handles.size()};
+}
+
 }  // namespace
 
 SectorCell sector_cell(const WorldBox& b) noexcept {
@@ -84,16 +92,22 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   const WorldState& state = WorldAccess::state(world);
-  const std::span<const ChunkMap::Location> objects = state.objects;
-  const std::span<const std::uint8_t> generations = state.generations;
-  for (std::size_t i = 0; i < handles.size(); ++i) {
-    const Handle handle = handles[i];
-    if (ChunkMap::kHasPages && handle.index < generations.size() &&
-        handle.generation < WorldState::kUnknown && generations[handle.index] == handle.generation)
-      continue;
-    if (handle.index >= objects.size() || objects[handle.index].sector == ChunkMap::kNone ||
-        objects[handle.index].generation != handle.generation)
-      return {StatusCode::stale_handle, "world: a handle names no object that stands in this world", i};
+  const std::span<const Handle> packed = packed_handles(handles);
+  constexpr std::size_t kAtOnce = 512;
+  std::array<Handle, kAtOnce> copies;
+  for (std::size_t first = 0; first < handles.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, handles.size() - first);
+    std::span<const Handle> part(copies.data(), count);
+    if (!packed.empty())
+      part = packed.subspan(first, count);
+    else
+      for (std::size_t i = 0; i < count; ++i) copies[i] = handles[first + i];
+    std::size_t i = !ChunkMap::kHasPages ? 0 : known_handles(part, state.generations, WorldState::kUnknown);
+    for (; i < count; ++i) {
+      if (!world.contains(part[i]))
+        return {StatusCode::stale_handle, "world: a handle names no object that stands in this world",
+                first + i};
+    }
   }
   return {};
 }

@@ -63,6 +63,69 @@ TEST(WorldRefusals, RefusesBadBoxesAndChangesNothing) {
   }
 }
 
+// Many are checked at once: what one of them is must show wherever it stands among the others.
+TEST(WorldRefusals, FindsTheOneBadBoxOfManyAndWhatIsWrongWithIt) {
+  constexpr std::size_t kBoxes = 41;
+  const Box good{{-1, -2, -3}, {-1, 2, 3}};
+  const auto check = [](const std::vector<Box>& boxes) {
+    World world;
+    std::vector<Handle> handles(boxes.size());
+    return world.insert(boxes, handles);
+  };
+  const float over = 1.1e11f, nan = std::nanf("");
+  for (std::size_t at = 0; at < kBoxes; ++at) {
+    for (std::size_t side = 0; side < 6; ++side) {
+      for (const float value : {nan, -nan, INFINITY, -INFINITY, over, -over, side < 3 ? 4.0f : -4.0f}) {
+        std::vector<Box> boxes(kBoxes, good);
+        (&boxes[at].min.x)[side] = value;
+        const Status status = check(boxes);
+        EXPECT_EQ(status.code(), StatusCode::bad_box) << at << ' ' << side << ' ' << value;
+        EXPECT_EQ(status.index(), at);
+      }
+    }
+  }
+  EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{0, 0, 0}, {-0.0f, -0.0f, -0.0f}}))) << "zeros are equal";
+  EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{-9e10f, 0, 0}, {9e10f, 0, 0}})));
+}
+
+// The same of handles, one after another or apart.
+TEST(WorldRefusals, FindsTheOneStaleHandleOfMany) {
+  constexpr std::size_t kObjects = 41;
+  const std::vector<Box> boxes(kObjects, {{0, 0, 0}, {1, 1, 1}});
+  World world;
+  std::vector<Handle> handles(kObjects);
+  ASSERT_TRUE(world.insert(boxes, handles));
+  // Of one id a generation greater than the table of them holds.
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_TRUE(world.remove(std::array{handles[20]}));
+    ASSERT_TRUE(world.insert(std::span(boxes).first(1), std::span(handles).subspan(20, 1)));
+    const std::array stale{Handle{handles[20].index, handles[20].generation - 1}};
+    ASSERT_EQ(world.move(stale, std::span(boxes).first(1)).code(), StatusCode::stale_handle) << i;
+    ASSERT_TRUE(world.move(handles, boxes)) << i;
+  }
+  struct Apart {
+    Handle handle;
+    std::uint32_t between;
+  };
+  for (std::size_t at = 0; at < kObjects; ++at) {
+    for (const Handle& wrong :
+         {Handle{handles[at].index, handles[at].generation + 1}, Handle{handles[at].index, 255},
+          Handle{handles[at].index, handles[at].generation + 256}, Handle{kObjects, 0}, Handle{}}) {
+      std::vector<Handle> some = handles;
+      some[at] = wrong;
+      std::vector<Apart> apart;
+      for (const Handle& handle : some) apart.push_back({handle, 7});
+      for (const Strided<const Handle>& given :
+           {Strided<const Handle>(some), {&apart[0].handle, apart.size(), sizeof(Apart)}}) {
+        const Status status = world.move(given, boxes);
+        EXPECT_EQ(status.code(), StatusCode::stale_handle)
+            << at << ' ' << wrong.index << ' ' << wrong.generation;
+        EXPECT_EQ(status.index(), at);
+      }
+    }
+  }
+}
+
 TEST(WorldRefusals, RefusesBadCalls) {
   World world;
   Culler culler;
