@@ -55,10 +55,11 @@ bool can_hold(const T* first, std::size_t count) noexcept {
 /// Bytes of a struct's first version, whose last member was `last`. Later ones stand behind it.
 #define SIGHTLINE_FIRST_SIZE(type, last) (offsetof(type, last) + sizeof(type::last))
 
-/// Whether the library knows a struct of this size, whose first version had `first_size` bytes.
+/// Whether the library knows a struct of this size, whose first version had `first_size` bytes. No version
+/// ends inside a pointer, so each is a whole number of them long where it has one.
 template <class T>
 bool knows(std::uint32_t struct_size, std::size_t first_size) noexcept {
-  return struct_size >= first_size && struct_size <= sizeof(T);
+  return struct_size >= first_size && struct_size <= sizeof(T) && struct_size % alignof(T) == 0;
 }
 
 /// Fills in what an older header's struct has; `taken` keeps its defaults for the rest.

@@ -143,6 +143,8 @@ static void refuse_calls(sightline_culler* culler, const sightline_world* world)
   EXPECT_REFUSED(sightline_cull(culler, world, views, 2, NULL, &output, &r), SIGHTLINE_BAD_VIEW, 1);
   views[1] = sightline_cull_view_of(NULL);
   EXPECT_REFUSED(sightline_cull(culler, world, views, 2, NULL, &output, &r), SIGHTLINE_BAD_VIEW, 1);
+  views[0].struct_size -= 4;  // ends inside a pointer
+  EXPECT_REFUSED(sightline_cull(culler, world, views, 1, NULL, &output, &r), bad, 0);
   views[0].struct_size = 0;
   EXPECT_REFUSED(sightline_cull(culler, world, views, 1, NULL, &output, &r), bad, 0);
   views[0] = sightline_cull_view_of(&ahead);
