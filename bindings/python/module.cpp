@@ -38,6 +38,21 @@ constexpr const char* kDoc =
     "Objects may be used by several threads: a call waits where another changes the same object. Long calls\n"
     "that only look at arrays let other threads of Python run; do not change those arrays meanwhile.";
 
+// What Python reserved and never constructed, World.__new__(World) for example, is no object to be used:
+// where pybind11 would first allocate one, and leave its bytes as they are.
+void* refuse_unconstructed(std::size_t) {
+  throw py::type_error("this object was never constructed, expected one that its class was called for");
+}
+
+void expect_constructed(const py::module_& m) {
+  for (const auto& [name, member] : m.attr("__dict__").cast<py::dict>()) {
+    if (!py::isinstance<py::type>(member)) continue;
+    auto* const type = reinterpret_cast<PyTypeObject*>(member.ptr());
+    if (py::detail::type_info* const known = py::detail::get_type_info(type))
+      known->operator_new = refuse_unconstructed;
+  }
+}
+
 constexpr const char* kRefusedDoc =
     "Why a call was refused, in one sentence. `status`: what kind of thing it was, 'bad_box' for example;\n"
     "`index`: which element of the argument that the sentence names, or None.";
@@ -74,4 +89,5 @@ PYBIND11_MODULE(sightline, m) {
   add_frustum(m);
   add_rays(m);
   add_pvs(m);
+  expect_constructed(m);
 }
