@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -90,6 +91,63 @@ BakeEstimate estimate(CellBaker baker, const CellPvs& cells, std::span<const std
   return out;
 }
 
+// Reads what was baked before. Returns how long this rank's own journal is, as far as it is whole.
+std::uint64_t read_journals(const std::filesystem::path& file, const std::filesystem::path& own,
+                            std::uint64_t key, std::size_t cells, PackedCells& done) {
+  std::uint64_t whole = 0;
+  for (const auto& journal : journals_of(file)) {
+    const std::uint64_t length = read_journal(journal, key, cells, done);
+    if (journal.filename() == own.filename()) whole = length;
+  }
+  return whole;
+}
+
+void remove_journals(const std::filesystem::path& file) {
+  for (const auto& journal : journals_of(file)) {
+    std::error_code ignored;
+    std::filesystem::remove(journal, ignored);
+  }
+}
+
+// The rank's own cells: as many ranks as there are, one cell in so many.
+std::vector<std::uint32_t> share_of(const Ranks& ranks, std::size_t cells) {
+  std::vector<std::uint32_t> share;
+  for (auto cell = static_cast<std::size_t>(ranks.rank()); cell < cells;
+       cell += static_cast<std::size_t>(ranks.count()))
+    share.push_back(static_cast<std::uint32_t>(cell));
+  return share;
+}
+
+// Calls work(i) for i below count on so many threads; 0: one a core.
+template <class Work>
+void run_threads(std::size_t count, int threads, const Work& work) {
+  // More threads than cores are allowed if asked for.
+  std::optional<tbb::global_control> allowed;
+  if (threads > 0)
+    allowed.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const auto& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+// Puts the sets of all cells where they belong.
+void unpack(const PackedCells& done, CellPvs& cells) {
+  cells.first.assign(1, 0);
+  for (const auto& [cell, set] : done) {
+    cells.open[cell] = !set.empty();
+    if (!set.empty()) {
+      if (const pvs::Complaint wrong = pvs::unpack_set(set, cells.objects, cells.visible))
+        throw Error(sentence_about("bake: cell " + std::to_string(cell), wrong));
+    }
+    cells.first.push_back(cells.visible.size());
+  }
+}
+
 }  // namespace
 
 BakeResult bake(const Scene& scene, const CellOptions& options, const std::filesystem::path& file,
@@ -100,34 +158,25 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   CellPvs cells = make_cells(scene, options);
   const std::uint64_t key = key_of(cells, options);
   PackedCells done;
-  const std::filesystem::path mine = file.string() + ".part." + std::to_string(ranks.rank());
-  std::uint64_t whole = 0;
-  for (const auto& journal : journals_of(file)) {
-    const std::uint64_t length = read_journal(journal, key, cells.size(), done);
-    if (journal.filename() == mine.filename()) whole = length;
-  }
+  const std::filesystem::path own = file.string() + ".part." + std::to_string(ranks.rank());
+  const std::uint64_t whole = read_journals(file, own, key, cells.size(), done);
   ranks.wait();  // nobody appends while another reads
-  Journal journal(mine, key, whole);
+  Journal journal(own, key, whole);
 
-  std::vector<std::uint32_t> share;
-  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
-    if (cell % static_cast<std::uint32_t>(ranks.count()) == static_cast<std::uint32_t>(ranks.rank())) {
-      share.push_back(cell);
-    }
-  }
+  const std::vector<std::uint32_t> share = share_of(ranks, cells.size());
   std::vector<std::uint32_t> waiting;
-  for (const std::uint32_t cell : share) {
-    if (!done.contains(cell)) waiting.push_back(cell);
-  }
+  std::copy_if(share.begin(), share.end(), std::back_inserter(waiting),
+               [&](std::uint32_t cell) { return !done.contains(cell); });
   result.resumed = static_cast<std::uint32_t>(share.size() - waiting.size());
   const partition::TriangleRays rays(scene);
   if (estimated) estimated(estimate(CellBaker(scene, rays, options), cells, waiting, threads));
+
   tbb::enumerable_thread_specific<CellBaker> bakers([&] { return CellBaker(scene, rays, options); });
   tbb::enumerable_thread_specific<std::vector<ObjectId>> sets;
   std::mutex one_at_a_time;
   std::size_t finished = result.resumed;
   bool stopped = progress && finished > 0 && !progress(finished, share.size());
-  const auto bake_cell = [&](std::size_t i) {
+  run_threads(waiting.size(), threads, [&](std::size_t i) {
     {
       const std::scoped_lock lock(one_at_a_time);
       if (stopped) return;
@@ -140,21 +189,9 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
     done[waiting[i]] = std::move(set);
     ++finished;
     if (progress && !progress(finished, share.size())) stopped = true;
-  };
-  // More threads than cores are allowed if asked for.
-  std::optional<tbb::global_control> allowed;
-  if (threads > 0) {
-    allowed.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  }
-  tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, waiting.size(), 1),
-        [&](const auto& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) bake_cell(i);
-        },
-        tbb::simple_partitioner());
   });
   for (const CellBaker& baker : bakers) result.rays += baker.rays_cast();
+
   const std::vector<std::byte> all = ranks.gather(flatten(done));
   if (ranks.rank() != 0) {
     result.finished = !stopped;
@@ -162,20 +199,9 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   }
   take_in(all, done);
   if (done.size() != cells.size()) return result;
-  cells.first.assign(1, 0);
-  for (const auto& [cell, set] : done) {
-    cells.open[cell] = !set.empty();
-    if (!set.empty()) {
-      if (const pvs::Complaint wrong = pvs::unpack_set(set, cells.objects, cells.visible))
-        throw Error(sentence_about("bake: cell " + std::to_string(cell), wrong));
-    }
-    cells.first.push_back(cells.visible.size());
-  }
+  unpack(done, cells);
   write_pvs_file(cells, file);
-  for (const auto& old : journals_of(file)) {
-    std::error_code ignored;
-    std::filesystem::remove(old, ignored);
-  }
+  remove_journals(file);
   result.finished = true;
   result.cells = std::move(cells);
   return result;
