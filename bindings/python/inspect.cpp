@@ -129,28 +129,24 @@ void add_inspect(py::module_& m) {
       .def(py::init<>())
       .def(
           "inspect", &inspect,
-          "(views, boxes): a dict of numbers a view, and an array of fields box (2, 3), metres; kind, "
-          "DEBUG_SECTOR,\n"
-          "DEBUG_CHUNK or DEBUG_OCCLUDER; seen and whole, a bit a view; and objects, how many, or of an "
-          "occluder\n"
-          "whose. culler: one that has culled these views with automatic occlusion; what it drew hides, too.",
+          "(views, boxes): a dict of numbers a view, and an array of fields box (2, 3), metres; kind,\n"
+          "DEBUG_SECTOR, DEBUG_CHUNK or DEBUG_OCCLUDER; seen and whole, a bit a view; and objects, how\n"
+          "many, or of an occluder whose. culler: one that has culled these views with automatic occlusion;\n"
+          "what it drew hides, too.",
           py::arg("world"), py::arg("views"), py::arg("culler") = py::none());
   m.def("view_corners", &corners_of,
-        "The corners of what a view sees, float64 (8, 3): of the near plane, bottom left, bottom right, top "
-        "left,\n"
-        "top right; then of the far plane, or of `farthest` metres along the view.",
+        "The corners of what a view sees, float64 (8, 3): of the near plane, bottom left, bottom right, top\n"
+        "left, top right; then of the far plane, or of `farthest` metres along the view.",
         py::arg("view"), py::arg("farthest"));
-  m.def(
-      "depth_image", &image_of,
-      "A buffer's depth as a picture, uint8 (height, width), rows from the top: 255 for the nearest occluder "
-      "to\n"
-      "55 for the farthest, 0 where there is none.",
-      py::arg("occlusion"));
+  m.def("depth_image", &image_of,
+        "A buffer's depth as a picture, uint8 (height, width), rows from the top: 255 for the nearest\n"
+        "occluder to 55 for the farthest, 0 where there is none.",
+        py::arg("occlusion"));
   m.def(
       "culler_depth_image", &image_of_culler,
-      "The same of what automatic occlusion drew for the view at `place` in the culler's calls, whose image "
-      "is\n"
-      "`size`, width and height, as it was culled the last time; any other is refused, None stands for it.",
+      "The same of what automatic occlusion drew for the view at `place` in the culler's calls, whose image\n"
+      "is `size`, width and height, as it was culled the last time; any other is refused, None stands for\n"
+      "it.",
       py::arg("culler"), py::arg("place"), py::arg("size") = py::none());
 }
 

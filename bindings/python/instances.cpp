@@ -156,23 +156,20 @@ py::tuple cull_instances(LockedInstanceCuller& culler, const PlacedWorlds& place
 void add_instances(py::module_& m) {
   py::class_<PlacedWorlds>(
       m, "Instances",
-      "Worlds in many places: each is kept once, and placed by a rotation, a uniform scale and a "
-      "translation.\n"
-      "Placements are worlds, uint32 (n,), as add_world named them; transforms, (n, 4, 4), [row, column], "
-      "from\n"
-      "the world's metres to metres about an origin; and origins, (n, 3), 0 unless given.")
+      "Worlds in many places: each is kept once, and placed by a rotation, a uniform scale and a\n"
+      "translation. Placements are worlds, uint32 (n,), as add_world named them; transforms, (n, 4, 4),\n"
+      "[row, column], from the world's metres to metres about an origin; and origins, (n, 3), 0 unless\n"
+      "given.")
       .def(py::init<>())
       .def("add_world", &add_placed_world,
-           "Keeps a World for instances to show, and returns its name. It may change between culls: then "
-           "call\n"
-           "update().",
+           "Keeps a World for instances to show, and returns its name. It may change between culls: then\n"
+           "call update().",
            py::arg("world"))
       .def("remove_world", &remove_placed_world, "Forgets a world that no instance shows.", py::arg("name"))
       .def("update", &update_instances, "Gives instances of worlds that reach elsewhere now new boxes.")
       .def("insert", &insert_instances,
-           "Puts n instances in and returns their handles, uint32 (n, 2). layers: uint32 (n,); a view sees "
-           "an\n"
-           "object iff it shares a layer with the instance and one with the object.",
+           "Puts n instances in and returns their handles, uint32 (n, 2). layers: uint32 (n,); a view sees\n"
+           "an object iff it shares a layer with the instance and one with the object.",
            py::arg("worlds"), py::arg("transforms"), py::arg("origins") = py::none(),
            py::arg("layers") = py::none())
       .def("move", &move_instances, "Gives each instance a new placement.", py::arg("handles"),
@@ -200,21 +197,16 @@ void add_instances(py::module_& m) {
 
   py::class_<LockedInstanceCuller>(m, "InstanceCuller", "Culls instances of worlds.")
       .def(py::init<>())
-      .def(
-          "cull", &cull_instances,
-          "(ranges, ids): of each instance of which something may be seen, uint32 (k, 3), the id of its "
-          "handle\n"
-          "and where its objects stand in ids: from first, count of them. Instances of one world that are "
-          "seen\n"
-          "whole may share ids. masks=True: also which views see each, uint8; values=True: the objects' "
-          "values\n"
-          "instead of their ids; levels=Levels(...), without hysteresis: also levels and fades, uint8 each.\n"
-          "Layers, min_area, distances (in metres of the objects' own world) and occlusion count as for\n"
-          "Culler.cull; casters are refused. Refused, too: worlds that reach elsewhere since their "
-          "instances\n"
-          "were placed, and views that may see more than most_objects.",
-          py::arg("instances"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
-          py::arg("levels") = py::none(), py::arg("most_objects") = InstanceCullOptions{}.most_objects);
+      .def("cull", &cull_instances,
+           "(ranges, ids): of each instance of which something may be seen, uint32 (k, 3), the id of its\n"
+           "handle and where its objects stand in ids: from first, count of them. Instances of one world\n"
+           "that are seen whole may share ids. masks=True: also which views see each, uint8; values=True:\n"
+           "the objects' values instead of their ids; levels=Levels(...), without hysteresis: also levels\n"
+           "and fades, uint8 each. Layers, min_area, distances (in metres of the objects' own world) and\n"
+           "occlusion count as for Culler.cull; casters are refused. Refused, too: worlds that reach\n"
+           "elsewhere since their instances were placed, and views that may see more than most_objects.",
+           py::arg("instances"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
+           py::arg("levels") = py::none(), py::arg("most_objects") = InstanceCullOptions{}.most_objects);
 }
 
 }  // namespace sightline::python

@@ -27,14 +27,14 @@ const char* name_of(StatusCode code) {
 }
 
 constexpr const char* kDoc =
-    "Visibility culling: a world of boxes that move, and what of it a camera may see.\n\n"
-    "Lengths are metres, the world is right-handed with y up, matrices are [row, column] and multiply "
-    "columns,\n"
-    "clip depth is 0 to 1 (either way round). Arrays of the named types are read where they lie, rows at "
-    "any\n"
-    "ascending stride: fields of structured arrays, slices, columns of tables. What is given is read while "
-    "the\n"
-    "call runs, not later. What a call refuses raises Refused, a ValueError, and changes nothing.\n\n"
+    "Visibility culling: a world of boxes that move, and what of it a camera may see.\n"
+    "\n"
+    "Lengths are metres, the world is right-handed with y up, matrices are [row, column] and multiply\n"
+    "columns, clip depth is 0 to 1 (either way round). Arrays of the named types are read where they lie,\n"
+    "rows at any ascending stride: fields of structured arrays, slices, columns of tables. What is given is\n"
+    "read while the call runs, not later. What a call refuses raises Refused, a ValueError, and changes\n"
+    "nothing.\n"
+    "\n"
     "Objects may be used by several threads: a call waits where another changes the same object. Long calls\n"
     "that only look at arrays let other threads of Python run; do not change those arrays meanwhile.";
 

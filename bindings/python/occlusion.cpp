@@ -140,9 +140,8 @@ std::uint32_t objects_of(const SharedTriangles& triangles) {
 void add_occluder(py::module_& m) {
   py::class_<Occluder>(
       m, "Occluder",
-      "What occludes in a mesh's place, made of any mesh, closed or not: flat pieces merged, and "
-      "of\n"
-      "closed parts what lies inside them. It covers no point that the mesh does not cover as near.")
+      "What occludes in a mesh's place, made of any mesh, closed or not: flat pieces merged, and of closed\n"
+      "parts what lies inside them. It covers no point that the mesh does not cover as near.")
       .def(py::init(&make),
            "The mesh as OccluderMesh takes it; at most 4096 triangles and boxes, 0 for none.",
            py::arg("positions"), py::arg("indices"), py::arg("sides") = "both",
@@ -192,9 +191,8 @@ void add_triangles(py::module_& m) {
           py::init(&make_mesh),
           "positions: float32 (n, 3), metres; indices: uint32, (m, 3) or flat; sides: 'both', 'front', from\n"
           "where corners turn counter-clockwise, or (m,) whether only a triangle's front is drawn and so\n"
-          "occludes. Refused: positions that are not finite, indices that are out of range or no multiple "
-          "of\n"
-          "three, another number of sides.",
+          "occludes. Refused: positions that are not finite, indices that are out of range or no multiple\n"
+          "of three, another number of sides.",
           py::arg("positions"), py::arg("indices"), py::arg("sides") = "both")
       .def_property_readonly("triangles", &OccluderMesh::triangles);
 
@@ -223,15 +221,13 @@ void add_occlusion(py::module_& m) {
   add_triangles(m);
   py::class_<Occlusion, std::shared_ptr<Occlusion>>(
       m, "Occlusion",
-      "One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone. "
-      "Boxes\n"
-      "are as World has them; spheres a SphereView or float32 (n, 4). Spheres, meshes and triangles are in\n"
-      "metres about the view's origin. Refused: drawing and reading before begin().")
+      "One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone.\n"
+      "Boxes are as World has them; spheres a SphereView or float32 (n, 4). Spheres, meshes and triangles\n"
+      "are in metres about the view's origin. Refused: drawing and reading before begin().")
       .def(py::init<>())
       .def("begin", &begin,
-           "Empties it and takes the view, of at most 8192 pixels a side. It answers for pixel 'centres', or "
-           "for\n"
-           "any place on the image ('area'), in pixels 1, 2 or 4 times as wide as the view's.",
+           "Empties it and takes the view, of at most 8192 pixels a side. It answers for pixel 'centres',\n"
+           "or for any place on the image ('area'), in pixels 1, 2 or 4 times as wide as the view's.",
            py::arg("view"), py::arg("coverage") = "centres", py::arg("scale") = 1)
       .def_property_readonly("view", &begun_view, "The view it was begun with, or None.")
       .def("draw_boxes", &draw_boxes,
@@ -253,9 +249,8 @@ void add_occlusion(py::module_& m) {
            "Those of `objects`, uint32 (n,), of which a triangle may be seen, in order.",
            py::arg("triangles"), py::arg("objects"))
       .def("read_nearness", &read_nearness,
-           "float32 (height, width): 1 / (depth in metres) of the occluder at each pixel (perspective), "
-           "-depth\n"
-           "(orthographic), -inf where there is none; rows from the top.");
+           "float32 (height, width): 1 / (depth in metres) of the occluder at each pixel (perspective),\n"
+           "-depth (orthographic), -inf where there is none; rows from the top.");
 }
 
 }  // namespace sightline::python

@@ -84,25 +84,21 @@ py::object cull_ranges(LockedRangeCuller& culler, const SharedWorld& world, cons
 void add_ranges(py::module_& m) {
   py::class_<Order>(
       m, "ObjectOrder",
-      "An order of a World's objects, slot by slot as its chunks hold them, that changes only by report: for "
-      "an\n"
-      "instance buffer of which ranges are drawn.")
+      "An order of a World's objects, slot by slot as its chunks hold them, that changes only by report:\n"
+      "for an instance buffer of which ranges are drawn.")
       .def(py::init<>())
       .def(
           "update", [](Order& order, SharedWorld& world) { return follow_world(order, world, false); },
-          "Follows what has changed in the world and reports the slots that have another object, uint32 (n, "
-          "2):\n"
-          "slot and id, or NO_OBJECT where it is free now. To be called after all changes of a frame, boxes "
-          "that\n"
-          "moved included. The first report has all objects.",
+          "Follows what has changed in the world and reports the slots that have another object, uint32 (n,\n"
+          "2): slot and id, or NO_OBJECT where it is free now. To be called after all changes of a frame,\n"
+          "boxes that moved included. The first report has all objects.",
           py::arg("world"))
       .def(
           "renumber", [](Order& order, SharedWorld& world) { return follow_world(order, world, true); },
           "The same, but numbers all objects anew, without gaps.", py::arg("world"))
       .def("slots", &slots_of,
-           "The slots of objects, uint32 (n,); NO_OBJECT for stale handles, or where the world has changed "
-           "since\n"
-           "update().",
+           "The slots of objects, uint32 (n,); NO_OBJECT for stale handles, or where the world has changed\n"
+           "since update().",
            py::arg("world"), py::arg("handles"))
       .def_property_readonly("objects", &objects_of, "The id of each slot, or NO_OBJECT: uint32 (slots,).")
       .def("__len__", [](const Order& order) {
@@ -112,11 +108,10 @@ void add_ranges(py::module_& m) {
   py::class_<LockedRangeCuller>(m, "RangeCuller", "Culls worlds into ranges of their order.")
       .def(py::init<>())
       .def("cull", &cull_ranges,
-           "Of what the views may see, uint32 (m, 2): a first slot and how many follow. masks=True: also "
-           "which\n"
-           "views see each range, uint8. whole_chunks=True: chunks of which a view may see something are in "
-           "it\n"
-           "whole; far fewer ranges. Refused where the world has changed since order.update(world).",
+           "Of what the views may see, uint32 (m, 2): a first slot and how many follow. masks=True: also\n"
+           "which views see each range, uint8. whole_chunks=True: chunks of which a view may see something\n"
+           "are in it whole; far fewer ranges. Refused where the world has changed since\n"
+           "order.update(world).",
            py::arg("world"), py::arg("order"), py::arg("views"), py::arg("masks") = false,
            py::arg("whole_chunks") = false);
 }

@@ -67,19 +67,16 @@ void add_rays(py::module_& m) {
   py::class_<LockedBvh>(m, "BoxBvh", "Boxes, as World has them, to cast rays at.")
       .def(py::init<>())
       .def("build", &build,
-           "Takes the boxes, rounded outwards to single precision about `origin`. Refused: boxes that are "
-           "not\n"
-           "min <= max or out of reach.",
+           "Takes the boxes, rounded outwards to single precision about `origin`. Refused: boxes that are\n"
+           "not min <= max or out of reach.",
            py::arg("boxes"), py::arg("origin") = py::make_tuple(0, 0, 0))
       .def("refit", &refit, "Takes over moved boxes, as many as were built with.", py::arg("boxes"))
       .def("__len__",
            [](const LockedBvh& bvh) { return looking(bvh, [](const BoxBvh& b) { return b.size(); }); })
       .def("cast", &cast,
-           "(objects, distances) of n rays: the box that each meets first, uint32 (n,), NO_OBJECT for none, "
-           "and\n"
-           "how far along, float32 (n,), in units of its direction, -1 for none. origins, directions: "
-           "float32\n"
-           "(n, 3), metres about the boxes' origin; max_distances: one a ray, one for all, or None.",
+           "(objects, distances) of n rays: the box that each meets first, uint32 (n,), NO_OBJECT for none,\n"
+           "and how far along, float32 (n,), in units of its direction, -1 for none. origins, directions:\n"
+           "float32 (n, 3), metres about the boxes' origin; max_distances: one a ray, one for all, or None.",
            py::arg("origins"), py::arg("directions"), py::arg("max_distances") = py::none())
       .def("visible_set", &visible_set,
            "The boxes that at least one of columns x rows rays through the view's image meets first, uint32\n"

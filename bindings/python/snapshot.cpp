@@ -153,10 +153,9 @@ void add_snapshots(py::module_& m, py::class_<Guarded<World>>& world) {
            py::arg("bytes"), py::arg("world"))
       .def(
           "update", &update,
-          "To be called once a frame, before culling: puts in one sector that work() made ready, wants what "
-          "the\n"
-          "views touch and what lies within `ahead` metres, nearest first, as far as `budget` bytes go, and\n"
-          "takes others out.",
+          "To be called once a frame, before culling: puts in one sector that work() made ready, wants what\n"
+          "the views touch and what lies within `ahead` metres, nearest first, as far as `budget` bytes go,\n"
+          "and takes others out.",
           py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 3200.0)
       .def("work", &work,
            "Checks one of the wanted sectors and copies it, on any thread; False where none waits.")

@@ -237,9 +237,7 @@ py::object cull(LockedCuller& culler, const SharedWorld& world, const py::object
   }
 }
 
-}  // namespace
-
-void add_world(py::module_& m) {
+void add_constants(py::module_& m) {
   m.attr("ALL_LAYERS") = kAllLayers;
   m.attr("NO_OBJECT") = kNoObject;
   m.attr("NO_OCCLUDER") = kNoOccluder;
@@ -248,12 +246,14 @@ void add_world(py::module_& m) {
   m.attr("handle_dtype") =
       py::dtype(py::list(py::make_tuple("index", "generation")), py::list(py::make_tuple(uint32, uint32)),
                 py::list(py::make_tuple(0, 4)), sizeof(Handle));
+}
 
+void add_world_class(py::module_& m) {
   py::class_<SharedWorld> world_class(
       m, "World",
-      "Boxes that come, move and go within 1e11 m of 0, by stable handle. Handles are uint32 (n, 2), index "
-      "and\n"
-      "generation, or (n,) of two uint32 fields (handle_dtype); the index is the id that cull() returns.\n"
+      "Boxes that come, move and go within 1e11 m of 0, by stable handle. Handles are uint32 (n, 2),\n"
+      "index and generation, or (n,) of two uint32 fields (handle_dtype); the index is the id that cull()\n"
+      "returns.\n"
       "Boxes are a BoxView or an array (n, 2, 3) of minimum and maximum, float32 or float64, in metres.\n"
       "Refused, changing nothing: lengths that differ, boxes that are not min <= max, stale handles.");
   world_class.def(py::init<>())
@@ -291,7 +291,9 @@ void add_world(py::module_& m) {
       .def_property_readonly("id_limit", &id_limit_of);
   add_world_occluders(world_class);
   add_snapshots(m, world_class);
+}
 
+void add_cull_view(py::module_& m) {
   py::class_<ViewOfWorld>(m, "CullView", "A camera, an eye, a shadow cascade: whatever sees the world.")
       .def(
           py::init([](const WorldView& view, const py::object& layers, float min_area,
@@ -326,22 +328,24 @@ void add_world(py::module_& m) {
             v.distance_view = whole_number_or_none(given, "distance_view");
           })
       .def_readwrite("casters", &ViewOfWorld::casters);
+}
 
+void add_levels_options(py::module_& m) {
   py::class_<LevelOptions>(m, "Levels", "How a cull chooses levels of detail, for all its views.")
       .def(py::init([](const py::object& view, const py::object& key, float hysteresis, float fade,
                        float scale, bool cut) {
              return LevelOptions{
                  whole_number_of(view, "view"), whole_number_of(key, "key"), hysteresis, fade, scale, cut};
            }),
-           "view: the place of the view by whose image objects have their sizes; key: whose memory, 0 to 7, "
-           "of\n"
-           "cameras that take turns; hysteresis: how far beyond a limit a level is kept, as a share of it; "
-           "fade:\n"
-           "how far above its lower limit a level begins to fade; scale: times the sizes; cut: nothing is\n"
-           "remembered from before.",
+           "view: the place of the view by whose image objects have their sizes; key: whose memory, 0 to\n"
+           "7, of cameras that take turns; hysteresis: how far beyond a limit a level is kept, as a share\n"
+           "of it; fade: how far above its lower limit a level begins to fade; scale: times the sizes; cut:\n"
+           "nothing is remembered from before.",
            py::arg("view") = 0, py::arg("key") = 0, py::arg("hysteresis") = 0.0f, py::arg("fade") = 0.0f,
            py::arg("scale") = 1.0f, py::arg("cut") = false);
+}
 
+void add_culler(py::module_& m) {
   py::class_<LockedCuller>(m, "Culler", "Remembers from frame to frame what helps the next.")
       .def(py::init<>())
       .def(
@@ -351,13 +355,11 @@ void add_world(py::module_& m) {
           "v for view v; with values=True the objects' values instead of their ids. views: a View, a\n"
           "CullView, or a sequence of them. Refused: no or too many views, one that is no camera, an\n"
           "occlusion that was not begun with its view.\n"
-          "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides "
-          "left\n"
-          "out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that drawing an\n"
-          "object costs; 0: what report_frame_time() taught. coverage, scale: as Occlusion.begin has them.\n"
-          "levels=Levels(...): also each object's level of detail and, of 255, the share of the next coarser "
-          "one\n"
-          "that it fades into, uint8 (k,) each.",
+          "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides\n"
+          "left out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that\n"
+          "drawing an object costs; 0: what report_frame_time() taught. coverage, scale: as\n"
+          "Occlusion.begin has them. levels=Levels(...): also each object's level of detail and, of 255,\n"
+          "the share of the next coarser one that it fades into, uint8 (k,) each.",
           py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
           py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "centres",
           py::arg("scale") = 1, py::arg("levels") = py::none())
@@ -368,6 +370,16 @@ void add_world(py::module_& m) {
           },
           "Teaches what an object costs: how long the frame took that drew what the last cull left.",
           py::arg("seconds"));
+}
+
+}  // namespace
+
+void add_world(py::module_& m) {
+  add_constants(m);
+  add_world_class(m);
+  add_cull_view(m);
+  add_levels_options(m);
+  add_culler(m);
 }
 
 }  // namespace sightline::python
