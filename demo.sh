@@ -7,7 +7,14 @@ if [ "${1:-}" = --web ]; then
   exec scripts/demo-web.sh "${2:-0}"
 fi
 scene=${1:-pak1-maps.pk3:maps/oasago2.bsp}
-if [ -e "$scene" ]; then scene=$(realpath "$scene"); fi
+# What stands before a colon may be an archive; or the scene is one that the program makes or finds by itself.
+file=${scene%%:*}
+if [ -f "$file" ]; then
+  scene=$(realpath "$file")${scene#"$file"}
+elif [ "$file" = "$scene" ]; then
+  echo "demo.sh: $scene: no such file, expected a .glb, .gltf or .bsp, ARCHIVE.pk3:maps/NAME.bsp or world:NAME" >&2
+  exit 2
+fi
 cd "$(dirname "$0")"
 . scripts/packages.sh
 start=$(date +%s)

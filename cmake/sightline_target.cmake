@@ -30,7 +30,7 @@ function(sightline_part name)
   add_library(sightline_${name} OBJECT ${ARGN})
   sightline_target(sightline_${name})
   target_compile_options(sightline_${name} PRIVATE -fno-exceptions -fno-rtti -fvisibility=hidden
-                         "SHELL:-include ${PROJECT_SOURCE_DIR}/bindings/c/exports.hpp")
+                         "SHELL:-include \"${PROJECT_SOURCE_DIR}/bindings/c/exports.hpp\"")
   # Highway includes a source again for each vector target: it has to stand alone.
   set_target_properties(sightline_${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(sightline_${name} PRIVATE sightline_dependencies)

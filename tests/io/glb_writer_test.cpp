@@ -1,6 +1,7 @@
 // What is written and read again is the same scene; what cannot be written leaves nothing behind.
 #include <cmath>
 #include <csignal>
+#include <fstream>
 
 #include <sys/resource.h>
 
@@ -86,6 +87,23 @@ TEST(GlbWriter, MaterialsComeBackToTheBit) {
       for (std::uint32_t v = mesh.first_vertex; v < mesh.first_vertex + mesh.vertex_count; ++v)
         EXPECT_EQ(again.texture_coordinates[v], scene.texture_coordinates[v]) << v;
     }
+  }
+}
+
+// What says nothing of it is of metal, by the format's default, and black where there is nothing to reflect.
+TEST(GlbWriter, NoMaterialIsOfMetal) {
+  const TemporaryFolder folder;
+  for (const Scene& scene : {load_scene("world:forest?trees=2"), test::card_scenes().front()}) {
+    write_glb(scene, folder / "scene.glb");
+    std::ifstream file(folder / "scene.glb", std::ios::binary);
+    std::uint32_t head[5];  // the file's three, and the length and the kind of the first chunk
+    ASSERT_TRUE(file.read(reinterpret_cast<char*>(head), sizeof head));
+    std::string text(head[3], ' ');
+    ASSERT_TRUE(file.read(text.data(), head[3]));
+    const nlohmann::json document = nlohmann::json::parse(text);
+    ASSERT_FALSE(document["materials"].empty());
+    for (const auto& material : document["materials"])
+      EXPECT_EQ(material["pbrMetallicRoughness"].value("metallicFactor", 1.0), 0.0) << material;
   }
 }
 

@@ -170,6 +170,7 @@ TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
     });
     method->read_back(frame);
     EXPECT_EQ(frame.visible, expected.visible) << name;
+    EXPECT_EQ(frame.stats.draw_calls, expected.visible.size()) << name;
   }
 }
 

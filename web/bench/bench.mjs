@@ -135,7 +135,7 @@ const hitsIn = (all) => {
 };
 
 // --- a loop by hand, in a module of its own ---
-const build = new URL('../../build', import.meta.url).pathname;
+const build = `${import.meta.dirname}/../../build`;
 const plain = (await WebAssembly.instantiate(readFileSync(join(build, 'wasm32/web/simd128.wasm')), {})).instance.exports;
 const heap = Math.ceil(plain.heap() / 64) * 64, planesAt = heap + 24 * count, idsAt = planesAt + 128;
 plain.memory.grow(Math.ceil((idsAt + 4 * count - plain.memory.buffer.byteLength) / 65536));

@@ -12,7 +12,7 @@ const all = ['instanced', 'batched', 'meshes', 'ranges', 'restless'], given = al
 // The browser's clock ticks every 5 us, too seldom for a frame that takes 400: there ten frames make one time.
 const byTens = (all) => Array.from({ length: all.length / 10 }, (_, k) => all.slice(10 * k, 10 * k + 10).reduce((sum, one) => sum + one / 10, 0));
 const kinds = given.length > 0 ? given : all, times = {}, beside = {};
-await withPage(new URL('city.page.mjs', import.meta.url).pathname, async (tab) => {
+await withPage(`${import.meta.dirname}/city.page.mjs`, async (tab) => {
   await tab.waitForFunction(() => window.time);
   for (const aerial of [false, true]) {
     for (const kind of kinds) {

@@ -25,8 +25,15 @@ async function show(name) {
     await part.start();
     part.started = true;
   } catch (error) {
-    part.said.textContent = error.message, (part.said.hidden = false);
+    stop(part, error.message);
   }
+}
+
+/** Why nothing more is drawn there. */
+function stop(part, words) {
+  part.started = false;
+  if (part.busy) part.busy.hidden = true;
+  part.said.textContent = words, (part.said.hidden = false);
 }
 
 function frames() {
@@ -54,6 +61,10 @@ function turn(event) {
   if (at < 0 || to === undefined) return;
   event.preventDefault(), tabs[to].focus(), tabs[to].click();
 }
+
+// Drivers take WebGL from a page, after a fault for example. The event does not bubble.
+for (const [, , part] of parts)
+  part.element.addEventListener('webglcontextlost', () => stop(part, 'The browser took WebGL from this page. Load it again to go on.'), true);
 
 const nav = document.querySelector('nav');
 nav.addEventListener('keydown', turn);

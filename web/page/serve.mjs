@@ -2,8 +2,9 @@
 import { createReadStream, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import { fileURLToPath } from 'node:url';
 
-const root = new URL('../../build/web/page', import.meta.url).pathname;
+const root = fileURLToPath(new URL('../../build/web/page', import.meta.url));
 const kinds = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8', '.wasm': 'application/wasm' };
 
 // The file that an address names; undefined where it is no address.
@@ -32,6 +33,11 @@ export function serve(port = 0) {
 }
 
 if (import.meta.filename === process.argv[1]) {
-  const { address } = await serve(Number(process.argv[2] ?? 0));
+  const given = process.argv[2] ?? '0', port = Number(given);
+  if (!/^\d+$/.test(given) || port > 65535) {
+    console.error(`serve.mjs: no port "${given}", expected a whole number up to 65535`);
+    process.exit(2);
+  }
+  const { address } = await serve(port);
   console.log(`\nThe page: ${address}\nControl-C ends it.`);
 }

@@ -30,7 +30,7 @@ test('without SIMD it says so, and never loads', () => {
     const { ready, supported, World } = await import('sightline-culling');
     const code = (error) => error.code + ': ' + error.message;
     console.log(supported, await ready.catch(code));
-    try { new World(); } catch (error) { console.log(code(error)); }`], { encoding: 'utf8', cwd: new URL('..', import.meta.url).pathname });
+    try { new World(); } catch (error) { console.log(code(error)); }`], { encoding: 'utf8', cwd: `${import.meta.dirname}/..` });
   assert.match(said, /^false unsupported: .*no WebAssembly with SIMD.*draw without culling\nunsupported: .*draw without culling\n$/);
 });
 
@@ -47,7 +47,7 @@ test('without SIMD a three.js scene is drawn whole, and the console says so once
       scene.onBeforeRender({ sortObjects: true }, scene, new PerspectiveCamera(), null);
       console.log(scene.children === children && children.length === 1);
       scene.onAfterRender({ sortObjects: true }, scene, new PerspectiveCamera());
-    }`], { encoding: 'utf8', cwd: new URL('..', import.meta.url).pathname });
+    }`], { encoding: 'utf8', cwd: `${import.meta.dirname}/..` });
   assert.match(said, /^(warned: Sightline draws without culling: .*no WebAssembly with SIMD.*\n){2}(true\n){3}$/); // each of the two
 });
 

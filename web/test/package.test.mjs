@@ -9,7 +9,7 @@ import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { checkPackage, Package } from '@arethetypeswrong/core';
 
-const web = new URL('..', import.meta.url).pathname;
+const web = `${import.meta.dirname}/../`;
 const tools = join(web, 'node_modules');
 const run = (cwd, command, ...args) => execFileSync(command, args, { cwd, encoding: 'utf8', stdio: 'pipe' });
 const tool = (cwd, script, ...args) => run(cwd, process.execPath, join(tools, script), ...args);

@@ -7,11 +7,12 @@ import { test } from 'node:test';
 import { serve } from '../page/serve.mjs';
 import { withAddress } from './browser/chromium.mjs';
 
-const pictures = new URL('../../build/web/screenshots', import.meta.url).pathname;
+const pictures = `${import.meta.dirname}/../../build/web/screenshots`;
 mkdirSync(pictures, { recursive: true });
 
-/** A GLB of so many cubes in a row, each a mesh of its own; `without` of what it says of itself. */
-function glb(cubes, without = []) {
+/** A GLB of so many cubes in a row, each a mesh of its own, the first of them eight times over where
+ * that is `instanced`; `without` of what it says of itself. */
+function glb(cubes, without = [], instanced = false) {
   const corners = Array.from({ length: 8 }, (_, i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]).flat();
   const indices = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
   const bytes = Buffer.concat([Buffer.from(Float32Array.from(corners).buffer), Buffer.from(Uint16Array.from(indices).buffer)]);
@@ -23,6 +24,10 @@ function glb(cubes, without = []) {
     accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
       { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }] };
   for (const key of without) delete scene[key];
+  if (instanced) {
+    scene.nodes[0].extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: 0 } } }; // the corners
+    scene.extensionsUsed = ['EXT_mesh_gpu_instancing'];
+  }
   const text = Buffer.from(JSON.stringify(scene)), json = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
   const chunk = (data, kind) => Buffer.concat([Buffer.from(Uint32Array.of(data.length, kind).buffer), data]);
   const body = Buffer.concat([chunk(json, 0x4e4f534a), chunk(bytes, 0x004e4942)]);
@@ -117,6 +122,8 @@ async function clickDrop(page) {
   await page.waitForFunction(() => document.querySelector('#drop .hint').textContent.startsWith('row.glb: 200 meshes, 2,400 triangles'));
   await page.click('#gain');
   await page.waitForSelector('#drop table');
+  await page.setInputFiles('#file', { name: 'eight.glb', mimeType: 'model/gltf-binary', buffer: glb(1, [], true) });
+  await page.waitForFunction(() => document.querySelector('#drop .hint').textContent.startsWith('eight.glb: 8 meshes, 96 triangles'));
   await page.setInputFiles('#file', { name: 'none.glb', mimeType: 'model/gltf-binary', buffer: Buffer.from('no model, but some words') });
   await page.waitForSelector('#drop .said:not([hidden])');
   assert.match(await text(page, '#drop .said'), /^none\.glb cannot be shown: it is no binary glTF/);
@@ -142,6 +149,16 @@ async function goAbout(page) {
   assert.equal(await page.getByRole('slider', { name: 'Rays along each side', exact: true }).count(), 1);
 }
 
+// As a driver takes it.
+async function loseWebGL(page) {
+  await page.evaluate(() => {
+    location.hash = '#/drop';
+    document.querySelector('#drop canvas.stage').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+  });
+  await page.waitForFunction(() => !document.querySelector('#drop .said').hidden && !window.sightline.drop.started);
+  assert.equal(await text(page, '#drop .said'), 'The browser took WebGL from this page. Load it again to go on.');
+}
+
 test('its three parts work', async () => {
   await onPage(async (page) => {
     await clickModels(page);
@@ -149,6 +166,7 @@ test('its three parts work', async () => {
     await clickCity(page);
     await clickDrop(page);
     await goAbout(page);
+    await loseWebGL(page);
   }, { width: 1400, height: 900 });
 });
 

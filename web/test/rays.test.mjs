@@ -9,7 +9,7 @@ import { Models } from '../page/models/models.js';
 import { withPage } from './browser/chromium.mjs';
 import { differing, read } from './rays-file.mjs';
 
-const file = new URL('../../build/web/rays.bin', import.meta.url).pathname;
+const file = `${import.meta.dirname}/../../build/web/rays.bin`;
 const triangles = Number(process.env.SIGHTLINE_RAY_TRIANGLES ?? 0);
 const natively = () => {
   const read = readFileSync(file);
@@ -54,7 +54,7 @@ test("the page's models are the native ones", async () => {
 });
 
 test('iwcpa, bvha and saa on the GPU meet what they meet natively', async () => {
-  await withPage(new URL('browser/rays.mjs', import.meta.url).pathname, async (tab) => {
+  await withPage(`${import.meta.dirname}/browser/rays.mjs`, async (tab) => {
     await tab.waitForFunction(() => window.compare);
     const result = await tab.evaluate(() => window.compare());
     assert.deepEqual(result.bad, []);

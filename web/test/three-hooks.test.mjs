@@ -8,7 +8,7 @@ import { bytes, SightlineError } from 'sightline-culling';
 import { ready, SightlineCuller } from 'sightline-culling/three';
 import { withPage } from './browser/chromium.mjs';
 
-const page = new URL('browser/hooks.mjs', import.meta.url).pathname;
+const page = `${import.meta.dirname}/browser/hooks.mjs`;
 const renderer = { isWebGLRenderer: true, sortObjects: true }, camera = new THREE.PerspectiveCamera(60, 1.5, 0.1, 500);
 const loaded = () => new Promise((resolve) => setTimeout(resolve, 10));
 

@@ -7,7 +7,7 @@ import { ready, SightlineCuller } from 'sightline-culling/three';
 import { withPage } from './browser/chromium.mjs';
 
 async function isAsWithout(cases) {
-  await withPage(new URL(`browser/${cases}.mjs`, import.meta.url).pathname, async (tab) => {
+  await withPage(`${import.meta.dirname}/browser/${cases}.mjs`, async (tab) => {
     await tab.waitForFunction(() => window.play);
     for (const [name, { differs, off, on, culled, shy }] of Object.entries(await tab.evaluate(() => window.play()))) {
       assert.deepEqual(differs.filter((pixels) => pixels > 0), [], `${name}: ${differs}`);

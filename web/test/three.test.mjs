@@ -7,7 +7,7 @@ import { add, look, places, random } from '../scenes/city.mjs';
 import { withPage } from './browser/chromium.mjs';
 
 const full = Boolean(process.env.SIGHTLINE_FULL);
-const page = new URL('browser/equal.mjs', import.meta.url).pathname;
+const page = `${import.meta.dirname}/browser/equal.mjs`;
 
 test('three.js draws the same with the culler, and less', async () => {
   await withPage(page, async (tab) => {
@@ -51,7 +51,7 @@ test('a mirror shows all that it would show without the culler', async () => {
 });
 
 test('WebGPURenderer draws the same with the culler', async () => {
-  await withPage(new URL('browser/webgpu.mjs', import.meta.url).pathname, async (tab) => {
+  await withPage(`${import.meta.dirname}/browser/webgpu.mjs`, async (tab) => {
     await tab.waitForFunction(() => window.compare);
     const result = await tab.evaluate((count) => window.compare(count), full ? 300 : 40);
     assert.equal(result.backend, 'webgpu');

@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { withPage } from './browser/chromium.mjs';
 
 test('tiles behind a wall are neither refined nor loaded, and the picture is the same', async () => {
-  await withPage(new URL('browser/tiles.mjs', import.meta.url).pathname, async (tab) => {
+  await withPage(`${import.meta.dirname}/browser/tiles.mjs`, async (tab) => {
     await tab.waitForFunction(() => window.compare);
     const views = await tab.evaluate(() => window.compare());
     if (process.env.VERBOSE) console.log(views);

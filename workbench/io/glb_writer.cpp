@@ -123,7 +123,8 @@ private:
       const auto& [surface, sides, image, cutoff] = key;
       static constexpr std::array kModes{"OPAQUE", "MASK", "BLEND"};
       Json material = {{"alphaMode", kModes[static_cast<std::size_t>(surface)]},
-                       {"doubleSided", sides == Sides::both}};
+                       {"doubleSided", sides == Sides::both},
+                       {"pbrMetallicRoughness", {{"metallicFactor", 0}}}};  // or else it is of metal
       if (surface == Surface::cut_out) material["alphaCutoff"] = cutoff / 255.0;
       if (image != kNoAlphaImage)
         material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture_of.at(image)}};

@@ -20,7 +20,11 @@ export class Stage {
   }
   /** WebGL begins here; throws where there is none. */
   start() {
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    try {
+      this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    } catch {
+      throw new Error('This browser has no WebGL 2, which draws the scene.');
+    }
   }
   show(scene, near = 0.1, far = 4000) {
     this.culler?.dispose();

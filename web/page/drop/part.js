@@ -102,16 +102,17 @@ export class DropPart {
     this.tour = root.userData.tour instanceof Function ? root.userData.tour : undefined;
     this.box = new THREE.Box3().setFromObject(root);
     this.meshes = [], (this.triangles = 0);
+    let drawn = 0;
     root.traverse((each) => {
       if (!each.isMesh) return;
-      this.meshes.push(each);
-      this.triangles += (each.geometry.index?.count ?? each.geometry.attributes.position.count) / 3;
+      this.meshes.push(each), (drawn += each.count ?? 1);  // an instanced mesh, so often
+      this.triangles += ((each.geometry.index?.count ?? each.geometry.attributes.position.count) / 3) * (each.count ?? 1);
     });
     const size = this.box.getSize(new THREE.Vector3()).length() || 1;
     this.stage.fly.speed = size / 8;
     this.stage.ground = undefined, this.stage.show(scene, size / 5000, size * 3);
     this.#overviewFor(size);
-    this.name.textContent = `${name}: ${count(this.meshes.length)} meshes, ${count(this.triangles)} triangles`;
+    this.name.textContent = `${name}: ${count(drawn)} meshes, ${count(this.triangles)} triangles`;
     this.freezeToggle.set(false), this.#orbit(true), this.#mode(), this.graph.clear(), this.result.replaceChildren();
     this.made = true;
   }

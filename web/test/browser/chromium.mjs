@@ -9,8 +9,9 @@ import { chromium } from 'playwright-core';
 const flags = ['--headless=new', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader',
   '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader'];
-// Chromium's own words, whole.
+// Chromium's own words, whole, and what three.js says when a test takes WebGL from it.
 const allowed = [
+  /^THREE\.WebGLRenderer: Context Lost\.$/,
   /^\[.*\]Automatic fallback to software WebGL has been deprecated\. Please use the --enable-unsafe-swiftshader flag to opt in to lower security guarantees for trusted content\.$/,
   /^\[\.WebGL-0x[0-9a-f]+\]GL Driver Message \(OpenGL, Performance, GL_CLOSE_PATH_NV, High\): GPU stall due to ReadPixels/];
 

@@ -40,6 +40,7 @@ public:
       frame.stats.triangles += renderer_.scene().triangles(object);
     }
     frame.stats.objects = objects;
+    frame.stats.draw_calls = frame.visible.size();
     frame.stats.rays = rays_->ray_count();
     frame.stats.culled_occlusion = objects - frame.visible.size();
   }
