@@ -356,7 +356,7 @@ void add_culler(py::module_& m) {
           "CullView, or a sequence of them. Refused: no or too many views, one that is no camera, an\n"
           "occlusion that was not begun with its view.\n"
           "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides\n"
-          "left out; never slower than 1.02 x frustum culling, in counted work. object_cost: ns that\n"
+          "left out; at most 1.02 x frustum culling over all frames, in counted work. object_cost: ns that\n"
           "drawing an object costs; 0: what report_frame_time() taught. coverage, scale: as\n"
           "Occlusion.begin has them. levels=Levels(...): also each object's level of detail and, of 255,\n"
           "the share of the next coarser one that it fades into, uint8 (k,) each.",

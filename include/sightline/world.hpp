@@ -93,7 +93,7 @@ public:
   /// Puts boxes.size() objects in and writes their handles. All have one length: a handle, and an element of
   /// each column given, a box. Handles, too, may be members of the caller's structs. Errors: bad_argument
   /// (lengths, strides, pointers), bad_box (not min <= max within ±kWorldReach), too_many (beyond 2³¹
-  /// objects). Cost: linear, some 200 ns an object. Allocates: about 53 bytes an object where a sector's come
+  /// objects). Cost: linear, some 400 ns an object. Allocates: about 53 bytes an object where a sector's come
   /// in bulk, up to 70 where they come few at a time; less for ids used again.
   Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns);
   /// The same of objects that have no columns. Errors, Cost, Allocates: the same.
@@ -101,7 +101,7 @@ public:
   /// Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with all
   /// that moved, or with nothing: what has come to rest is filed again a part a frame, by the first call
   /// after a cull. Listing objects in the same order each frame is fastest. Errors: bad_argument, bad_box,
-  /// stale_handle. Cost: linear, some 10 ns an object that moves every frame, 50 to 150 ns one that seldom
+  /// stale_handle. Cost: linear, some 10 ns an object that moves every frame, some 200 ns one that seldom
   /// does. Allocates: where objects gather, or move, as never before; some 28 bytes for each object that
   /// moves every frame.
   Status move(Strided<const Handle> handles, const BoxView& boxes);
@@ -317,18 +317,18 @@ public:
   /// `layers`, `distances`, `min_area` and `casters`; nothing at any place on the image where occlusion is
   /// asked for with Coverage::area. Errors: bad_argument (no or too many views; an option out of range),
   /// bad_view, buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows
-  /// with what is visible and with the boundary of the views, not with the world: 20 to 30 µs for the few
-  /// thousand of a million still boxes that a camera sees. Threads: only reads the world and the buffers.
+  /// with what is visible and with the boundary of the views, not with the world: some 25 µs for the
+  /// 100,000 of a million still boxes that a camera sees. Threads: only reads the world and the buffers.
   /// Allocates: nothing once it has grown to the world's size.
   Result<CullResult> cull(const World& world, std::span<const CullView> views, const CullOptions& options,
                           const CullOutput& output) noexcept;
   ///
   /// With Occlusion::automatic what the world's objects carry is drawn, as far as that pays, and what lies
-  /// behind it is left out, too. This is never slower, in counted work × options.costs: no frame costs more
-  /// than 1.05 × frustum culling alone, and all of this culler's frames together no more than 1.02 ×. What
-  /// was seen the last time, and so is worth drawing, is kept for each place in `views`: a culler should see
-  /// the same cameras at the same places. Errors, too: bad_argument for costs out of range, or where a view
-  /// brings a buffer. Allocates, too: until it has drawn its largest image and mesh.
+  /// behind it is left out, too. Where that does not pay it costs little, in counted work × options.costs: no
+  /// frame costs more than 1.05 × frustum culling alone, and all of this culler's frames together no more
+  /// than 1.02 ×. What was seen the last time, and so is worth drawing, is kept for each place in `views`: a
+  /// culler should see the same cameras at the same places. Errors, too: bad_argument for costs out of range,
+  /// or where a view brings a buffer. Allocates, too: until it has drawn its largest image and mesh.
   ///
   /// The same for one view, without options. Errors, Cost, Threads, Allocates: the same.
   Result<CullResult> cull(const World& world, const CullView& view, std::span<std::uint32_t> ids) noexcept {

@@ -38,7 +38,7 @@ struct Material {
     options.width = 96, options.height = 54, options.repeats = 1, options.warm_up = 0;
     comparison = measure::compare(bench, camera::make_path(scene, "near", 3), options);
     const std::size_t view = picture_view(comparison);
-    snapshot = take_snapshot(bench, comparison.cameras[view], view, 192, 108);
+    snapshot = take_snapshot(bench, comparison, view, 192, 108);
   }
 };
 
@@ -66,6 +66,21 @@ TEST(Report, WritesAPageThatLoadsNothingFromElsewhere) {
   EXPECT_THAT(page, HasSubstr("Beaten by no other"));
   for (const std::string& method : test::kExactMethods)
     EXPECT_THAT(page, HasSubstr("<td>" + method + "<td>"));
+}
+
+// Whatever the picture's size.
+TEST(Report, PicturesShowWhatTheTableCounts) {
+  const Material m;
+  for (const measure::Row& row : m.comparison.rows) {
+    if (row.view != m.snapshot.index) continue;
+    const auto of = std::ranges::find(m.snapshot.methods, row.method, &Snapshot::Method::name);
+    ASSERT_NE(of, m.snapshot.methods.end());
+    const auto count = [&](Outcome outcome) { return of->counts[static_cast<std::size_t>(outcome)]; };
+    EXPECT_EQ(count(Outcome::visible) + count(Outcome::excess), row.kept) << row.method;
+    EXPECT_EQ(count(Outcome::visible) + count(Outcome::lost), row.truly_visible) << row.method;
+  }
+  EXPECT_NE(m.snapshot.truth.visible_count(), m.comparison.rows[0].truly_visible)
+      << "sizes tell no difference";
 }
 
 TEST(Report, NamesAreEscapedEverywhere) {
@@ -131,14 +146,16 @@ TEST(Report, ReplacesAnEarlierOneWholeAndNothingElse) {
 }
 
 TEST(Snapshot, OutcomesAddUpAndAgreeWithTheTruth) {
-  const Material m;
+  Material m;
+  const View compared = *make_view(m.snapshot.camera, m.comparison.width, m.comparison.height);
+  const oracle::ItemBuffer truth = m.bench.oracle().look(compared);
   for (const Snapshot::Method& method : m.snapshot.methods) {
     ASSERT_EQ(method.outcomes.size(), m.scene.size());
     std::array<std::size_t, kOutcomes> counts{};
     for (ObjectId object = 0; object < m.scene.size(); ++object) {
       const Outcome outcome = method.outcomes[object];
       ++counts[static_cast<std::size_t>(outcome)];
-      EXPECT_EQ(m.snapshot.truth.sees(object), outcome == Outcome::visible || outcome == Outcome::lost);
+      EXPECT_EQ(truth.sees(object), outcome == Outcome::visible || outcome == Outcome::lost);
     }
     EXPECT_EQ(counts, method.counts);
     EXPECT_EQ(counts[static_cast<std::size_t>(Outcome::lost)], 0u);

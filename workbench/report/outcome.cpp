@@ -4,16 +4,18 @@
 
 namespace sightline::report {
 
-Snapshot take_snapshot(measure::Bench& bench, const Camera& camera, std::size_t index, std::uint32_t width,
-                       std::uint32_t height) {
+Snapshot take_snapshot(measure::Bench& bench, const measure::Comparison& comparison, std::size_t index,
+                       std::uint32_t width, std::uint32_t height) {
+  constexpr int kFrames = 4;
   Snapshot snapshot;
   snapshot.index = index;
-  snapshot.camera = camera;
-  snapshot.view = or_throw(make_view(camera, width, height));
+  snapshot.camera = comparison.cameras[index];
+  snapshot.view = or_throw(make_view(snapshot.camera, width, height));
   snapshot.truth = bench.oracle().look(snapshot.view);
+  const View compared = or_throw(make_view(snapshot.camera, comparison.width, comparison.height));
   for (measure::Subject& subject : bench.subjects()) {
-    bench.run(subject, snapshot.view);
-    const oracle::Judgement judged = bench.judge(subject, snapshot.view);
+    for (int frame = 0; frame < kFrames; ++frame) bench.run(subject, compared);
+    const oracle::Judgement judged = bench.judge(subject, compared);
     Snapshot::Method method{subject.name, std::vector<Outcome>(bench.scene().size(), Outcome::culled), {}};
     for (const ObjectId object : subject.frame.visible) method.outcomes[object] = Outcome::visible;
     for (const ObjectId object : judged.loss.excess) method.outcomes[object] = Outcome::excess;

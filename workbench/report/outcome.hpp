@@ -9,7 +9,7 @@
 #include <sightline/view.hpp>
 #include <sightline/workbench/scene.hpp>
 
-#include "workbench/measure/bench.hpp"
+#include "workbench/measure/compare.hpp"
 
 namespace sightline::report {
 
@@ -30,13 +30,15 @@ struct Snapshot {
   };
   std::size_t index = 0;  ///< of the camera on its path
   Camera camera;
-  View view;
+  View view;  ///< of the picture
   oracle::ItemBuffer truth;
   std::vector<Method> methods;
 };
 
-/// Looks through one camera. Throws Error where it makes no view.
-Snapshot take_snapshot(measure::Bench& bench, const Camera& camera, std::size_t index, std::uint32_t width,
-                       std::uint32_t height);
+/// Looks through the camera at this place of what was compared. The truth is a picture of the size given; who
+/// keeps what is asked in the size that was compared, after some frames, which methods may remember. Throws
+/// Error where the camera makes no view.
+Snapshot take_snapshot(measure::Bench& bench, const measure::Comparison& comparison, std::size_t index,
+                       std::uint32_t width, std::uint32_t height);
 
 }  // namespace sightline::report

@@ -159,6 +159,19 @@ std::string machine_html(const measure::Machine& m) {
                      static_cast<double>(m.memory) / 1e9, escape(m.os), escape(m.compiler));
 }
 
+std::string footer_html(const measure::Comparison& comparison) {
+  return std::string(
+             "<footer><p>Lost: visible in the item buffer, which rays through pixel centres or, where "
+             "frames were drawn, the rasteriser makes, and not in the method's set. Excess: kept though no "
+             "pixel shows it. Kept, tested, draw calls, triangles and excess are means over the views, "
+             "losses are sums. ") +
+         (comparison.drawn()
+              ? "Times are means of the views' medians"
+              : "Times are medians of the views' medians, with the least and the greatest of all repeats") +
+         "; methods take turns in one process, warm-up is not counted. Ratios within one run are the result; "
+         "absolute times belong to the machine above.</p></footer>\n";
+}
+
 }  // namespace
 
 std::string escape(std::string_view text) {
@@ -207,30 +220,19 @@ std::string make_page(const PageContent& content) {
       chart_html("triangles", "Triangles left to draw") + chart_html("draw-calls", "Draw calls") + "</div>\n";
   page += "<h2>The truth</h2>\n<figure class=\"item\"><img src=\"" + escape(content.item_buffer) +
           "\" alt=\"Item buffer: each object in a colour of its own\"><figcaption>The item buffer: "
-          "everything drawn, "
-          "nothing culled, each of the " +
-          format_count(static_cast<double>(content.snapshot.truth.visible_count())) +
-          " visible objects in a colour of its own. " + where_html(content.scene, content.snapshot) +
+          "everything drawn, nothing culled, each of the " +
+          format_count(static_cast<double>(content.snapshot.truth.visible_count())) + " objects visible at " +
+          fmt::format("{} × {}", content.snapshot.view.width, content.snapshot.view.height) +
+          " in a colour of its own. " + where_html(content.scene, content.snapshot) +
           "</figcaption></figure>\n";
-  page +=
-      "<h2>From above</h2>\n<p>The same view, each object coloured by its outcome under each method; x runs "
-      "to "
-      "the "
-      "right, z down. The grey outline is the view frustum.</p>\n<div class=\"outcomes\">\n";
+  page += "<h2>From above</h2>\n<p>The same view at " +
+          fmt::format("{} × {}", comparison.width, comparison.height) +
+          ", each object coloured by its outcome under each method; x runs to the right, z down. The grey "
+          "outline is the view frustum.</p>\n<div class=\"outcomes\">\n";
   for (std::size_t m = 0; m < content.snapshot.methods.size(); ++m) {
     page += outcome_html(content.snapshot.methods[m], content.top_views[m]);
   }
-  page +=
-      "</div>\n<footer><p>Lost: visible in the item buffer, which rays through pixel centres or, where "
-      "frames "
-      "were drawn, the rasteriser makes, and not in the "
-      "method's set. Excess: kept though no pixel shows it. Kept, tested, draw calls, triangles and excess "
-      "are means "
-      "over the views, losses are sums. Times are medians of the views' medians, with the least and the "
-      "greatest of "
-      "all repeats; methods take turns in one process, warm-up is not counted. Ratios within one run are the "
-      "result; "
-      "absolute times belong to the machine above.</p></footer>\n</main>\n";
+  page += "</div>\n" + footer_html(comparison) + "</main>\n";
   page += "<script type=\"application/json\" id=\"data\">" + data_json(comparison) + "</script>\n<script>\n";
   page.append(kChartScript).append("\n</script>\n<script>\n").append(kPageScript);
   return page + "</script></body></html>\n";

@@ -53,8 +53,8 @@ std::string drawn_verdict(const measure::Comparison& comparison, const std::vect
   const bool two = safe.size() > 1 && tied(safe[1]);
   std::string text =
       two ? fmt::format(
-                "Quickest on {}: {} and {}, {} and {} ms a frame, which differ by less than their own "
-                "frames do.",
+                "Quickest on {}: {} and {}, {} and {} ms a frame; they differ by less than the frames of "
+                "each do.",
                 comparison.device, best.method, safe[1].method, format_ms(best.frame_ms),
                 format_ms(safe[1].frame_ms))
           : fmt::format("Quickest on {}: {}, {} ms a frame, {:.0f} objects drawn where {:.0f} are visible.",

@@ -53,12 +53,12 @@ SIGHTLINE_API void sightline_world_destroy(sightline_world* world);
 
 /** Puts boxes->count objects in and writes their handles. `columns` may be NULL; all have one length. Errors:
  * BAD_ARGUMENT (pointers, strides, lengths), BAD_BOX (not min <= max within 1e11 m of 0), TOO_MANY (beyond
- * 2^31 objects). Cost: linear, some 200 ns an object. Allocates: about 60 bytes an object. */
+ * 2^31 objects). Cost: linear, some 400 ns an object. Allocates: about 60 bytes an object. */
 SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box_view* boxes,
                                                       const sightline_handles* handles,
                                                       const sightline_object_columns* columns);
 /** Gives each object a new box; one that is listed twice keeps the last. Errors: BAD_ARGUMENT, BAD_BOX,
- * STALE_HANDLE. Cost: linear, some 10 ns an object that moves every frame, 50 to 150 ns one that seldom does;
+ * STALE_HANDLE. Cost: linear, some 10 ns an object that moves every frame, some 200 ns one that seldom does;
  * to be called once a frame, with nothing too, for it files what has come to rest. Allocates: where objects
  * gather, or move, as never before. */
 SIGHTLINE_API sightline_status sightline_world_move(sightline_world* world, const sightline_handles* handles,
