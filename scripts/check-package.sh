@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check-package.sh BUILD: what users get. Installs BUILD into a scratch root, and builds and runs the examples against it:
 # by find_package and by pkg-config, in C++, C and Python. The same again from the Debian packages that cpack makes, each
-# of which holds what it should and nothing of another.
+# of which holds what it should and nothing of another. And the tree as a part of another, in a folder whose name has a space.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scratch=$(mktemp -d)
@@ -96,3 +96,22 @@ holds sightline 'bin/sightline$|include/sightline/workbench/|lib/(libsightline_w
 for package in "$scratch"/deb/*.deb; do dpkg-deb -x "$package" "$scratch/debian"; done
 consume "$scratch/debian/usr" "$scratch/debian/usr/lib/python3/dist-packages"
 echo "Debian packages: $(cd "$scratch/deb" && echo *.deb): the same"
+
+# Some of it is built: the rest has the same options.
+part="$scratch/a part"
+mkdir "$part"
+git ls-files -z --cached --others --exclude-standard | xargs -0 cp --parents -t "$part"
+mkdir "$scratch/whole"
+cat >"$scratch/whole/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(whole LANGUAGES CXX)
+add_subdirectory("${PART}" sightline)
+foreach(target sightline::sightline sightline::shared sightline::tbb)
+  if(NOT TARGET ${target})
+    message(FATAL_ERROR "no ${target}")
+  endif()
+endforeach()
+END
+{ cmake -S "$scratch/whole" -B "$scratch/whole/build" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DPART=$part" &&
+  cmake --build "$scratch/whole/build" --target sightline_frustum; } >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+echo "as a part of another tree, in a folder whose name has a space: it builds"

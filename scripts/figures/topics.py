@@ -312,7 +312,7 @@ def bake(quick):
     began = time.monotonic()
     said = sightline("bake", LEVEL.format("oa_dm1"), f"--output={file}", "--check=1000")
     seconds = time.monotonic() - began
-    size, share, raw = re.search(r"(\d+) bytes, ([\d.]+) of the open cells' raw bit matrix \((\d+) bytes\)",
+    size, share, raw = re.search(r"(\d+) bytes, ([\d.]+) times the open cells' raw bit matrix \((\d+) bytes\)",
                                  said).groups()
     views, pixels, percent = re.search(r"(\d+) random views .*: (\d+) of \d+ pixels lost \(([\d.]+) %\)",
                                        said).groups()

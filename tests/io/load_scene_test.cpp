@@ -32,6 +32,14 @@ TEST(LoadScene, EachKindOfFile) {
   EXPECT_EQ(load_scene((folder / "a.pk3").string() + ":maps/a.bsp").size(), 6u);
   EXPECT_EQ(load_scene((folder / "a.gltf").string()).size(), 1u);
   EXPECT_EQ(load_scene((folder / "a.glb").string()).size(), 1u);
+  write(folder / "A.GLB", to_glb(one_triangle(), {}));
+  EXPECT_EQ(load_scene((folder / "A.GLB").string()).size(), 1u);
+  write(folder / "empty.glb", {});
+  EXPECT_THAT(refusal_to_load((folder / "empty.glb").string()),
+              HasSubstr("is empty, expected a GLB or JSON"));
+  write(folder / "words.glb", to_bytes(std::string("no model")));
+  EXPECT_THAT(refusal_to_load((folder / "words.glb").string()),
+              HasSubstr("nor a GLB, which begins with glTF"));
 }
 
 TEST(LoadScene, ArchivesAreFoundInTheDataFolders) {

@@ -55,6 +55,7 @@ struct Container {
 
 Container open_container(Bytes bytes) {
   constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
+  if (bytes.empty()) throw Error("is empty, expected a GLB or JSON");
   if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return {bytes, {}};
   if (bytes.size() < 20)
     throw Error(fmt::format("is {} bytes long, expected a GLB header and a chunk", bytes.size()));
@@ -88,7 +89,8 @@ Json parse(Bytes text) {
   try {
     return Json::parse(begin, begin + text.size());
   } catch (const Json::parse_error& error) {
-    throw Error(fmt::format("is not JSON: wrong at byte {} of {}", error.byte, text.size()));
+    throw Error(fmt::format("is not JSON, nor a GLB, which begins with glTF: wrong at byte {} of {}",
+                            error.byte, text.size()));
   } catch (const Json::exception&) {
     throw Error("is not JSON that can be read: it holds a number out of range");
   }

@@ -64,7 +64,8 @@ Scene load(std::string_view specification, const LoadOptions& options) {
                       options);
   }
   const std::filesystem::path path(text);
-  const std::string ending = path.extension().string();
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
   if (ending == ".bsp") return load_level(io::read_file(path), text, game_of(path), options);
   if (ending == ".glb" || ending == ".gltf") return read_gltf(io::read_file(path), text, folder_of(path));
   if (ending == ".pk3") throw Error(text + ": names an archive, expected archive.pk3:maps/name.bsp");

@@ -94,8 +94,11 @@ namespace {
   for (const MethodInfo& method : all_methods()) {
     if (on_device || method.cpu.exists()) known.append(known.empty() ? "" : ", ").append(method.name);
   }
-  throw Error("method '" + std::string(name) + "': no such method" +
-              (find_method(name) ? " on the CPU" : "") + ", expected one of " + known);
+  throw Error("method '" + std::string(name) +
+              (find_method(name)
+                   ? "': runs on a Vulkan device, and none is in use, expected one of the CPU's: "
+                   : "': no such method, expected one of ") +
+              known);
 }
 
 }  // namespace

@@ -18,7 +18,10 @@ Table verification_table(const measure::Verification& verification) {
                                  count(v.lost_pixels)};
     if (verification.drawn()) row.push_back(count(v.different_pixels));
     row.push_back(count(v.excess_objects));
-    row.emplace_back(!v.holds() ? "BROKEN" : v.lost_objects > 0 ? "approximate" : "holds");
+    row.emplace_back(!v.holds()                              ? "BROKEN"
+                     : v.guarantee != Guarantee::approximate ? "holds"
+                     : v.lost_objects > 0                    ? "approximate"
+                                                             : "lost nothing");
     table.rows.push_back(std::move(row));
   }
   return table;
