@@ -95,7 +95,7 @@ void add_ranges(py::module_& m) {
           py::arg("world"))
       .def(
           "renumber", [](Order& order, SharedWorld& world) { return follow_world(order, world, true); },
-          "The same, but numbers all objects anew, without gaps.", py::arg("world"))
+          "The same, but numbers all objects anew, as a first update does.", py::arg("world"))
       .def("slots", &slots_of,
            "The slots of objects, uint32 (n,); NO_OBJECT for stale handles, or where the world has changed\n"
            "since update().",

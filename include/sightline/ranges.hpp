@@ -50,14 +50,14 @@ public:
   /// Follows what has changed in the world, and says what that changed in the order: slots that have another
   /// object, each once, free ones among them. The report lies here until the next. Call it after all changes
   /// of a frame, boxes that moved included, and before culls. The first update, one of another world, and one
-  /// after another order has followed this world, number all objects one after another without gaps, and
-  /// report every slot that has an object, or had one. Errors: too_many beyond 2³² - 1 slots; the next update
-  /// then begins anew. Cost: grows with the chunks that changed, not with the world: up to a
-  /// microsecond each. Threads: counts as changing the world. Allocates: where the order grows, or changes as
-  /// never before.
+  /// after another order has followed this world, number all objects one after another, without gaps but in
+  /// chunks of objects that move, or that others have left, and report every slot that has an object, or had
+  /// one. Errors: too_many beyond 2³² - 1 slots; the next update then begins anew. Cost: grows with the
+  /// chunks that changed, not with the world: up to a microsecond each. Threads: counts as changing the
+  /// world. Allocates: where the order grows, or changes as never before.
   Result<std::span<const SlotChange>> update(World& world);
-  /// The same, but leaves no gaps: numbers all objects anew. Worth it where slot_limit() has grown far beyond
-  /// the world's size. Errors, Cost: as of the first update. Allocates: another order's memory.
+  /// The same, but numbers all objects anew, as a first update does. Worth it where slot_limit() has grown
+  /// far beyond the world's size. Errors, Cost: as of the first update. Allocates: another order's memory.
   Result<std::span<const SlotChange>> renumber(World& world);
 
   /// All slots lie below this: the length of an instance buffer.
@@ -99,7 +99,9 @@ struct RangeResult {
   std::uint64_t objects = 0;            ///< in all ranges together
   std::uint64_t tested = 0;             ///< objects tested one by one
   std::uint64_t nodes_visited = 0;      ///< regions, groups and chunks looked at
-  std::uint64_t culled_occlusion = 0;   ///< objects that only occlusion dropped, summed over the views
+  /// Objects that occlusion dropped, summed over the views. Of a chunk that is hidden whole all objects count
+  /// that layers and distances leave, those that planes or min_area would drop, too.
+  std::uint64_t culled_occlusion = 0;
 };
 
 /// Culls worlds into ranges of their order.

@@ -286,10 +286,12 @@ struct CullOutput {
 
 /// What a cull did.
 struct CullResult {
-  std::size_t count = 0;               ///< objects written
-  std::uint64_t tested = 0;            ///< objects tested one by one
-  std::uint64_t nodes_visited = 0;     ///< regions, groups and chunks looked at
-  std::uint64_t culled_occlusion = 0;  ///< objects that only occlusion dropped, summed over the views
+  std::size_t count = 0;            ///< objects written
+  std::uint64_t tested = 0;         ///< objects tested one by one
+  std::uint64_t nodes_visited = 0;  ///< regions, groups and chunks looked at
+  /// Objects that occlusion dropped, summed over the views. Of a chunk that is hidden whole all objects count
+  /// that layers and distances leave, those that planes or min_area would drop, too.
+  std::uint64_t culled_occlusion = 0;
   /// With automatic occlusion, in the unit of CullCosts: the work of this cull and of drawing what it left,
   /// each object once for every bit of its mask; and that of culling by frustum alone.
   double cost = 0, frustum_cost = 0;

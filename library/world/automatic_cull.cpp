@@ -197,7 +197,8 @@ private:
     for (std::size_t i = 0; i < count; ++i) {
       if (seen[i] == all[i]) continue;
       const ObjectId id = state_.out[first + i];
-      if (!stands_in(o.triangles[o.triangle_set(id)].bounds, stored_box(*state_.world, id))) seen[i] = all[i];
+      const ObjectTriangles& set = o.triangles[o.triangle_set(id)];
+      if (!stands_in(set.bounds, set.origin, stored_box(*state_.world, id))) seen[i] = all[i];
     }
   }
 

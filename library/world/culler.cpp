@@ -180,16 +180,16 @@ Culler& Culler::operator=(Culler&& other) noexcept {
 Result<CullResult> Culler::cull(const World& world, std::span<const CullView> views,
                                 const CullOptions& options, const CullOutput& output) noexcept {
   if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
+  world::Levels* const levels = output.levels.empty() ? nullptr : WorldAccess::state(world).levels.get();
+  if (levels) {
+    if (const Status sound = levels->check(options.levels, views.size()); !sound) return sound;
+  }
   world::CullerState& state = *state_;
   state.zones = options.zones;
   const world::Zone zone(state.zones, "sightline: cull");
   CullResult result;
   const world::DifferentViews different = world::begin_cull(state, world, views, result);
-  world::Levels* const levels = output.levels.empty() ? nullptr : state.world->levels.get();
-  if (levels) {
-    if (const Status sound = levels->begin(state, views, different, options.levels, output); !sound)
-      return sound;
-  }
+  if (levels) levels->begin(state, views, different, options.levels, output);
   state.out = output.ids.data();
   state.masks = output.masks.empty() ? nullptr : output.masks.data();
   world::run_passes(state, options.jobs, result);

@@ -150,9 +150,17 @@ Status check_worlds(const InstancesState& instances) {
     if (!holds_all(placed.bounds, bounds_of(world)))
       return bad_option(
           "instances: a world reaches elsewhere since its instances were placed, expected update()", w);
-    if (!world.culled.load(std::memory_order_relaxed)) world.culled.store(true, std::memory_order_relaxed);
   }
   return {};
+}
+
+// Whoever changes one of the worlds next begins a frame.
+void note_culled(const InstancesState& instances) {
+  for (const PlacedWorld& placed : instances.worlds) {
+    if (placed.instances == 0) continue;
+    auto& culled = WorldAccess::state(*placed.world).culled;
+    if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
+  }
 }
 
 // Culls the instances' boxes: state.instances, and with several views who sees each. `min_area` speaks of
@@ -264,6 +272,7 @@ Result<InstanceCullResult> InstanceCuller::cull(const Instances& instances, std:
   for (const world::InstancePart& part : state.parts) most += part.most;
   if (most > options.most_objects)
     return Status(StatusCode::too_many, "instances: the views may see more objects than most_objects");
+  world::note_culled(placed);
   InstanceCullResult result;
   world::write_parts(state, most, result);
   result.tested += outer->tested, result.nodes_visited += outer->nodes_visited + state.nodes_visited;

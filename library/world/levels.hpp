@@ -48,9 +48,11 @@ public:
   virtual ~Levels() = default;
   /// Of an id that is new or used again, takes away what its last object had.
   virtual void forget(ObjectId object) = 0;
-  /// Before the passes: checks the options, and prepares the state's input.
-  virtual Status begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
-                       const LevelOptions& options, const CullOutput& output) = 0;
+  /// Before anything else: whether the options are sound for so many views.
+  [[nodiscard]] virtual Status check(const LevelOptions& options, std::size_t views) const noexcept = 0;
+  /// Before the passes: prepares the state's input.
+  virtual void begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+                     const LevelOptions& options, const CullOutput& output) = 0;
   /// After them: writes what they noted of the output's first ids.
   virtual void write(const CullerState& state, std::size_t count,
                      const CullOutput& output) const noexcept = 0;
@@ -65,8 +67,9 @@ struct LevelTable {
 class WorldLevels final : public Levels {
 public:
   void forget(ObjectId object) override;
-  Status begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
-               const LevelOptions& options, const CullOutput& output) override;
+  [[nodiscard]] Status check(const LevelOptions& options, std::size_t views) const noexcept override;
+  void begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+             const LevelOptions& options, const CullOutput& output) override;
   void write(const CullerState& state, std::size_t count, const CullOutput& output) const noexcept override;
 
   /// An object's.

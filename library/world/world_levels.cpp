@@ -345,10 +345,12 @@ void WorldLevels::set(ObjectId object, LevelTableId table) {
   edition_ = next_edition(), changed_.clear();
 }
 
-Status WorldLevels::begin(CullerState& state, std::span<const CullView> views,
-                          const DifferentViews& different, const LevelOptions& options,
-                          const CullOutput& output) {
-  if (const Status sound = check_levels(options, views.size()); !sound) return sound;
+Status WorldLevels::check(const LevelOptions& options, std::size_t views) const noexcept {
+  return check_levels(options, views);
+}
+
+void WorldLevels::begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
+                        const LevelOptions& options, const CullOutput& output) {
   if (!state.levels) state.levels = std::make_unique<RememberedLevels>();
   std::size_t decider = 0;
   while ((different.bits[decider] >> options.view & 1) == 0) ++decider;
@@ -356,7 +358,6 @@ Status WorldLevels::begin(CullerState& state, std::span<const CullView> views,
   auto& memory = static_cast<RememberedLevels&>(*state.levels);
   memory.begin(*this, state, output, views[options.view].view, decider, options);
   state.input.levels = &memory;
-  return {};
 }
 
 void WorldLevels::write(const CullerState& state, std::size_t count,

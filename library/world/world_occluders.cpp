@@ -133,15 +133,16 @@ void let_go(WorldOccluders& o, std::uint32_t carrier) noexcept {
 
 }  // namespace
 
-bool stands_in(const WorldBox& inner, const WorldBox& outer) noexcept {
-  // What a matrix in single precision may have moved a corner by, too.
-  const auto within = [](double low, double high, double outer_low, double outer_high) {
-    const double slack = kSlack + 1e-6 * std::max(std::fabs(outer_low), std::fabs(outer_high));
+bool stands_in(const WorldBox& inner, const WorldPoint& origin, const WorldBox& outer) noexcept {
+  // What a matrix in single precision may have moved a corner by, too: it knows places about the origin.
+  const auto within = [](double low, double high, double at, double outer_low, double outer_high) {
+    const double away = std::max(std::fabs(outer_low - at), std::fabs(outer_high - at));
+    const double slack = kSlack + 1e-6 * away + 1e-15 * std::fabs(at);
     return low >= outer_low - slack && high <= outer_high + slack;
   };
-  return within(inner.min.x, inner.max.x, outer.min.x, outer.max.x) &&
-         within(inner.min.y, inner.max.y, outer.min.y, outer.max.y) &&
-         within(inner.min.z, inner.max.z, outer.min.z, outer.max.z);
+  return within(inner.min.x, inner.max.x, origin.x, outer.min.x, outer.max.x) &&
+         within(inner.min.y, inner.max.y, origin.y, outer.min.y, outer.max.y) &&
+         within(inner.min.z, inner.max.z, origin.z, outer.min.z, outer.max.z);
 }
 
 WorldOccluders& WorldState::own_occluders() {

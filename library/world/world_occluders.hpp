@@ -93,7 +93,8 @@ struct WorldOccluders {
   void take_triangles(ObjectId id) noexcept;
 };
 
-/// Whether `inner` lies within `outer`, but for a millimetre and what rounding may have done.
-bool stands_in(const WorldBox& inner, const WorldBox& outer) noexcept;
+/// Whether `inner`, which was placed about the origin, lies within `outer`, but for a millimetre and what
+/// rounding may have done.
+bool stands_in(const WorldBox& inner, const WorldPoint& origin, const WorldBox& outer) noexcept;
 
 }  // namespace sightline::world

@@ -68,7 +68,8 @@ inline Vec3 on_grid(const Vec3& p) {
 class RandomWorld {
 public:
   explicit RandomWorld(scene::Random& random) : random_(random) {
-    if (random.below(3) == 0) origin_ = {1e6 * random.below(20), -100, 3200.0 * random.below(9)};
+    if (random.below(3) == 0)
+      origin_ = {1e6 * random.below(20) * (random.below(2) == 0 ? 1 : 500), -100, 3200.0 * random.below(9)};
     unit_ = *world_.add_occluder(kUnitBox);
     ball_ = *world_.add_occluder({}, std::array{Sphere{{0, 0, 0}, 1}});
     if (random.below(3) == 0) add(level());

@@ -2,6 +2,7 @@
 // what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -226,6 +227,37 @@ TEST(Carriers, FarFromTheOriginItIsTheSame) {
   const CullView view{.view = {Wall::at({0, 1, 0}, {0, 0, -1}), far}};
   Culler culler;
   EXPECT_EQ(cull_with(culler, world, {&view, 1}, automatic(5e6f)).result.count, 1u);
+}
+
+// What moved a little, as seen from so far.
+TEST(Carriers, FarFromTheOriginWhatMovedHidesNothingWhereItWas) {
+  const auto seen_of = [](const World& world, const CullView& view, Handle of) {
+    Culler culler;
+    const Culled culled = cull_with(culler, world, {&view, 1}, automatic(1e7f));
+    return std::ranges::count(culled.ids, of.index) == 1;
+  };
+  const Box wall = box_at({0, 0, -20.5f}, {4, 4, 0.5f}), behind = box_at({0, 0, -40.5f}, {0.5f, 0.5f, 0.5f});
+  const std::array<Vec3, 3> its{Vec3{-0.4f, -0.4f, -40.5f}, {0.4f, -0.4f, -40.5f}, {0, 0.4f, -40.5f}};
+  for (const double distance : {0.0, 1e5, 1e7, 1e10}) {
+    for (const bool wall_moves : {true, false}) {
+      SCOPED_TRACE(testing::Message() << distance << " m away, " << (wall_moves ? "the wall" : "the box"));
+      const WorldPoint far{distance, 0, -distance};
+      World world;
+      std::array boxes{wall, behind};
+      std::array<Handle, 2> handles;
+      ASSERT_TRUE(world.insert(BoxView(boxes, far), handles));
+      std::array placements{filling(wall, *world.add_occluder(kUnitBox))};
+      placements[0].origin = far;
+      ASSERT_TRUE(world.set_occluders(std::span(handles).first(1), placements));
+      ASSERT_TRUE(world.set_triangles(handles[1], its, far));
+      const CullView view{.view = {looking({0, 0, 0}, {0, 0, -1}), far}};
+      EXPECT_FALSE(seen_of(world, view, handles[1]));
+      Box& moved = boxes[wall_moves ? 0 : 1];
+      moved.min.x += 9.5f, moved.max.x += 9.5f;
+      ASSERT_TRUE(world.move(handles, BoxView(boxes, far)));
+      EXPECT_TRUE(seen_of(world, view, handles[1]));
+    }
+  }
 }
 
 TEST(Carriers, RefusesWhatItCannotTake) {

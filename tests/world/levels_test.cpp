@@ -365,5 +365,35 @@ TEST(Levels, AreRefusedWhereTheyMeanNothing) {
   EXPECT_EQ(cull().error().code(), StatusCode::bad_argument);
 }
 
+// A refused cull is none: by none does a frame begin in which what moved comes to rest.
+TEST(Levels, ThatAreRefusedChangeNothing) {
+  const auto order_after = [](bool refused) {
+    World world;
+    std::vector<Box> boxes;
+    for (int i = 0; i < 3000; ++i) {
+      const auto x = static_cast<float>(i % 60), z = static_cast<float>(i / 60);
+      boxes.push_back({{x, 0, z}, {x + 1, 1, z + 1}});
+    }
+    std::vector<Handle> handles(boxes.size());
+    EXPECT_TRUE(world.insert(BoxView(boxes), handles));
+    EXPECT_TRUE(world.add_levels(std::array{5.0f}));
+    std::vector<ObjectId> ids(cull_capacity(world));
+    std::vector<std::uint8_t> levels(ids.size());
+    const CullView view{
+        .view = {*make_view({.eye = {30, 500, 30}, .forward = {0, -1, 0}, .up = {0, 0, 1}}, 64, 64), {}}};
+    Culler culler;
+    EXPECT_TRUE(world.move(std::span(handles).first(1500), BoxView(std::span(boxes).first(1500))));
+    CullOptions wrong;
+    wrong.levels.hysteresis = 1;
+    for (int frame = 0; frame < 300; ++frame) {
+      if (refused) EXPECT_FALSE(culler.cull(world, {&view, 1}, wrong, {ids, {}, levels}));
+      EXPECT_TRUE(world.move(Strided<const Handle>(), BoxView()));
+    }
+    ids.resize(culler.cull(world, view, ids)->count);
+    return ids;
+  };
+  EXPECT_EQ(order_after(true), order_after(false));
+}
+
 }  // namespace
 }  // namespace sightline

@@ -140,7 +140,8 @@ typedef struct sightline_instance_result {
   uint64_t objects;                       /**< in all ranges together */
   uint64_t tested;                        /**< objects tested one by one, and instances */
   uint64_t nodes_visited;                 /**< regions, groups and chunks looked at */
-  uint64_t culled_occlusion;              /**< objects, and whole instances, that only occlusion dropped */
+  uint64_t culled_occlusion;              /**< objects, and whole instances, that occlusion dropped, as
+                                             sightline_cull_result counts */
 } sightline_instance_result;
 
 /** Culls instances; for one thread at a time. */

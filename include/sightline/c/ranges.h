@@ -38,14 +38,14 @@ SIGHTLINE_API void sightline_order_destroy(sightline_order* order);
 
 /** Follows what has changed in the world, and reports what that changed in the order. Call it after all
  * changes of a frame, boxes that moved included, and before culls. The first update, one of another world,
- * and one after another order has followed this world, number all objects one after another without gaps, and
- * report every slot that has an object, or had one. Errors: BAD_ARGUMENT, TOO_MANY. Cost: grows with the
- * chunks that changed, not with the world. Threads: counts as changing the world. Allocates: where the order
- * grows, or changes as never before. */
+ * and one after another order has followed this world, number all objects one after another, without gaps but
+ * in chunks of objects that move, or that others have left, and report every slot that has an object, or had
+ * one. Errors: BAD_ARGUMENT, TOO_MANY. Cost: grows with the chunks that changed, not with the world. Threads:
+ * counts as changing the world. Allocates: where the order grows, or changes as never before. */
 SIGHTLINE_API sightline_status sightline_order_update(sightline_order* order, sightline_world* world,
                                                       sightline_order_report* report);
-/** The same, but leaves no gaps: numbers all objects anew. Errors, Cost: as of the first update. Allocates:
- * another order's memory. */
+/** The same, but numbers all objects anew, as a first update does. Errors, Cost: as of the first update.
+ * Allocates: another order's memory. */
 SIGHTLINE_API sightline_status sightline_order_renumber(sightline_order* order, sightline_world* world,
                                                         sightline_order_report* report);
 
@@ -93,7 +93,8 @@ typedef struct sightline_range_result {
   uint64_t objects;                   /**< in all ranges together */
   uint64_t tested;                    /**< objects tested one by one */
   uint64_t nodes_visited;             /**< regions, groups and chunks looked at */
-  uint64_t culled_occlusion;          /**< objects that only occlusion dropped, summed over the views */
+  uint64_t culled_occlusion; /**< objects that occlusion dropped, summed over the views; of a hidden chunk all
+                                that layers and distances leave */
 } sightline_range_result;
 
 /** Culls worlds into ranges of their order; for one thread at a time. */

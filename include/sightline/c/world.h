@@ -319,7 +319,8 @@ typedef struct sightline_cull_result {
   size_t count;              /**< objects written */
   uint64_t tested;           /**< objects tested one by one */
   uint64_t nodes_visited;    /**< regions, groups and chunks looked at */
-  uint64_t culled_occlusion; /**< objects that only occlusion dropped, summed over the views */
+  uint64_t culled_occlusion; /**< objects that occlusion dropped, summed over the views; of a hidden chunk all
+                                that layers and distances leave */
   double cost;               /**< automatic occlusion: of this cull and of drawing what it left */
   double frustum_cost;       /**< the same by frustum alone */
   uint64_t reserved[2];      /**< 0 */
