@@ -28,19 +28,22 @@
     return picture;
   }
 
-  // Below the chart, as many lines as it takes: in the canvas a legend of thirty methods is cut off. A name hides its line.
+  // Below the chart, as many lines as it takes: in the canvas a legend of thirty methods is cut off. A name hides its line or
+  // shows it, and of many lines two words do so with all of them.
   function legend(chart) {
-    const list = document.createElement("ul"), figure = chart.canvas.closest("figure");
+    const list = document.createElement("ul"), figure = chart.canvas.closest("figure"), sets = chart.data.datasets;
     list.className = "legend";
-    chart.data.datasets.forEach((set, i) => {
-      const item = document.createElement("li"), name = document.createElement("button"), swatch = stroke(set);
-      name.append(swatch, set.label), item.append(name), list.append(item);
-      name.setAttribute("aria-pressed", "true");
-      name.onclick = () => {
-        const shown = !chart.isDatasetVisible(i);
-        name.setAttribute("aria-pressed", shown), chart.setDatasetVisibility(i, shown), chart.update();
-      };
-    });
+    const add = (onclick, ...words) => {
+      const item = document.createElement("li"), name = document.createElement("button");
+      name.append(...words), (name.onclick = () => (onclick(), chart.update())), item.append(name), list.append(item);
+      return name;
+    };
+    const show = (i, shown) => (names[i].setAttribute("aria-pressed", shown), chart.setDatasetVisibility(i, shown));
+    if (sets.length > 6) {
+      for (const [word, shown] of [["show all", true], ["hide all", false]]) add(() => sets.forEach((_, i) => show(i, shown)), word).className = "every";
+    }
+    const names = sets.map((set, i) => add(() => show(i, !chart.isDatasetVisible(i)), stroke(set), set.label));
+    names.forEach(name => name.setAttribute("aria-pressed", "true"));
     figure.querySelector(".legend")?.remove();
     figure.append(list);
     return chart;
