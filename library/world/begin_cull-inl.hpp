@@ -164,8 +164,7 @@ const ColumnTests* column_tests(CullerState& state, std::span<const CullView> vi
 DifferentViews begin_cull(CullerState& state, const World& world, std::span<const CullView> views,
                           CullResult& result) noexcept {
   state.world = &WorldAccess::state(world);
-  auto& culled = state.world->culled;
-  if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
+  state.world->note_culled();
   const DifferentViews different = different_views(views, state.world->columns);
   result.nodes_visited = find_entries(state, views, different);
   const ColumnTests* columns = column_tests(state, views, different);

@@ -96,6 +96,10 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
               "cull: expected room for cull_capacity() levels and fades, or none"};
   if (output.levels.empty() && !output.fades.empty())
     return {StatusCode::bad_argument, "cull: fades without levels, expected both or no fades"};
+  const Levels* const levels = output.levels.empty() ? nullptr : WorldAccess::state(world).levels.get();
+  if (levels) {
+    if (const Status sound = levels->check(options.levels, views.size()); !sound) return sound;
+  }
   if (options.occlusion == Occlusion::none) return {};
   if (options.occlusion != Occlusion::automatic)
     return {StatusCode::bad_argument, "cull: the options' occlusion is neither none nor automatic"};
@@ -180,15 +184,12 @@ Culler& Culler::operator=(Culler&& other) noexcept {
 Result<CullResult> Culler::cull(const World& world, std::span<const CullView> views,
                                 const CullOptions& options, const CullOutput& output) noexcept {
   if (const Status sound = world::check_call(world, views, options, output); !sound) return sound;
-  world::Levels* const levels = output.levels.empty() ? nullptr : WorldAccess::state(world).levels.get();
-  if (levels) {
-    if (const Status sound = levels->check(options.levels, views.size()); !sound) return sound;
-  }
   world::CullerState& state = *state_;
   state.zones = options.zones;
   const world::Zone zone(state.zones, "sightline: cull");
   CullResult result;
   const world::DifferentViews different = world::begin_cull(state, world, views, result);
+  world::Levels* const levels = output.levels.empty() ? nullptr : state.world->levels.get();
   if (levels) levels->begin(state, views, different, options.levels, output);
   state.out = output.ids.data();
   state.masks = output.masks.empty() ? nullptr : output.masks.data();

@@ -154,15 +154,6 @@ Status check_worlds(const InstancesState& instances) {
   return {};
 }
 
-// Whoever changes one of the worlds next begins a frame.
-void note_culled(const InstancesState& instances) {
-  for (const PlacedWorld& placed : instances.worlds) {
-    if (placed.instances == 0) continue;
-    auto& culled = WorldAccess::state(*placed.world).culled;
-    if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
-  }
-}
-
 // Culls the instances' boxes: state.instances, and with several views who sees each. `min_area` speaks of
 // objects, not of all that an instance shows.
 Result<CullResult> cull_boxes_of(InstanceCullerState& state, const InstancesState& instances) {
@@ -272,7 +263,8 @@ Result<InstanceCullResult> InstanceCuller::cull(const Instances& instances, std:
   for (const world::InstancePart& part : state.parts) most += part.most;
   if (most > options.most_objects)
     return Status(StatusCode::too_many, "instances: the views may see more objects than most_objects");
-  world::note_culled(placed);
+  for (const world::PlacedWorld& shown : placed.worlds)
+    if (shown.instances > 0) WorldAccess::state(*shown.world).note_culled();
   InstanceCullResult result;
   world::write_parts(state, most, result);
   result.tested += outer->tested, result.nodes_visited += outer->nodes_visited + state.nodes_visited;

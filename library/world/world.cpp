@@ -21,12 +21,14 @@ std::int64_t cell_of(double low, double high) {
   return static_cast<std::int64_t>(std::floor((0.5 * low + 0.5 * high) / kSectorSide + 0.5));
 }
 
-// Handles that stand one after another, as they are; of others none.
-std::span<const Handle> packed_handles(const Strided<const Handle>& handles) noexcept {
-  if (handles.stride() != sizeof(Handle) ||
-      reinterpret_cast<std::uintptr_t>(handles.data()) % alignof(Handle) != 0)
-    return {};
-  return {static_cast<const Handle*>(handles.data()), handles.size()};
+// As many of the handles as there is room for copies, side by side: where they stand, or else copied.
+std::span<const Handle> side_by_side(const Strided<const Handle>& handles, std::size_t first,
+                                     std::span<Handle> copies) noexcept {
+  const bool packed = handles.stride() == sizeof(Handle) &&
+                      reinterpret_cast<std::uintptr_t>(handles.data()) % alignof(Handle) == 0;
+  if (packed) return {static_cast<const Handle*>(handles.data()) + first, copies.size()};
+  for (std::size_t i = 0; i < copies.size(); ++i) copies[i] = handles[first + i];
+  return copies;
 }
 
 }  // namespace
@@ -92,16 +94,11 @@ Status check_handles(const World& world, const Strided<const Handle>& handles) n
   if (!handles.sound())
     return {StatusCode::bad_argument, "world: the handles' pointer is null or their stride too short"};
   const WorldState& state = WorldAccess::state(world);
-  const std::span<const Handle> packed = packed_handles(handles);
-  constexpr std::size_t kAtOnce = 512;
+  constexpr std::size_t kAtOnce = 128;  // few, for a call of one pays for all copies, too
   std::array<Handle, kAtOnce> copies;
   for (std::size_t first = 0; first < handles.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, handles.size() - first);
-    std::span<const Handle> part(copies.data(), count);
-    if (!packed.empty())
-      part = packed.subspan(first, count);
-    else
-      for (std::size_t i = 0; i < count; ++i) copies[i] = handles[first + i];
+    const std::span<const Handle> part = side_by_side(handles, first, std::span(copies).first(count));
     std::size_t i = !ChunkMap::kHasPages ? 0 : known_handles(part, state.generations, WorldState::kUnknown);
     for (; i < count; ++i) {
       if (!world.contains(part[i]))

@@ -302,13 +302,6 @@ Status bad(const char* message) {
   return {StatusCode::bad_argument, message};
 }
 
-Status check_levels(const LevelOptions& options, std::size_t views) {
-  if (options.key >= kMaxViews) return bad("cull: the levels' key is out of range, expected 0 to 7");
-  if (!(options.hysteresis >= 0 && options.hysteresis < 1))
-    return bad("cull: the levels' hysteresis is out of range, expected 0 to below 1");
-  return check_level_sizes(options, views);
-}
-
 }  // namespace
 
 LevelScale level_scale(const WorldView& view, const LevelOptions& options) noexcept {
@@ -346,7 +339,10 @@ void WorldLevels::set(ObjectId object, LevelTableId table) {
 }
 
 Status WorldLevels::check(const LevelOptions& options, std::size_t views) const noexcept {
-  return check_levels(options, views);
+  if (options.key >= kMaxViews) return bad("cull: the levels' key is out of range, expected 0 to 7");
+  if (!(options.hysteresis >= 0 && options.hysteresis < 1))
+    return bad("cull: the levels' hysteresis is out of range, expected 0 to below 1");
+  return check_level_sizes(options, views);
 }
 
 void WorldLevels::begin(CullerState& state, std::span<const CullView> views, const DifferentViews& different,

@@ -100,6 +100,10 @@ struct WorldState {
   void note_generation(ObjectId id);
   /// World::move, of what has been checked.
   void move(const Strided<const Handle>& handles, const BoxView& boxes);
+  /// To be called by whoever culls: the next change begins a frame.
+  void note_culled() const noexcept {
+    if (!culled.load(std::memory_order_relaxed)) culled.store(true, std::memory_order_relaxed);
+  }
   /// Counts frames; true where a new one begins.
   bool begin_frame();
   /// Lets some of the awake sectors' maps rest.

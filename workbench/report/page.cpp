@@ -113,6 +113,10 @@ std::string data_json(const measure::Comparison& comparison) {
   return safe;
 }
 
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+  return fmt::format("{} × {}", width, height);
+}
+
 std::string facts_html(const PageContent& content) {
   const measure::Comparison& c = content.comparison;
   const auto fact = [](double value, const char* what) {
@@ -121,8 +125,8 @@ std::string facts_html(const PageContent& content) {
   return "<ul class=\"facts\">" + fact(static_cast<double>(content.scene.size()), "objects") +
          fact(static_cast<double>(triangle_count(content.scene)), "triangles") +
          fact(static_cast<double>(c.cameras.size()), "views") +
-         fmt::format("<li>path <b>{}</b></li><li><b>{} × {}</b> pixels</li><li>{}</li></ul>\n",
-                     escape(c.path), c.width, c.height, sides_drawn(c.raster_state));
+         fmt::format("<li>path <b>{}</b></li><li><b>{}</b> pixels</li><li>{}</li></ul>\n", escape(c.path),
+                     size_text(c.width, c.height), sides_drawn(c.raster_state));
 }
 
 std::string chart_html(const char* id, const char* title) {
@@ -222,11 +226,9 @@ std::string make_page(const PageContent& content) {
           "\" alt=\"Item buffer: each object in a colour of its own\"><figcaption>The item buffer: "
           "everything drawn, nothing culled, each of the " +
           format_count(static_cast<double>(content.snapshot.truth.visible_count())) + " objects visible at " +
-          fmt::format("{} × {}", content.snapshot.view.width, content.snapshot.view.height) +
-          " in a colour of its own. " + where_html(content.scene, content.snapshot) +
-          "</figcaption></figure>\n";
-  page += "<h2>From above</h2>\n<p>The same view at " +
-          fmt::format("{} × {}", comparison.width, comparison.height) +
+          size_text(content.snapshot.view.width, content.snapshot.view.height) + " in a colour of its own. " +
+          where_html(content.scene, content.snapshot) + "</figcaption></figure>\n";
+  page += "<h2>From above</h2>\n<p>The same view at " + size_text(comparison.width, comparison.height) +
           ", each object coloured by its outcome under each method; x runs to the right, z down. The grey "
           "outline is the view frustum.</p>\n<div class=\"outcomes\">\n";
   for (std::size_t m = 0; m < content.snapshot.methods.size(); ++m) {

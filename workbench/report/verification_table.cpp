@@ -2,6 +2,16 @@
 
 namespace sightline::report {
 
+namespace {
+
+const char* verdict_of(const measure::MethodVerdict& v) {
+  if (!v.holds()) return "BROKEN";
+  if (v.guarantee != Guarantee::approximate) return "holds";
+  return v.lost_objects > 0 ? "approximate" : "lost nothing";
+}
+
+}  // namespace
+
 Table verification_table(const measure::Verification& verification) {
   Table table;
   table.header = {"method", "guarantee", "kept", "visible", "lost objects", "lost pixels"};
@@ -18,10 +28,7 @@ Table verification_table(const measure::Verification& verification) {
                                  count(v.lost_pixels)};
     if (verification.drawn()) row.push_back(count(v.different_pixels));
     row.push_back(count(v.excess_objects));
-    row.emplace_back(!v.holds()                              ? "BROKEN"
-                     : v.guarantee != Guarantee::approximate ? "holds"
-                     : v.lost_objects > 0                    ? "approximate"
-                                                             : "lost nothing");
+    row.emplace_back(verdict_of(v));
     table.rows.push_back(std::move(row));
   }
   return table;

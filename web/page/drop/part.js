@@ -105,8 +105,9 @@ export class DropPart {
     let drawn = 0;
     root.traverse((each) => {
       if (!each.isMesh) return;
-      this.meshes.push(each), (drawn += each.count ?? 1);  // an instanced mesh, so often
-      this.triangles += ((each.geometry.index?.count ?? each.geometry.attributes.position.count) / 3) * (each.count ?? 1);
+      const { count: times = 1, geometry } = each; // an instanced mesh is drawn so often
+      this.meshes.push(each), (drawn += times);
+      this.triangles += (times * (geometry.index?.count ?? geometry.attributes.position.count)) / 3;
     });
     const size = this.box.getSize(new THREE.Vector3()).length() || 1;
     this.stage.fly.speed = size / 8;
