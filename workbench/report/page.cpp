@@ -229,7 +229,7 @@ std::string make_page(const PageContent& content) {
           size_text(content.snapshot.view.width, content.snapshot.view.height) + " in a colour of its own. " +
           where_html(content.scene, content.snapshot) + "</figcaption></figure>\n";
   page += "<h2>From above</h2>\n<p>The same view at " + size_text(comparison.width, comparison.height) +
-          ", each object coloured by its outcome under each method; x runs to the right, z down. The grey "
+          ", each object coloured by its outcome under each method; x runs to the right, z down. The dark "
           "outline is the view frustum.</p>\n<div class=\"outcomes\">\n";
   for (std::size_t m = 0; m < content.snapshot.methods.size(); ++m) {
     page += outcome_html(content.snapshot.methods[m], content.top_views[m]);
