@@ -126,15 +126,12 @@ std::uint32_t ChunkMap::take_lanes(Pool& pool, std::uint32_t capacity) {
 }
 
 std::uint32_t ChunkMap::add_lanes(Pool& pool, std::uint32_t count) {
+  const bool in_rows = kHasPages && pool.row > 0;
   const std::uint32_t first = pool.used;
-  pool.used += count;
+  pool.used = in_rows ? lane_after(first, count / kCapacity) : first + count;
   // Who copies a chunk's ids may read as many as fit in any.
   pool.ids.resize(std::size_t{pool.used} + kCapacity);
-  if (!kHasPages || pool.row == 0) {
-    pool.lanes.resize(6 * std::size_t{pool.used});
-  } else if (pool.used > pool.row) {
-    lengthen_rows(pool, std::max<std::size_t>(2 * pool.row, pool.used));
-  }
+  in_rows ? make_rows(pool, pool.used) : pool.lanes.resize(6 * std::size_t{pool.used});
   if (has_columns()) resize_columns(pool);
   return first;
 }
@@ -201,8 +198,8 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 void ChunkMap::free_chunk(std::uint32_t chunk) {
   take_from_group(chunk);
   Chunk& c = chunks_[chunk];
-  if (!kHasPages || c.pool == kStill || !is_kept_page(c))
-    give_lanes(pools_[c.pool], c.first_lane, c.capacity);
+  const bool kept = kHasPages && c.pool == kMovers && c.previous < kept_pages_;  // as a page's lanes are
+  if (!kept) give_lanes(pools_[c.pool], c.first_lane, c.capacity);
   c.count = c.live = c.counted = 0;
   c.key = kNone;
   note_change(chunk);

@@ -243,7 +243,7 @@ public:
     const bool still = !kHasPages || group.pool == kStill;
     const std::uint32_t step =
         still ? size >> Group::kSize & Group::kCount : static_cast<std::uint32_t>(pool.row);
-    const float* at = pool.lanes.data() + (still ? 6 * std::size_t{first} : first);
+    const float* at = pool.lanes.data() + (still ? 6 * std::size_t{first} : pool.begin(first));
     return {at, pool.ids.data() + first, step, size & Group::kCount, (size & Group::kLoose) != 0};
   }
   /// Tight union of the chunk's boxes; after move_loosely() it may be wider.
@@ -304,8 +304,9 @@ private:
     bool stale = false;  // stands in stale_
   };
   static constexpr std::uint8_t kStill = 0, kMovers = 1;
-  // Movers have lanes of their own, so that those who come all at once make nobody copy the others'; and
-  // these are six long rows, which processors foresee, as they do those of a flat array.
+  // Movers have lanes of their own, so that those who come all at once make nobody copy the others': in six
+  // rows, which processors foresee; and others behind so many lanes, as large pages come slowly.
+  static constexpr std::uint32_t kRowLanes = 1u << 16;
   struct Pool {
     geometry::UnwrittenVector<float> lanes;
     geometry::UnwrittenVector<ObjectId> ids;  // and kCapacity more
@@ -319,8 +320,8 @@ private:
     [[nodiscard]] std::size_t step(std::size_t capacity) const noexcept {
       return kHasPages && row > 0 ? row : capacity;
     }
-    [[nodiscard]] std::size_t begin(std::size_t first_lane) const noexcept {
-      return kHasPages && row > 0 ? first_lane : 6 * first_lane;
+    [[nodiscard]] std::size_t begin(std::size_t lane) const noexcept {
+      return kHasPages && row > 0 ? lane / kRowLanes * 6 * row + lane % kRowLanes : 6 * lane;
     }
   };
   struct Key {
@@ -407,16 +408,14 @@ private:
   void note_grown(std::uint32_t chunk);
   void add_mover(ObjectId object, const Box& box);
   std::uint32_t add_mover_chunk(std::uint32_t first_lane = kNone);
-  static void lengthen_rows(Pool& pool, std::size_t lanes);
+  static std::uint32_t lane_after(std::uint32_t lane, std::uint32_t chunks) noexcept;
+  static void make_rows(Pool& pool, std::size_t lanes);
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
   void come_to_page(ObjectId object);
   void free_mover_chunk(std::uint32_t chunk);
   [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
     return chunk.previous != kNone;
-  }
-  [[nodiscard]] bool is_kept_page(const Chunk& mover) const noexcept {
-    return is_page(mover) && mover.previous < kept_pages_;
   }
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void leave_soon(ObjectId object);
@@ -481,11 +480,12 @@ private:
   std::vector<std::uint32_t> grown_;                             // still chunks with wide bounds or holes
   std::vector<std::uint32_t> mover_chunks_;                      // each chunk's `parent` is its place here
   std::uint32_t open_ = kNone;                                   // of these the one that takes the next mover
-  std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;  // since expect_moves(): one by one; who became one
+  std::size_t newcomers_ = 0;                                    // as expect_moves() was told
+  std::size_t scattered_ = 0, in_runs_ = 0, joined_ = 0;         // since then: one by one; who became one
   std::size_t woken_ = 0;             // since rest(): who became a mover, or had not moved since it was there
   bool by_id_ = false;                // which stands in its page instead
   std::vector<std::uint32_t> pages_;  // the chunk of ids i * kCapacity … of each page i, or none
-  // The lanes of the first pages follow one another, in order, from here on, and are kept for them.
+  // Where the lanes of the first page begin; the others' follow in order, and all are kept for them.
   std::uint32_t page_lane_ = kNone, kept_pages_ = 0;
   std::vector<std::uint32_t> stale_;  // chunks whose summaries wait for settle_columns()
   std::uint32_t mover_node_ = kNone, mover_group_ = kNone;

@@ -148,16 +148,26 @@ void ChunkMap::leave(std::uint32_t chunk, std::uint32_t slot) {
   }
 }
 
-// Gives each row so many lanes or some more: where rows begin alike within a small page, they are in one
-// another's way in the cache.
-void ChunkMap::lengthen_rows(Pool& pool, std::size_t lanes) {
-  constexpr std::size_t kPage = 1024, kApart = 7 * kLanes;  // floats
-  const std::size_t old_row = pool.row;
-  pool.row = (lanes + kPage - 1) / kPage * kPage + kApart;
-  geometry::UnwrittenVector<float> longer(6 * pool.row);
+// Where the lanes begin of the movers' chunk so many chunks behind the one whose lanes begin there.
+std::uint32_t ChunkMap::lane_after(std::uint32_t lane, std::uint32_t chunks) noexcept {
+  constexpr std::uint32_t kChunks = kRowLanes / kCapacity;
+  chunks += lane % kRowLanes / kCapacity;
+  return (lane / kRowLanes + chunks / kChunks) * kRowLanes + chunks % kChunks * kCapacity;
+}
+
+// Room in rows for so many lanes. Rows that begin alike within a small page are in one another's way in the
+// cache.
+void ChunkMap::make_rows(Pool& pool, std::size_t lanes) {
+  constexpr std::size_t kPage = 1024, kApart = 7 * kLanes, kLongest = kRowLanes + kApart;  // floats
+  const std::size_t old_row = pool.row, wanted = std::max(lanes, 2 * old_row);
+  const bool longer = old_row < kLongest && lanes > old_row;
+  if (longer) pool.row = std::min(kLongest, (wanted + kPage - 1) / kPage * kPage + kApart);
+  const std::size_t size = (lanes + kRowLanes - 1) / kRowLanes * 6 * pool.row;
+  if (!longer) return pool.lanes.resize(std::max(size, pool.lanes.size()));
+  geometry::UnwrittenVector<float> rows(size);
   for (std::size_t side = 0; side < 6; ++side)
-    std::copy_n(pool.lanes.begin() + side * old_row, old_row, longer.begin() + side * pool.row);
-  pool.lanes = std::move(longer);
+    std::copy_n(pool.lanes.begin() + side * old_row, old_row, rows.begin() + side * pool.row);
+  pool.lanes = std::move(rows);
 }
 
 std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
@@ -169,13 +179,12 @@ std::uint32_t ChunkMap::add_mover_chunk(std::uint32_t first_lane) {
   }
   Pool& pool = pools_[kMovers];
   if (pool.ids.empty()) {
-    // For all at once, also while some have no page yet; memory that is never written costs nothing.
-    const std::size_t room = (kHasPages ? 2 : 1) * size_ + size_ / 16 + 4 * kCapacity;
+    // For those who come at once. A few shall not wait for large pages of memory.
+    const std::size_t all = size_ + size_ / 16 + 4 * kCapacity,
+                      first = std::max<std::size_t>(newcomers_ + newcomers_ / 16, kRowLanes),
+                      room = kHasPages ? std::min(all, first) : all;
     pool.ids.reserve(room);
-    if (kHasPages)
-      lengthen_rows(pool, room);
-    else
-      pool.lanes.reserve(6 * room);
+    kHasPages ? make_rows(pool, room) : pool.lanes.reserve(6 * room);
   }
   const std::uint32_t added = add_chunk(kMoverKey, kCapacity, kEmptyBox, kMovers, first_lane);
   chunks_[added].parent = static_cast<std::uint32_t>(mover_chunks_.size());
@@ -202,7 +211,7 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
   }
   if (pages_[page] != kNone) return pages_[page];
   const std::uint32_t added = pages_[page] =
-      add_mover_chunk(page < kept_pages_ ? page_lane_ + page * kCapacity : kNone);
+      add_mover_chunk(page < kept_pages_ ? lane_after(page_lane_, page) : kNone);
   Chunk& c = chunks_[added];
   c.previous = page, c.count = kCapacity;
   std::fill_n(ids(c), kCapacity, kNoObject);
@@ -222,6 +231,7 @@ void ChunkMap::expect_moves(bool many, std::size_t newcomers) noexcept {
       (by_id_ ? movers() >= enough
               : many && ((others && movers() + newcomers >= enough) || (unordered && movers() >= enough)));
   scattered_ = in_runs_ = joined_ = 0;
+  newcomers_ = newcomers;
 }
 
 // Of an object of the map that stands elsewhere.

@@ -307,6 +307,42 @@ TEST(Movers, PagesGrowWithTheWorld) {
   EXPECT_GT(movers_of(crowd.world()), 9000u);
 }
 
+// However many stand still, the first that moves needs less memory than a large page, which takes its time to
+// come.
+TEST(Movers, TheFirstWaitForNoLargePages) {
+  Crowd crowd(45, kOneSector);
+  crowd.insert(100'000);
+  crowd.cull();
+  crowd.move(0, 1, 0);
+  ASSERT_EQ(movers_of(crowd.world()), 1u);
+  const world::ChunkMap& map = *WorldAccess::state(crowd.world()).sectors[0].map;
+  std::uint32_t chunk = 0;
+  while (!map.holds_movers(chunk)) ++chunk;
+  EXPECT_LT(6 * sizeof(float) * map.chunk(chunk).step, geometry::kLargePage);
+  EXPECT_LT(sizeof(ObjectId) * map.pool_ids(1).size(), geometry::kLargePage);
+}
+
+// More of them than the longest rows hold, in the order in which they came and then in pages: other rows
+// follow, of movers that came one by one, too.
+TEST(Movers, RowsFollowTheLongest) {
+  Crowd crowd(44, kOneSector);
+  crowd.insert(70'000);
+  crowd.cull();
+  for (const std::size_t count : {1, 100, 70'000}) {
+    crowd.move(0, count, 1);
+    crowd.cull();
+  }
+  EXPECT_EQ(movers_of(crowd.world()), 70'000u);
+  for (int frame = 0; frame < 4; ++frame) {
+    EXPECT_EQ(keeps_pages(crowd.world()), frame > 1) << frame;
+    expect_sound(crowd.world());
+    crowd.expect_right();
+    crowd.shuffle();
+    crowd.move(0, 70'000, 1);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
 // Pages have room for all ids of the world, of which each of five sectors holds few.
 TEST(Movers, PagesOfManySectorsHaveRoom) {
   Crowd crowd(39, {{-1600, -50, -1000}, {14400, 50, 1000}});
