@@ -154,12 +154,13 @@ void for_each_box(const BoxView& boxes, const Take& take) {
   }
 }
 
-// Room for so many more objects.
+// Room for so many more objects, and for some that come once a scene is loaded: who is the first of them need
+// not wait until all are copied. What nobody writes takes no memory.
 void reserve(WorldState& s, std::size_t more) {
   const std::size_t reused = std::min(more, s.free_ids.size());
   const std::size_t limit = s.objects.size() + more - reused;
   if (limit <= s.objects.capacity()) return;
-  const std::size_t room = std::max(limit, 2 * s.objects.capacity());
+  const std::size_t room = std::max(limit + limit / 8, 2 * s.objects.capacity());
   s.objects.reserve(room);
   if (ChunkMap::kHasPages) s.generations.reserve(room);
 }

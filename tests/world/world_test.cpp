@@ -88,6 +88,20 @@ TEST(World, EqualsBruteForceAfterTenThousandRandomOperations) {
   }
 }
 
+// Who comes once a scene is loaded does not wait until all objects are copied to larger memory.
+TEST(World, HasRoomForSomeWhoComeOnceASceneIsLoaded) {
+  Random random(9);
+  std::vector<Box> boxes(8800);
+  for (Box& box : boxes) box = test::random_box(random, {{-500, -50, -500}, {500, 50, 500}});
+  std::vector<Handle> handles(boxes.size());
+  World world;
+  ASSERT_TRUE(world.insert(BoxView(std::span(boxes).first(8000)), std::span(handles).first(8000)));
+  const auto* const loaded = WorldAccess::state(world).objects.data();
+  for (std::size_t i = 8000; i < boxes.size(); ++i)
+    ASSERT_TRUE(world.insert(BoxView(std::span(boxes).subspan(i, 1)), std::span(handles).subspan(i, 1)));
+  EXPECT_EQ(WorldAccess::state(world).objects.data(), loaded);
+}
+
 TEST(World, KeepsNoSectorThatNothingStandsIn) {
   World world;
   const std::array<WorldBox, 3> home{wide({{0, 0, 0}, {1, 1, 1}}), wide({{9000, 0, 0}, {9001, 1, 1}}),
