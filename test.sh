@@ -41,6 +41,7 @@ ctest --preset release --show-only | grep ' python[.]module$' # which once stood
 ctest --preset release -j"$(nproc)"
 
 stage "clang and clang-tidy"
+scripts/check-kernels.sh build/release
 scripts/check-clang.sh
 scripts/check-tidy.sh build/release
 

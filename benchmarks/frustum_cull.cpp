@@ -13,6 +13,7 @@
 #include <sightline/frustum.hpp>
 
 #include "judged.hpp"
+#include "only_avx2.hpp"
 #include "plain_cull.hpp"
 #include "scalar_cull.hpp"
 #include "workbench/scene/random.hpp"
@@ -137,6 +138,10 @@ void flat_simd(benchmark::State& state, const Case& on) {
     return *cull_boxes(frustum(), boxes.view(), visible);
   });
 }
+void flat_simd_avx2(benchmark::State& state, const Case& on) {
+  const OnlyAvx2 without_avx512;
+  flat_simd(state, on);
+}
 void scalar_loop(benchmark::State& state, const Case& on) {
   run(state, on, [](const Boxes& boxes, std::span<ObjectId> visible) {
     return cull_boxes_scalar(frustum(), boxes, visible);
@@ -157,6 +162,7 @@ const int added = [] {
       const Case on{count, coherent};
       add("BareRead", on, bare_read);
       add("FlatSimd", on, flat_simd);
+      add("FlatSimdAvx2", on, flat_simd_avx2);
       for (const PlainLoop& loop : plain_loops()) {
         add(loop.name, on, [&loop](benchmark::State& state, const Case& with) {
           run(

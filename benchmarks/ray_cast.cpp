@@ -2,7 +2,6 @@
 // boxes and rays, and the paper's own ways. A grid of rays through a view, neighbours together, and rays from
 // anywhere to anywhere. Each checks its hits before it is timed.
 #include <benchmark/benchmark.h>
-#include <hwy/targets.h>
 
 #include <cstdlib>
 #include <map>
@@ -16,19 +15,12 @@
 #include "embree_rays.hpp"
 #include "library/rays/ray_grid.hpp"
 #include "library/rays/wide_rays.hpp"
+#include "only_avx2.hpp"
 #include "workbench/methods/ray_pvs/nearest_box.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline::benchmarks {
 namespace {
-
-// As on a processor that has no more.
-struct OnlyAvx2 {
-  OnlyAvx2() { hwy::SetSupportedTargetsForTest(HWY_AVX2); }
-  ~OnlyAvx2() { hwy::SetSupportedTargetsForTest(0); }
-  OnlyAvx2(const OnlyAvx2&) = delete;
-  OnlyAvx2& operator=(const OnlyAvx2&) = delete;
-};
 
 struct Setting {
   Boxes boxes;

@@ -8,6 +8,7 @@
 #include <sightline/world.hpp>
 
 #include "judged.hpp"
+#include "only_avx2.hpp"
 #include "scalar_cull.hpp"
 #include "workbench/scene/random.hpp"
 #include "world_case.hpp"
@@ -51,6 +52,11 @@ void cull_world(benchmark::State& state, const Case& c, std::span<const View> vi
 void world(benchmark::State& state) {
   const View view = looking(0.3f, tenth_of_view());
   cull_world(state, case_of(static_cast<std::size_t>(state.range(0))), {&view, 1}, false);
+}
+
+void world_avx2(benchmark::State& state) {
+  const OnlyAvx2 without_avx512;
+  world(state);
 }
 
 // Views in these directions, in widths of a view.
@@ -195,6 +201,7 @@ BENCHMARK(far_sectors_move)->Name("far_sectors/move")->Unit(benchmark::kMicrosec
 BENCHMARK(flat_simd)->Unit(benchmark::kMicrosecond);
 BENCHMARK(scalar_loop)->Unit(benchmark::kMicrosecond);
 BENCHMARK(world)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(world_avx2)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(one_view)->Unit(benchmark::kMicrosecond);
 BENCHMARK(four_views_sharing_half)->Unit(benchmark::kMicrosecond);
 BENCHMARK(four_views_in_two_pairs)->Unit(benchmark::kMicrosecond);

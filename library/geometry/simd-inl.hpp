@@ -70,9 +70,33 @@ HWY_INLINE hn::Mask<D> mask_of(D d, std::uint64_t bits) {
   return hn::LoadMaskBits(d, bytes);
 }
 
-// Writes the values of the mask's lanes one after another and returns how many there are; a whole vector is
-// written. Packed in a register first: the packing store is microcoded on some processors.
-#if HWY_TARGET == HWY_WASM  // where Highway looks up byte by byte, with a branch each
+// packed(d, values, keep) and (d, values, bits): the values of the mask's lanes, one after another, and any
+// behind them. By tables of our own where a processor has no such operation: of Highway's, g++ copies all to
+// the stack whenever a number of them is read.
+constexpr bool kPacksByTable =
+    HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_WASM;
+#if HWY_TARGET == HWY_AVX2
+// Four bits a lane: where it comes from.
+inline constexpr std::array<std::uint32_t, 256> kPackedLanes = [] {
+  std::array<std::uint32_t, 256> out{};
+  for (std::uint32_t bits = 0; bits < 256; ++bits) {
+    std::uint32_t to = 0;
+    for (std::uint32_t lane = 0; lane < 8; ++lane)
+      if (bits >> lane & 1) out[bits] |= lane << 4 * to++;
+  }
+  return out;
+}();
+
+template <class D>
+HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, std::uint32_t bits) {
+  static_assert(hn::MaxLanes(D()) == 8);
+  const hn::RebindToUnsigned<D> u;
+  alignas(32) static constexpr std::uint32_t kShift[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+  const auto from = hn::Shr(hn::Set(u, kPackedLanes[bits]), hn::Load(u, kShift));
+  const __m256i out = _mm256_permutevar8x32_epi32(hn::BitCast(u, values).raw, from.raw);
+  return hn::BitCast(d, hn::Vec<decltype(u)>{out});
+}
+#elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_WASM
 struct PackedBytes {
   alignas(16) std::uint8_t from[16][16] = {};
 
@@ -91,20 +115,37 @@ struct PackedBytes {
 inline constexpr PackedBytes kPackedBytes;
 
 template <class D>
-HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
+HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, std::uint32_t bits) {
   static_assert(hn::MaxLanes(D()) == 4);
-  const std::uint32_t bits = bits_of(d, keep);
+#if HWY_TARGET == HWY_WASM  // where Highway looks up byte by byte, with a branch each
   const v128_t from = wasm_v128_load(kPackedBytes.from[bits]);
-  wasm_v128_store(out, wasm_i8x16_swizzle(static_cast<v128_t>(values.raw), from));
-  return static_cast<std::size_t>(std::popcount(bits));
+  (void)d;
+  return hn::Vec<D>{wasm_i8x16_swizzle(static_cast<v128_t>(values.raw), from)};
+#else
+  const hn::Repartition<std::uint8_t, D> u8;
+  return hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(u8, values), hn::Load(u8, kPackedBytes.from[bits])));
+#endif
 }
 #else
 template <class D>
-HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
-  hn::StoreU(hn::Compress(values, keep), d, out);
-  return hn::CountTrue(d, keep);
+HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, std::uint32_t bits) {
+  return hn::Compress(values, mask_of(d, bits));
 }
 #endif
+
+template <class D>
+HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, hn::Mask<D> keep) {
+  if constexpr (kPacksByTable) return packed(d, values, bits_of(d, keep));
+  return hn::Compress(values, keep);
+}
+
+// Writes the values of the mask's lanes one after another and returns how many there are; a whole vector is
+// written. Packed in a register first: the packing store is microcoded on some processors.
+template <class D>
+HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
+  hn::StoreU(packed(d, values, keep), d, out);
+  return hn::CountTrue(d, keep);
+}
 
 // Lets `from` point at a vector of values each: where fewer than a vector's are left they are copied to
 // `room`, the last one repeated, rather than read beyond.

@@ -146,13 +146,15 @@ HWY_INLINE Glance glance(const DepthTiles& tiles, const Question& q) {
   const auto sure = hn::And(q.sure, finite);
   const auto asked = hn::And(sure, bounds.some);
   // Those not asked for look at the first tile.
-  const PixelRanges ranges = pixel_ranges(bounds, asked);
+  Glance out{pixel_ranges(bounds, asked), 0, 0};  // where it stays: copies of many vectors take their time
+  const PixelRanges& ranges = out.ranges;
   const auto behind_all = hn::AndNot(hn::RebindMask(f, ranges.many),
                                      hn::Lt(q.nearest, least_at_corners(tiles, tiles.farthest, ranges)));
   const auto before_some = hn::Gt(q.nearest, least_at_corners(tiles, tiles.nearest, ranges));
-  std::uint32_t seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
-  if (SIGHTLINE_MUTANT(unsure_questions_hidden)) seen = bits_of(f, hn::And(asked, before_some));
-  return {ranges, seen, bits_of(f, hn::AndNot(hn::Or(behind_all, before_some), asked))};
+  out.seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
+  if (SIGHTLINE_MUTANT(unsure_questions_hidden)) out.seen = bits_of(f, hn::And(asked, before_some));
+  out.open = bits_of(f, hn::AndNot(hn::Or(behind_all, before_some), asked));
+  return out;
 }
 
 // visible[i] = 1 where thing i may be seen, else 0, for `count` of them, a vector at a time: question(from)

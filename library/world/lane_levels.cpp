@@ -208,7 +208,7 @@ HWY_INLINE std::uint16_t* write_block(const LaneState& state, bool faded, std::u
     auto chosen = hn::PromoteTo(u, hn::LoadU(bytes, state.level.data() + i));
     if (faded)
       chosen = hn::Or(chosen, hn::ShiftLeft<8>(hn::PromoteTo(u, hn::LoadU(bytes, state.fade.data() + i))));
-    const auto kept = hn::BitCast(hn::RebindToSigned<U>(), hn::Compress(chosen, mask_of(u, here)));
+    const auto kept = hn::BitCast(hn::RebindToSigned<U>(), packed(u, chosen, here));
     hn::StoreU(hn::DemoteTo(pairs, kept), pairs, out);
     out += std::popcount(here);
   }

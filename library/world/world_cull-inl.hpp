@@ -33,6 +33,7 @@ using geometry::HWY_NAMESPACE::bits_of;
 using geometry::HWY_NAMESPACE::distance;
 using geometry::HWY_NAMESPACE::lowest;
 using geometry::HWY_NAMESPACE::mask_of;
+using geometry::HWY_NAMESPACE::packed;
 using geometry::HWY_NAMESPACE::spread;
 using geometry::HWY_NAMESPACE::store_kept;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
@@ -291,7 +292,7 @@ HWY_INLINE std::size_t write_seen(const ChunkMap::ChunkView& chunk, std::uint8_t
     if (i + lanes > chunk.count) keep = hn::And(keep, hn::FirstN(u, chunk.count - i));
     const auto objects = hn::Load(u, chunk.objects + i);
     if (chunk.loose) keep = hn::And(keep, are_objects(objects));
-    if (masks) store_masks(hn::Compress(mask, keep), masks + kept);
+    if (masks) store_masks(packed(u, mask, keep), masks + kept);
     kept += store_kept(u, objects, keep, ids + kept);
   }
   return kept - before;
