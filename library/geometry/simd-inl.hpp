@@ -143,7 +143,12 @@ HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, hn::Mask<D> keep) {
 // written. Packed in a register first: the packing store is microcoded on some processors.
 template <class D>
 HWY_INLINE std::size_t store_kept(D d, hn::Vec<D> values, hn::Mask<D> keep, hn::TFromD<D>* HWY_RESTRICT out) {
-  hn::StoreU(packed(d, values, keep), d, out);
+  if constexpr (kPacksByTable) {
+    const std::uint32_t bits = bits_of(d, keep);
+    hn::StoreU(packed(d, values, bits), d, out);
+    return static_cast<std::size_t>(std::popcount(bits));
+  }
+  hn::StoreU(hn::Compress(values, keep), d, out);
   return hn::CountTrue(d, keep);
 }
 
