@@ -29,7 +29,8 @@ line sanitizers sanitizers
 random_scenes() (
   export SIGHTLINE_RANDOM_SCENES=20000
   build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomScenes.*' &&
-    build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomWorlds.*'
+    build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomWorlds.*' &&
+    SIGHTLINE_RANDOM_SCENES=12000 build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomLives.*'
 )
 line random-scenes random_scenes
 line surfaces scripts/check-surfaces.sh build/release --full

@@ -21,23 +21,36 @@ inline WorldBox wide(const Box& b, const WorldPoint& by = {}) {
   return {{b.min.x + by.x, b.min.y + by.y, b.min.z + by.z}, {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
 }
 
-/// Least signed distance of the box's best corner over all planes, in double precision, from the matrices
-/// alone.
-inline double depth_in(const WorldView& view, const WorldBox& b) {
+/// The planes around what a view sees, about its origin: unit normals that point inwards. From the matrices
+/// alone, in double precision; without those at infinity.
+inline std::vector<glm::dvec4> planes_of(const WorldView& view) {
   using namespace geometry;
   const glm::dmat4 rows =
       glm::transpose(to_double(view.view.eye_to_clip) * to_double(view.view.world_to_eye));
-  double least = 1e300;
+  std::vector<glm::dvec4> out;
   for (const glm::dvec4& plane : {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
                                   rows[2], rows[3] - rows[2]}) {
     const double length = glm::length(glm::dvec3(plane));
-    if (length < 1e-12 * std::fabs(plane.w)) continue;
-    const glm::dvec3 corner((plane.x >= 0 ? b.max.x : b.min.x) - view.origin.x,
-                            (plane.y >= 0 ? b.max.y : b.min.y) - view.origin.y,
-                            (plane.z >= 0 ? b.max.z : b.min.z) - view.origin.z);
-    least = std::min(least, (glm::dot(glm::dvec3(plane), corner) + plane.w) / length);
+    if (length >= 1e-12 * std::fabs(plane.w)) out.push_back(plane / length);
+  }
+  return out;
+}
+
+/// Least signed distance of the box's best corner over all planes about an origin.
+inline double depth_in(std::span<const glm::dvec4> planes, const WorldPoint& origin, const WorldBox& b) {
+  double least = 1e300;
+  for (const glm::dvec4& plane : planes) {
+    const glm::dvec3 corner((plane.x >= 0 ? b.max.x : b.min.x) - origin.x,
+                            (plane.y >= 0 ? b.max.y : b.min.y) - origin.y,
+                            (plane.z >= 0 ? b.max.z : b.min.z) - origin.z);
+    least = std::min(least, glm::dot(glm::dvec3(plane), corner) + plane.w);
   }
   return least;
+}
+
+/// The same for a view's own.
+inline double depth_in(const WorldView& view, const WorldBox& b) {
+  return depth_in(planes_of(view), view.origin, b);
 }
 
 inline void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
