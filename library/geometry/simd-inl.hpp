@@ -97,33 +97,28 @@ HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, std::uint32_t bits) {
   return hn::BitCast(d, hn::Vec<decltype(u)>{out});
 }
 #elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_WASM
-struct PackedBytes {
-  alignas(16) std::uint8_t from[16][16] = {};
-
-  constexpr PackedBytes() {
-    for (std::uint32_t bits = 0; bits < 16; ++bits) {
-      std::uint32_t to = 0;
-      for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        if ((bits >> lane & 1) == 0) continue;
-        for (std::uint32_t byte = 0; byte < 4; ++byte)
-          from[bits][4 * to + byte] = static_cast<std::uint8_t>(4 * lane + byte);
-        ++to;
-      }
-    }
+// A byte a byte: the same.
+alignas(16) inline constexpr std::array<std::array<std::uint8_t, 16>, 16> kPackedBytes = [] {
+  std::array<std::array<std::uint8_t, 16>, 16> out{};
+  for (std::uint32_t bits = 0; bits < 16; ++bits) {
+    std::uint32_t to = 0;
+    for (std::uint32_t from = 0; from < 16; ++from)
+      if (bits >> from / 4 & 1) out[bits][to++] = static_cast<std::uint8_t>(from);
   }
-};
-inline constexpr PackedBytes kPackedBytes;
+  return out;
+}();
 
 template <class D>
 HWY_INLINE hn::Vec<D> packed(D d, hn::Vec<D> values, std::uint32_t bits) {
   static_assert(hn::MaxLanes(D()) == 4);
 #if HWY_TARGET == HWY_WASM  // where Highway looks up byte by byte, with a branch each
-  const v128_t from = wasm_v128_load(kPackedBytes.from[bits]);
+  const v128_t from = wasm_v128_load(kPackedBytes[bits].data());
   (void)d;
   return hn::Vec<D>{wasm_i8x16_swizzle(static_cast<v128_t>(values.raw), from)};
 #else
   const hn::Repartition<std::uint8_t, D> u8;
-  return hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(u8, values), hn::Load(u8, kPackedBytes.from[bits])));
+  return hn::BitCast(d,
+                     hn::TableLookupBytes(hn::BitCast(u8, values), hn::Load(u8, kPackedBytes[bits].data())));
 #endif
 }
 #else

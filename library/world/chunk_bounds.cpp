@@ -102,7 +102,7 @@ void ChunkMap::note_shape(std::uint32_t chunk) noexcept {
   Group& b = groups_[c.group];
   b.first_lane[c.index_in_group] = c.first_lane;
   const bool movers = c.pool == kMovers,
-             in_order = kHasPages && movers && c.previous < kept_pages_ && c.live == kCapacity;
+             in_order = kHasPages && movers && is_kept_page(c) && c.live == kCapacity;
   b.count_and_size[c.index_in_group] = c.count | c.capacity << Group::kSize |
                                        (c.live < c.count || movers ? Group::kLoose : 0) |
                                        (in_order ? Group::kInOrder : 0);

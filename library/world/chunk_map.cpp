@@ -198,8 +198,7 @@ std::uint32_t ChunkMap::add_chunk(std::uint32_t key, std::uint32_t capacity, Box
 void ChunkMap::free_chunk(std::uint32_t chunk) {
   take_from_group(chunk);
   Chunk& c = chunks_[chunk];
-  const bool kept = kHasPages && c.pool == kMovers && c.previous < kept_pages_;  // as a page's lanes are
-  if (!kept) give_lanes(pools_[c.pool], c.first_lane, c.capacity);
+  if (!kHasPages || !is_kept_page(c)) give_lanes(pools_[c.pool], c.first_lane, c.capacity);
   c.count = c.live = c.counted = 0;
   c.key = kNone;
   note_change(chunk);

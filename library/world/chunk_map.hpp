@@ -417,6 +417,7 @@ private:
   [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
     return chunk.previous != kNone;
   }
+  [[nodiscard]] bool is_kept_page(const Chunk& chunk) const noexcept;
   void leave(std::uint32_t chunk, std::uint32_t slot);
   void leave_soon(ObjectId object);
   void leave_now();

@@ -200,6 +200,11 @@ std::uint32_t ChunkMap::open_mover_chunk() {
   return open_ = added;
 }
 
+// Of the first pages, whose lanes stay theirs.
+bool ChunkMap::is_kept_page(const Chunk& c) const noexcept {
+  return c.pool == kMovers && is_page(c) && c.previous < kept_pages_;
+}
+
 // The chunk of an id's page.
 std::uint32_t ChunkMap::open_page(ObjectId object) {
   const std::uint32_t page = object / kCapacity;

@@ -48,11 +48,6 @@ inline double depth_in(std::span<const glm::dvec4> planes, const WorldPoint& ori
   return least;
 }
 
-/// The same for a view's own.
-inline double depth_in(const WorldView& view, const WorldBox& b) {
-  return depth_in(planes_of(view), view.origin, b);
-}
-
 inline void expect_right(const World& world, Culler& culler, const std::map<ObjectId, WorldBox>& twin,
                          std::span<const WorldView> views, double tolerance) {
   std::vector<ObjectId> visible(cull_capacity(world));
@@ -65,9 +60,11 @@ inline void expect_right(const World& world, Culler& culler, const std::map<Obje
     ASSERT_NE(masks[i], 0);
     ASSERT_TRUE(seen.emplace(visible[i], masks[i]).second) << "written twice: " << visible[i];
   }
+  std::vector<std::vector<glm::dvec4>> planes;
+  for (const WorldView& view : views) planes.push_back(planes_of(view));
   for (const auto& [id, box] : twin) {
     for (std::size_t v = 0; v < views.size(); ++v) {
-      const double depth = depth_in(views[v], box);
+      const double depth = depth_in(planes[v], views[v].origin, box);
       const bool kept = seen.contains(id) && (seen[id] >> v & 1);
       if (depth >= 0) ASSERT_TRUE(kept) << "lost object " << id << " in view " << v;
       if (depth < -tolerance)

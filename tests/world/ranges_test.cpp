@@ -191,8 +191,9 @@ private:
     for (std::size_t v = 0; v < views.size(); ++v) {
       const bool plain = views[v].layers == kAllLayers && views[v].min_area == 0 && !views[v].occlusion;
       if (!plain || distances_) continue;
+      const std::vector<glm::dvec4> planes = test::planes_of(views[v].view);
       for (const Handle h : standing_) {
-        const double depth = test::depth_in(views[v].view, world.box(h));
+        const double depth = test::depth_in(planes, views[v].view.origin, world.box(h));
         const auto found = got.find(order.slot(world, h));
         const bool kept = found != got.end() && (found->second >> v & 1);
         if (depth >= 0) EXPECT_TRUE(kept) << "lost " << h.index << " in view " << v;
