@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <deque>
-#include <numbers>
 
 #include <sightline/rays.hpp>
 #include <sightline/world.hpp>
 
-#include "support/run_threads.hpp"
 #include "support/solid_boxes.hpp"
+#include "support/streets_and_rooms.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline {
@@ -41,22 +39,6 @@ private:
   double cost_ = 0, frustum_ = 0;
 };
 
-// Blocks along streets, and things that stand between them.
-std::vector<Box> town(std::uint32_t seed, int blocks) {
-  Random random(seed);
-  std::vector<Box> out;
-  for (int x = 0; x < blocks; ++x) {
-    for (int z = 0; z < blocks; ++z) {
-      const Vec3 at{40.0f * static_cast<float>(x), 10, 40.0f * static_cast<float>(z)};
-      out.push_back(box_at(at, {14, random.between(8, 20), 14}));
-      for (int i = 0; i < 30; ++i)
-        out.push_back(box_at({at.x + 20 + random.between(-3, 3), 1, at.z + random.between(-20, 20)},
-                             {0.5f, 0.5f, 0.5f}));
-    }
-  }
-  return out;
-}
-
 // Things that hide nothing from one another.
 std::vector<Box> field(std::uint32_t seed, int things) {
   Random random(seed);
@@ -64,10 +46,6 @@ std::vector<Box> field(std::uint32_t seed, int things) {
   for (int i = 0; i < things; ++i)
     out.push_back(box_at({random.between(-400, 400), 0, random.between(-400, 400)}, {0.2f, 0.05f, 0.2f}));
   return out;
-}
-
-Vec3 heading(float angle) {
-  return {std::sin(angle), -0.02f, -std::cos(angle)};
 }
 
 // What the costs say of a cull by frustum.
@@ -175,36 +153,6 @@ TEST(AutomaticOcclusion, LosesNothingThatARayThroughAPixelMeets) {
   }
   EXPECT_EQ(lost, 0u);
   EXPECT_LT(3 * kept, 2 * in_view);
-}
-
-TEST(AutomaticOcclusion, GivesTheSameBitsForAnyNumberOfJobs) {
-  const SolidBoxes scene(town(5, 12));
-  std::vector<std::vector<Culled>> answers;
-  for (const std::uint32_t threads : {1u, 2u, 8u}) {
-    Culler culler;
-    CullOptions options = automatic(3000);
-    if (threads > 1) options.jobs = {run_threads, nullptr, threads};
-    std::vector<Culled> frames;
-    for (int frame = 0; frame < 24; ++frame) {
-      const float t = static_cast<float>(frame);
-      const View camera = looking({20, 2, 450 - t}, heading(0.02f * t)),
-                 other = looking({20.1f, 2, 450 - t}, heading(0.02f * t + 0.4f));
-      const std::array views{CullView{.view = {camera, {}}}, CullView{.view = {other, {}}},
-                             CullView{.view = {camera, {}}}};
-      frames.push_back(cull_with(culler, scene.world, views, options, frame % 3 != 0));
-    }
-    answers.push_back(std::move(frames));
-  }
-  std::size_t dropped = 0;
-  for (std::size_t frame = 0; frame < answers[0].size(); ++frame) {
-    dropped += answers[0][frame].result.culled_occlusion;
-    for (std::size_t k = 1; k < answers.size(); ++k) {
-      ASSERT_EQ(answers[k][frame].ids, answers[0][frame].ids);
-      ASSERT_EQ(answers[k][frame].masks, answers[0][frame].masks);
-      ASSERT_EQ(answers[k][frame].result.cost, answers[0][frame].result.cost);
-    }
-  }
-  EXPECT_GT(dropped, 1000u);
 }
 
 TEST(AutomaticOcclusion, KeepsItsPromiseForSeveralViewsWithMasksAndWithout) {

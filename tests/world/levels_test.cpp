@@ -20,7 +20,7 @@ namespace {
 using geometry::to_double;
 using scene::Random;
 
-constexpr Box kPlace{{-300, -40, -300}, {300, 40, 300}};
+constexpr Box kField{{-300, -40, -300}, {300, 40, 300}};
 
 double size_in(const WorldView& view, const WorldBox& b, double scale) {
   const auto& m = view.view.eye_to_clip.m;
@@ -48,7 +48,7 @@ public:
   explicit Played(std::uint32_t seed) : random_(seed) {
     const std::size_t count = seed % 50 == 0 ? 3000 : 30 + random_.below(300);
     std::vector<Box> boxes;
-    for (std::size_t i = 0; i < count; ++i) boxes.push_back(test::random_box(random_, kPlace));
+    for (std::size_t i = 0; i < count; ++i) boxes.push_back(test::random_box(random_, kField));
     handles_.resize(count);
     EXPECT_TRUE(world_.insert(BoxView(boxes), handles_));
     limits_.emplace_back();
@@ -69,7 +69,7 @@ public:
   void move() {
     const std::size_t some = handles_.size() / 3;
     std::vector<Box> boxes;
-    for (std::size_t i = 0; i < some; ++i) boxes.push_back(test::random_box(random_, kPlace));
+    for (std::size_t i = 0; i < some; ++i) boxes.push_back(test::random_box(random_, kField));
     ASSERT_TRUE(world_.move(std::span(handles_).first(some), BoxView(boxes)));
   }
 
@@ -78,7 +78,7 @@ public:
     const std::size_t some = handles_.size() / 4;
     ASSERT_TRUE(world_.remove(std::span(handles_).first(some)));
     std::vector<Box> boxes;
-    for (std::size_t i = 0; i < some; ++i) boxes.push_back(test::random_box(random_, kPlace));
+    for (std::size_t i = 0; i < some; ++i) boxes.push_back(test::random_box(random_, kField));
     ASSERT_TRUE(world_.insert(BoxView(boxes), std::span(handles_).first(some)));
     for (std::size_t i = 0; i < some; ++i) ASSERT_EQ(world_.levels(handles_[i]), kNoLevels);
   }
@@ -86,7 +86,7 @@ public:
   // A camera that walks and looks about, by the same options in all frames.
   void walk(int frame) {
     if (frame == 0) {
-      camera_ = test::random_camera(random_, kPlace);
+      camera_ = test::random_camera(random_, kField);
       walked_.levels = {.hysteresis = random_.between(0, 0.3f), .fade = random_.below(2) * 0.3f};
     }
     const float step = random_.between(0, 3);
@@ -125,11 +125,11 @@ public:
 
   // A camera that goes on from frame to frame, and others.
   void cull(int frame) {
-    if (frame == 0) camera_ = test::random_camera(random_, kPlace);
+    if (frame == 0) camera_ = test::random_camera(random_, kField);
     camera_.eye.x += random_.between(-5, 5), camera_.eye.z += random_.between(-5, 5);
     const Result<View> made = make_view(camera_, 1280, 720);
     const WorldView camera{made ? *made : *make_view({}, 1280, 720), {}};
-    std::vector<CullView> views{{.view = {test::random_view(random_, kPlace), {}}}, {.view = camera}};
+    std::vector<CullView> views{{.view = {test::random_view(random_, kField), {}}}, {.view = camera}};
     if (random_.below(2) == 0) views.push_back(views[0]);
     CullOptions options{.jobs = {test::run_threads, nullptr, 1 + random_.below(3)}};
     options.levels = {.view = 1, .key = random_.below(2)};
