@@ -106,8 +106,9 @@ struct Occluder {
 /// Makes an occluder of any mesh, closed or not: positions, indices and sides as OccluderMesh::make has them.
 /// What can be looked through must not be among the triangles.
 ///
-/// Flat pieces are merged where they lie on one plane (within 1e-6 of the largest coordinate). Where all of
-/// that is no more than options.most_triangles, it is the occluder. Otherwise these are shared out among the
+/// Flat pieces are merged where they lie on one plane (within 1e-6 of the largest coordinate), along edges
+/// that are straight but for the rounding of their corners. Where all of that is no more than
+/// options.most_triangles, it is the occluder. Otherwise these are shared out among the
 /// parts that hang together, by their size: a closed part gets a convex hull of its own points where that
 /// lies inside, or a simplified surface or boxes inside it (surface nets, Gibson 1998; edge collapses,
 /// Garland & Heckbert 1997), whichever covers most; or its largest flat triangles, where these do. An open

@@ -13,7 +13,9 @@ using geometry::to_double;
 
 namespace {
 
-constexpr double kFlat = 1e-6;  // off the plane, and off a straight edge, of the largest coordinate
+// Of the largest coordinate: off the plane, and out of a straight edge; and how far apart positions may lie
+// on one straight edge that are rounded, each by half a unit in the last place along three axes.
+constexpr double kFlat = 1e-6, kRounding = 2.1e-7;
 constexpr std::size_t kMostCorners = 400;  // of an outline: its cost grows with the square
 
 class FlatParts {
@@ -35,16 +37,14 @@ private:
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> region_;     // on one plane
   std::vector<std::uint32_t> of_region_;  // the seed of the region that a triangle lies in
-  double tolerance_ = 0;
+  double reach_ = 0;                      // the largest coordinate
   std::vector<Candidate> out_;
 };
 
 FlatParts::FlatParts(const MeshParts& mesh)
     : mesh_(mesh), taken_(mesh.triangles.size(), 0), of_region_(mesh.triangles.size(), MeshParts::kNone) {
-  double reach = 0;
   for (const Vec3& p : mesh.positions)
-    reach = std::max({reach, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
-  tolerance_ = kFlat * reach;
+    reach_ = std::max({reach_, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
   for (std::uint32_t part = 0; part < mesh.parts.size(); ++part) {
     // Large triangles say best on which plane they lie.
     std::vector<std::pair<double, std::uint32_t>> seeds;
@@ -69,7 +69,7 @@ void FlatParts::grow(std::uint32_t seed, std::uint32_t part) {
   const double at = glm::dot(up, point(mesh_.triangles[seed][0]));
   const auto on_plane = [&](std::uint32_t t) {
     for (const std::uint32_t v : mesh_.triangles[t]) {
-      if (std::fabs(glm::dot(up, point(v)) - at) > tolerance_) return false;
+      if (std::fabs(glm::dot(up, point(v)) - at) > kFlat * reach_) return false;
     }
     return glm::dot(normal(t), up) > 0;
   };
@@ -86,7 +86,8 @@ void FlatParts::grow(std::uint32_t seed, std::uint32_t part) {
   }
   Outline2 outline;
   std::vector<std::array<std::uint32_t, 3>> merged;
-  if (region_.size() > 2 && find_outline(up, outline)) merged = triangulate(outline, tolerance_);
+  if (region_.size() > 2 && find_outline(up, outline))
+    merged = triangulate(outline, kFlat * reach_, kRounding * reach_);
   if (merged.empty() || merged.size() >= region_.size()) {
     for (const std::uint32_t t : region_) add(mesh_.triangles[t], mesh_.one_sided[t], part);
     return;
@@ -108,7 +109,10 @@ bool FlatParts::find_outline(const glm::dvec3& up, Outline2& outline) const {
   std::map<std::uint32_t, std::uint32_t> known;
   const auto local = [&](std::uint32_t v) {
     const auto [place, added] = known.try_emplace(v, static_cast<std::uint32_t>(outline.vertex.size()));
-    if (added) outline.vertex.push_back(v), outline.points.push_back(flat(v));
+    if (added) {
+      outline.vertex.push_back(v), outline.points.push_back(flat(v));
+      outline.heights.push_back(glm::dot(up, point(v)));
+    }
     return place->second;
   };
   for (const std::uint32_t t : region_) {

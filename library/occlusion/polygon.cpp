@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sightline::occlusion {
 
@@ -37,16 +38,37 @@ std::vector<Loop> loops_of(const Outline2& outline) {
   return loops;
 }
 
+// Whether b lies on the edge from a to c: it may stand out of the region by `tolerance`, but into it, and off
+// the plane, no farther than rounding may put it. An edge without it would lead beyond the region there.
+bool lies_on(const Outline2& outline, std::uint32_t a, std::uint32_t b, std::uint32_t c, double tolerance,
+             double rounding) {
+  const glm::dvec2 from = outline.points[a], to_b = outline.points[b] - from, to_c = outline.points[c] - from;
+  const double along = glm::dot(to_b, to_c) / glm::dot(to_c, to_c),
+               in = left_of(from, from + to_c, from + to_b),
+               height = glm::mix(outline.heights[a], outline.heights[c], along);
+  return along > 0 && along < 1 && -tolerance <= in && in <= rounding &&
+         std::fabs(outline.heights[b] - height) <= rounding;
+}
+
 // Leaves out corners on straight edges.
-void straighten(const Outline2& outline, double tolerance, Loop& loop) {
-  for (std::size_t i = 0; i < loop.size() && loop.size() > 3;) {
-    const glm::dvec2 &a = outline.points[loop[(i + loop.size() - 1) % loop.size()]],
-                     &b = outline.points[loop[i]], &c = outline.points[loop[(i + 1) % loop.size()]];
-    if (std::fabs(left_of(a, c, b)) <= tolerance && glm::dot(b - a, c - b) > 0)
-      loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
+void straighten(const Outline2& outline, double tolerance, double rounding, Loop& loop) {
+  const Loop all = loop;
+  const auto next = [&](std::size_t i) { return (i + 1) % all.size(); };
+  std::vector<std::size_t> kept(all.size());
+  std::iota(kept.begin(), kept.end(), 0);
+  // An edge in the place of others has to pass all corners of theirs.
+  for (std::size_t i = 0; i < kept.size() && kept.size() > 3;) {
+    const std::size_t from = kept[(i + kept.size() - 1) % kept.size()], to = kept[(i + 1) % kept.size()];
+    std::size_t between = next(from);
+    while (between != to && lies_on(outline, all[from], all[between], all[to], tolerance, rounding))
+      between = next(between);
+    if (between == to)
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
     else
       ++i;
   }
+  loop.clear();
+  for (const std::size_t i : kept) loop.push_back(all[i]);
 }
 
 double area_of(const Outline2& outline, const Loop& loop) {
@@ -149,9 +171,10 @@ bool covers_region_alone(const Outline2& outline, const std::array<glm::dvec2, 3
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> triangulate(const Outline2& outline, double tolerance) {
+std::vector<std::array<std::uint32_t, 3>> triangulate(const Outline2& outline, double tolerance,
+                                                      double rounding) {
   std::vector<Loop> loops = loops_of(outline);
-  for (Loop& loop : loops) straighten(outline, tolerance, loop);
+  for (Loop& loop : loops) straighten(outline, tolerance, rounding, loop);
   // The one around all others, and holes.
   std::ranges::stable_sort(
       loops, [&](const Loop& a, const Loop& b) { return area_of(outline, a) > area_of(outline, b); });
@@ -167,7 +190,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const Outline2& outline, d
   if (!cut_ears(outline, std::move(whole), out)) return {};
   const auto& p = outline.points;
   for (const auto& t : out) {
-    if (!covers_region_alone(outline, {p[t[0]], p[t[1]], p[t[2]]}, 2 * tolerance)) return {};
+    if (!covers_region_alone(outline, {p[t[0]], p[t[1]], p[t[2]]}, 2 * rounding)) return {};
   }
   return out;
 }

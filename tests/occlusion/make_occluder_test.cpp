@@ -61,6 +61,35 @@ TEST(MakeOccluder, MergesWhatIsFlat) {
   }
 }
 
+TEST(MakeOccluder, MergesNothingBeyondADent) {
+  // A wall a kilometre away whose upper edge has a corner 0.7 mm too low, or too high: the one stays.
+  const auto wall = [](float up, float out) {
+    scene::Shape wall = test::surface(8, 2, false, false, [](float u, float v) {
+      return Vec3{1000 + 8 * u, 3 * v, 5};
+    });
+    wall.positions[9 * 2 + 4].y += up, wall.positions[9 * 2 + 4].z += out;
+    return wall;
+  };
+  const auto covers = [](const Occluder& made, double x, double y) {
+    const auto left_of = [&](std::size_t i, std::size_t j) {
+      const Vec3 &a = made.positions[made.indices[i]], &b = made.positions[made.indices[j]];
+      return (double{b.x} - double{a.x}) * (y - double{a.y}) >=
+             (double{b.y} - double{a.y}) * (x - double{a.x});
+    };
+    for (std::size_t i = 0; i < made.indices.size(); i += 3)
+      if (left_of(i, i + 1) && left_of(i + 1, i + 2) && left_of(i + 2, i)) return true;
+    return false;
+  };
+  const Occluder dented = make(wall(-7e-4f, 0)), bumped = make(wall(7e-4f, 0)), bent = make(wall(0, 7e-4f));
+  EXPECT_FALSE(covers(dented, 1004, 3 - 3.5e-4));
+  EXPECT_TRUE(covers(dented, 1004, 3 - 8e-4));
+  EXPECT_TRUE(covers(dented, 1001, 3 - 8e-4));
+  EXPECT_LT(dented.sides.size(), 6u);
+  EXPECT_EQ(bumped.sides.size(), 2u);
+  // Nor off its plane, where one sees it from the side.
+  EXPECT_TRUE(std::ranges::any_of(bent.indices, [&](std::uint32_t i) { return bent.positions[i].z > 5; }));
+}
+
 TEST(MakeOccluder, KeepsSidesApart) {
   // Two halves of one wall, of which one is drawn from its front alone, are not merged.
   const scene::Shape wall = test::surface(8, 8, false, false, [](float u, float v) { return Vec3{u, v, 0}; });
