@@ -121,7 +121,8 @@ bool FlatParts::find_outline(const glm::dvec3& up, Outline2& outline) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t other = mesh_.neighbours[t][k];
       if (other != MeshParts::kNone && of_region_[other] == region_[0]) continue;
-      outline.edges.emplace_back(local(corners[k]), local(corners[(k + 1) % 3]));
+      const std::uint32_t from = local(corners[k]);  // numbered first, whatever the compiler
+      outline.edges.emplace_back(from, local(corners[(k + 1) % 3]));
       if (outline.edges.size() > kMostCorners) return false;
     }
   }

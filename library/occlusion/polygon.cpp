@@ -56,16 +56,18 @@ void straighten(const Outline2& outline, double tolerance, double rounding, Loop
   const auto next = [&](std::size_t i) { return (i + 1) % all.size(); };
   std::vector<std::size_t> kept(all.size());
   std::iota(kept.begin(), kept.end(), 0);
-  // An edge in the place of others has to pass all corners of theirs.
-  for (std::size_t i = 0; i < kept.size() && kept.size() > 3;) {
+  // An edge in the place of others has to pass all corners of theirs. Until none can be left out: a corner
+  // that stands out may keep one beside it that goes once it is gone.
+  for (std::size_t i = 0, looked = 0; looked < kept.size() && kept.size() > 3;) {
+    i %= kept.size();
     const std::size_t from = kept[(i + kept.size() - 1) % kept.size()], to = kept[(i + 1) % kept.size()];
     std::size_t between = next(from);
     while (between != to && lies_on(outline, all[from], all[between], all[to], tolerance, rounding))
       between = next(between);
     if (between == to)
-      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i)), looked = 0;
     else
-      ++i;
+      ++i, ++looked;
   }
   loop.clear();
   for (const std::size_t i : kept) loop.push_back(all[i]);

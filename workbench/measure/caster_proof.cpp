@@ -58,7 +58,8 @@ Light random_light(const CasterOptions& options, const Camera& camera, const Vec
     return light;
   }
   // A lamp or a torch near the eye, at something before it.
-  const Vec3 at = plus(camera.eye, random.between(0, 8), random.direction());
+  const Vec3 way = random.direction();
+  const Vec3 at = plus(camera.eye, random.between(0, 8), way);
   const Vec3 shone_at = plus(camera.eye, random.between(5, 40), forward);
   light.position = {at.x, at.y, at.z};
   light.direction = plus(shone_at, -1, at);
