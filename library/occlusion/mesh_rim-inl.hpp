@@ -30,8 +30,9 @@ struct Rim {
   // Edges from a to b at which the mesh ends; the bands around them, as Bands has them, how far these reach
   // and how far they must; and whose they are, a bit a triangle.
   alignas(64) std::array<float, kMost> ax, ay, bx, by, at, slope, half, reach, least;
-  std::array<std::uint32_t, kMost> of;
+  alignas(64) std::array<std::uint32_t, kMost> of;
   std::size_t count = 0;
+  std::uint32_t of_some = 0;                      // the triangles that have some
   std::uint32_t unknown = 0;                      // triangles around which there is more
   alignas(64) std::array<float, kGroup> slant{};  // of the steepest triangle there, itself counted, too
 };
@@ -75,7 +76,7 @@ HWY_NOINLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF 
     for (auto* its :
          {&out.ax, &out.ay, &out.bx, &out.by, &out.at, &out.slope, &out.half, &out.reach, &out.least})
       (*its)[to] = each[v++][i];
-    out.of[to] = of[i];
+    out.of[to] = of[i], out.of_some |= of[i];
   }
 }
 
@@ -217,7 +218,7 @@ HWY_INLINE void prefetch_rim(const OccluderTopology& mesh, std::size_t group) {
 HWY_NOINLINE void find_rim(const DepthTiles& tiles, const OccluderTopology& mesh,
                            const RowTransform& transform, std::size_t group, std::uint32_t drawn, Rim& out) {
   const OccluderTopology::Group& its = mesh.groups[group];
-  out.count = 0, out.unknown = its.alone;
+  out.count = 0, out.unknown = its.alone, out.of_some = 0;
   look_around(tiles, mesh, transform, group, drawn, out);
   RimEnds ends;
   for (std::uint32_t i = its.first_rim; i < its.end_rim; ++i) {
@@ -268,11 +269,16 @@ HWY_INLINE hn::Mask<F> apart_from(const Rim& rim, std::size_t first, const Conve
 HWY_NOINLINE bool bands_in(const Rim& rim, std::uint32_t triangles, const Convex& polygon, Bands& out) {
   const F f;
   if ((rim.unknown & triangles) != 0) return false;
+  if ((rim.of_some & triangles) == 0) return true;
+  const hn::RebindToUnsigned<F> u32;
   for (std::size_t first = 0; first < rim.count; first += hn::Lanes(f)) {
-    const auto in = hn::AndNot(apart_from(rim, first, polygon), hn::FirstN(f, rim.count - first));
+    const auto of = hn::And(hn::Load(u32, &rim.of[first]), hn::Set(u32, triangles));
+    const auto theirs =
+        hn::And(hn::RebindMask(f, hn::Ne(of, hn::Zero(u32))), hn::FirstN(f, rim.count - first));
+    if (hn::AllFalse(f, theirs)) continue;
+    const auto in = hn::AndNot(apart_from(rim, first, polygon), theirs);
     for (std::uint32_t bits = bits_of(f, in); bits != 0; bits &= bits - 1) {
       const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(bits));
-      if ((rim.of[i] & triangles) == 0) continue;
       if (out.count == Bands::kMost) return false;
       const std::size_t to = out.count++;
       out.at[to] = rim.at[i], out.slope[to] = rim.slope[i], out.half[to] = rim.half[i];
