@@ -16,6 +16,7 @@ namespace {
 // Of the largest coordinate: off the plane, and out of a straight edge; and how far apart positions may lie
 // on one straight edge that are rounded, each by half a unit in the last place along three axes.
 constexpr double kFlat = 1e-6, kRounding = 2.1e-7;
+constexpr double kLeastUp = 0.9;  // the cosine to its plane's normal of a triangle that is not too thin
 constexpr std::size_t kMostCorners = 400;  // of an outline: its cost grows with the square
 
 class FlatParts {
@@ -24,14 +25,16 @@ public:
   std::vector<Candidate> take() { return std::move(out_); }
 
 private:
+  using Corners = std::array<std::uint32_t, 3>;
   [[nodiscard]] glm::dvec3 point(std::uint32_t v) const { return to_double(mesh_.positions[v]); }
-  [[nodiscard]] glm::dvec3 normal(std::uint32_t t) const {
-    const auto& [a, b, c] = mesh_.triangles[t];
+  [[nodiscard]] glm::dvec3 normal(const Corners& t) const {
+    const auto& [a, b, c] = t;
     return glm::cross(point(b) - point(a), point(c) - point(a));
   }
+  [[nodiscard]] glm::dvec3 normal(std::uint32_t t) const { return normal(mesh_.triangles[t]); }
   void grow(std::uint32_t seed, std::uint32_t part);
   [[nodiscard]] bool find_outline(const glm::dvec3& normal, Outline2& outline) const;
-  void add(const std::array<std::uint32_t, 3>& corners, bool one_sided, std::uint32_t part);
+  void add(const Corners& corners, bool one_sided, std::uint32_t part);
 
   const MeshParts& mesh_;
   std::vector<std::uint8_t> taken_;
@@ -56,7 +59,7 @@ FlatParts::FlatParts(const MeshParts& mesh)
   }
 }
 
-void FlatParts::add(const std::array<std::uint32_t, 3>& corners, bool one_sided, std::uint32_t part) {
+void FlatParts::add(const Corners& corners, bool one_sided, std::uint32_t part) {
   Candidate c;
   for (std::size_t k = 0; k < 3; ++k) c.corners[k] = mesh_.positions[corners[k]];
   c.sides = one_sided ? Sides::front : Sides::both, c.part = part, c.area = triangle_area(c.corners);
@@ -92,8 +95,12 @@ void FlatParts::grow(std::uint32_t seed, std::uint32_t part) {
     for (const std::uint32_t t : region_) add(mesh_.triangles[t], mesh_.one_sided[t], part);
     return;
   }
-  for (const auto& t : merged)
-    add({outline.vertex[t[0]], outline.vertex[t[1]], outline.vertex[t[2]]}, mesh_.one_sided[seed], part);
+  for (const auto& t : merged) {
+    const Corners corners{outline.vertex[t[0]], outline.vertex[t[1]], outline.vertex[t[2]]};
+    // As thin as its corners lie off the plane it may turn anywhere, and show where the mesh does not.
+    const glm::dvec3 its = normal(corners);
+    if (glm::dot(its, up) > kLeastUp * glm::length(its)) add(corners, mesh_.one_sided[seed], part);
+  }
 }
 
 // The edges that bound the region, seen from above it, and its triangles. False where there are too many.

@@ -90,6 +90,30 @@ TEST(MakeOccluder, MergesNothingBeyondADent) {
   EXPECT_TRUE(std::ranges::any_of(bent.indices, [&](std::uint32_t i) { return bent.positions[i].z > 5; }));
 }
 
+TEST(MakeOccluder, MergesNothingThatTurnsAside) {
+  // Three walls that bow by 0.4 mm, far away. Along their edges a merged wall may have
+  // triangles as thin as its corners lie off its plane, which would show where its front does not.
+  const scene::Shape tube = test::surface(3, 10, true, false, [](float u, float v) {
+    const std::array<Vec3, 3> around{Vec3{1, 0, 0}, Vec3{-0.5f, 0, -0.87f}, Vec3{-0.5f, 0, 0.87f}};
+    const Vec3 way = test::scaled(around[static_cast<std::size_t>(3 * u + 0.5f)], 1 + 1.69e-3f * v * (1 - v));
+    return Vec3{300 + way.x, v, way.z};
+  });
+  const auto normals = [](std::span<const Vec3> positions, std::span<const std::uint32_t> indices) {
+    std::vector<glm::dvec3> out;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      const auto at = [&](std::size_t k) { return geometry::to_double(positions[indices[i + k]]); };
+      out.push_back(glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0))));
+    }
+    return out;
+  };
+  const Occluder made = make(tube, Sides::front);
+  EXPECT_LT(made.sides.size(), tube.indices.size() / 6);
+  const std::vector<glm::dvec3> walls = normals(tube.positions, tube.indices);
+  for (const glm::dvec3& its : normals(made.positions, made.indices)) {
+    EXPECT_TRUE(std::ranges::any_of(walls, [&](const glm::dvec3& n) { return glm::dot(n, its) > 0.89; }));
+  }
+}
+
 TEST(MakeOccluder, KeepsSidesApart) {
   // Two halves of one wall, of which one is drawn from its front alone, are not merged.
   const scene::Shape wall = test::surface(8, 8, false, false, [](float u, float v) { return Vec3{u, v, 0}; });
