@@ -16,7 +16,7 @@ namespace {
 // Of the largest coordinate: off the plane, and out of a straight edge; and how far apart positions may lie
 // on one straight edge that are rounded, each by half a unit in the last place along three axes.
 constexpr double kFlat = 1e-6, kRounding = 2.1e-7;
-constexpr double kLeastUp = 0.9;  // the cosine to its plane's normal of a triangle that is not too thin
+constexpr double kLeastUp = 0.9999;  // the cosine to its plane's normal of a triangle that is not too thin
 constexpr std::size_t kMostCorners = 400;  // of an outline: its cost grows with the square
 
 class FlatParts {
