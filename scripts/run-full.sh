@@ -30,7 +30,8 @@ random_scenes() (
   export SIGHTLINE_RANDOM_SCENES=20000
   build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomScenes.*' &&
     build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomWorlds.*' &&
-    SIGHTLINE_RANDOM_SCENES=12000 build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomLives.*'
+    SIGHTLINE_RANDOM_SCENES=12000 build/release/tests/world_tests --gtest_brief=1 --gtest_filter='RandomLives.*' &&
+    SIGHTLINE_RANDOM_SCENES=3000 build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomOccluders.*'
 )
 line random-scenes random_scenes
 line surfaces scripts/check-surfaces.sh build/release --full

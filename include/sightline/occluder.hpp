@@ -108,16 +108,16 @@ struct Occluder {
 ///
 /// Flat pieces are merged where they lie on one plane (within 1e-6 of the largest coordinate), along edges
 /// that are straight but for the rounding of their corners. Where all of that is no more than
-/// options.most_triangles, it is the occluder. Otherwise these are shared out among the
-/// parts that hang together, by their size: a closed part gets a convex hull of its own points where that
-/// lies inside, or a simplified surface or boxes inside it (surface nets, Gibson 1998; edge collapses,
-/// Garland & Heckbert 1997), whichever covers most; or its largest flat triangles, where these do. An open
-/// part is closed by a lid for that, and those triangles are taken, one-sided, whose planes have all of its
-/// open edges behind them: of a dome or a hill, seen from above, much; of a valley nothing, unless it comes
-/// with walls and a floor. A part is closed where every edge has as many triangles of either direction, or an
-/// even number of both-sided ones; where some are drawn from their front alone they must look outwards. Every
-/// triangle and box is judged by itself before it is taken: none comes nearer to the surface than 5e-5 of the
-/// part's box. What is thinner than 1/32 of its part is seen as flat or not at all.
+/// options.most_triangles, it is the occluder. Otherwise these are shared out among the parts that hang
+/// together, by their size: a closed part gets a convex hull of its own points where that lies inside, or a
+/// simplified surface or boxes inside it (surface nets, Gibson 1998; edge collapses, Garland & Heckbert
+/// 1997), whichever covers most; or its largest flat triangles, where these do. An open part is closed by a
+/// lid for that, and those triangles are taken, one-sided, whose planes have all of its open edges behind
+/// them: of a dome or a hill, seen from above, much; of a valley nothing, unless it comes with walls and a
+/// floor. A part is closed where every edge has as many triangles of either direction, or an even number of
+/// both-sided ones; where some are drawn from their front alone they must look outwards. Every triangle and
+/// box is judged by itself before it is taken: none comes nearer to the surface than 5e-5 of the part's box.
+/// What is thinner than 1/32 of its part is seen as flat or not at all.
 ///
 /// Errors: as OccluderMesh::make; bad_argument for options out of range or without room for anything. Cost: n
 /// log n; a tenth of a second to half of one a large part. Threads: any. Allocates: about 400 bytes a

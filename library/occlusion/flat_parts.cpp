@@ -88,14 +88,14 @@ void FlatParts::grow(std::uint32_t seed, std::uint32_t part) {
     }
   }
   Outline2 outline;
-  std::vector<std::array<std::uint32_t, 3>> merged;
+  std::vector<Corners> merged;
   if (region_.size() > 2 && find_outline(up, outline))
     merged = triangulate(outline, kFlat * reach_, kRounding * reach_);
   if (merged.empty() || merged.size() >= region_.size()) {
     for (const std::uint32_t t : region_) add(mesh_.triangles[t], mesh_.one_sided[t], part);
     return;
   }
-  for (const auto& t : merged) {
+  for (const Corners& t : merged) {
     const Corners corners{outline.vertex[t[0]], outline.vertex[t[1]], outline.vertex[t[2]]};
     // As thin as its corners lie off the plane it may turn anywhere, and show where the mesh does not.
     const glm::dvec3 its = normal(corners);

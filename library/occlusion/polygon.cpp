@@ -42,10 +42,9 @@ std::vector<Loop> loops_of(const Outline2& outline) {
 // the plane, no farther than rounding may put it. An edge without it would lead beyond the region there.
 bool lies_on(const Outline2& outline, std::uint32_t a, std::uint32_t b, std::uint32_t c, double tolerance,
              double rounding) {
-  const glm::dvec2 from = outline.points[a], to_b = outline.points[b] - from, to_c = outline.points[c] - from;
-  const double along = glm::dot(to_b, to_c) / glm::dot(to_c, to_c),
-               in = left_of(from, from + to_c, from + to_b),
-               height = glm::mix(outline.heights[a], outline.heights[c], along);
+  const glm::dvec2 &from = outline.points[a], &at = outline.points[b], &to = outline.points[c];
+  const double along = glm::dot(at - from, to - from) / glm::dot(to - from, to - from),
+               in = left_of(from, to, at), height = glm::mix(outline.heights[a], outline.heights[c], along);
   return along > 0 && along < 1 && -tolerance <= in && in <= rounding &&
          std::fabs(outline.heights[b] - height) <= rounding;
 }
@@ -56,8 +55,8 @@ void straighten(const Outline2& outline, double tolerance, double rounding, Loop
   const auto next = [&](std::size_t i) { return (i + 1) % all.size(); };
   std::vector<std::size_t> kept(all.size());
   std::iota(kept.begin(), kept.end(), 0);
-  // An edge in the place of others has to pass all corners of theirs. Until none can be left out: a corner
-  // that stands out may keep one beside it that goes once it is gone.
+  // An edge in the place of others has to pass all corners of theirs. Until none can be left out: one that
+  // stands out keeps those beside it until it is gone itself.
   for (std::size_t i = 0, looked = 0; looked < kept.size() && kept.size() > 3;) {
     i %= kept.size();
     const std::size_t from = kept[(i + kept.size() - 1) % kept.size()], to = kept[(i + 1) % kept.size()];

@@ -91,8 +91,8 @@ TEST(MakeOccluder, MergesNothingBeyondADent) {
 }
 
 TEST(MakeOccluder, MergesNothingThatTurnsAside) {
-  // Three walls that bow by 0.4 mm, far away. Along their edges a merged wall may have
-  // triangles as thin as its corners lie off its plane, which would show where its front does not.
+  // Three walls that bow by 0.4 mm, far away. Along its edges a merged wall may have triangles as thin as its
+  // corners lie off its plane, which would show where its front does not.
   const scene::Shape tube = test::surface(3, 10, true, false, [](float u, float v) {
     const std::array<Vec3, 3> around{Vec3{1, 0, 0}, Vec3{-0.5f, 0, -0.87f}, Vec3{-0.5f, 0, 0.87f}};
     const Vec3 way = test::scaled(around[static_cast<std::size_t>(3 * u + 0.5f)], 1 + 1.69e-3f * v * (1 - v));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include <sightline/occluder.hpp>
 
@@ -21,15 +23,16 @@ struct RandomMesh {
 
 // Closed about an axis, or open at its ends: tubes, domes, bowls.
 scene::Shape about_axis(scene::Random& random) {
-  const bool open = random.below(2) == 0;
-  const float waves = random.between(0, 6), rows = static_cast<float>(2 + random.below(12));
-  const float swell = random.between(0, 0.5f), height = random.between(0.3f, 3);
-  return test::surface(
-      3 + random.below(20), static_cast<std::uint32_t>(rows), true, false, [&](float u, float v) {
-        const bool pole = !open && (v == 0 || v == 1);
-        const float r = pole ? 0 : 1 + swell * std::sin(waves * v);
-        return Vec3{r * std::cos(test::kTurn * u), height * v, r * -std::sin(test::kTurn * u)};
-      });
+  const bool closed = random.below(2) == 0;
+  const std::uint32_t rows = 2 + random.below(12);
+  const float waves = random.between(0, 6), swell = random.between(0, 0.5f), height = random.between(0.3f, 3);
+  std::vector<Vec3> profile;
+  for (std::uint32_t row = 0; row <= rows; ++row) {
+    const float v = static_cast<float>(row) / static_cast<float>(rows);
+    const bool pole = closed && (row == 0 || row == rows);
+    profile.push_back({pole ? 0 : 1 + swell * std::sin(waves * v), height * v, 0});
+  }
+  return test::turned(3 + random.below(20), profile);
 }
 
 scene::Shape some_shape(scene::Random& random) {
