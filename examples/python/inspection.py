@@ -17,10 +17,10 @@ view = sightline.CullView(camera, layers=1)
 (stats,), boxes = sightline.CullInspector().inspect(world, view)
 
 COLOURS = {"whole": "#2e8b57", "opened": "#e0a030", "dropped": "#b8c0c8"}
-lines = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="-210 -210 420 444" role="img" '
+lines = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="-224 -210 536 444" role="img" '
          'font-family="sans-serif" font-size="9">',
          '<title>Chunks from above, and what a view does with them</title>',
-         '<rect x="-210" y="-210" width="420" height="444" fill="#fff"/>']
+         '<rect x="-224" y="-210" width="536" height="444" fill="#fff"/>']
 for box in boxes[boxes["kind"] == sightline.DEBUG_CHUNK]:
     (x0, _, z0), (x1, _, z1) = box["box"]
     colour = COLOURS["whole" if box["whole"] else "opened" if box["seen"] else "dropped"]

@@ -33,10 +33,10 @@ COLOURS = ("#b8c0c8", "#e0a030", "#c03020")
 fill = {}
 for ids, colour in zip(steps.values(), COLOURS):
     fill.update(dict.fromkeys(ids.tolist(), colour))
-lines = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="-210 -210 420 444" role="img" '
+lines = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="-212 -210 468 444" role="img" '
          'font-family="sans-serif" font-size="9">',
          '<title>A town from above, and which houses throw a shadow on what a camera sees</title>',
-         '<rect x="-210" y="-210" width="420" height="444" fill="#fff"/>']
+         '<rect x="-212" y="-210" width="468" height="444" fill="#fff"/>']
 for house, ((x0, _, z0), (x1, _, z1)) in enumerate(houses):
     edge = ' stroke="#203040" stroke-width="2"' if house in seen else ""
     lines.append(f'<rect x="{x0:.0f}" y="{z0:.0f}" width="{x1 - x0:.0f}" height="{z1 - z0:.0f}" '
