@@ -92,7 +92,7 @@ Result<OccluderMesh> OccluderMesh::make(std::span<const Vec3> positions,
     return Status{StatusCode::bad_argument, "occluder: the T-junctions are none, expected open or closed"};
   OccluderMesh mesh;
   add_triangles(*mesh.topology_, positions, indices, sides);
-  sort_along_curve(*mesh.topology_);
+  sort_into_groups(*mesh.topology_);
   find_neighbours(*mesh.topology_);
   join_flat_polygons(*mesh.topology_);
   find_shared_edges(*mesh.topology_, junctions == TJunctions::closed);

@@ -101,36 +101,4 @@ void OccluderTopology::lay_out() {
   }
 }
 
-void sort_along_curve(OccluderTopology& mesh) {
-  Bounds bounds;
-  for (const Vec3& p : mesh.positions) bounds.add(p);
-  const glm::dvec3 size = glm::max(bounds.high - bounds.low, glm::dvec3(1e-30));
-  const auto key = [&](const std::array<std::uint32_t, 3>& t) {
-    const glm::dvec3 middle = (to_double(mesh.positions[t[0]]) + to_double(mesh.positions[t[1]]) +
-                               to_double(mesh.positions[t[2]])) /
-                              3.0;
-    const glm::dvec3 at = (middle - bounds.low) / size * 1023.0;
-    std::uint32_t out = 0;
-    for (int bit = 9; bit >= 0; --bit) {
-      for (int a = 0; a < 3; ++a)
-        out = out << 1 | (static_cast<std::uint32_t>(std::clamp(at[a], 0.0, 1023.0)) >> bit & 1);
-    }
-    return out;
-  };
-  struct Keyed {
-    std::uint32_t key;
-    std::array<std::uint32_t, 3> triangle;
-    std::uint8_t one_sided;
-  };
-  std::vector<Keyed> keyed;
-  keyed.reserve(mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    keyed.push_back({key(mesh.triangles[i]), mesh.triangles[i], mesh.one_sided[i]});
-  std::ranges::stable_sort(keyed, {}, &Keyed::key);
-  for (std::size_t i = 0; i < keyed.size(); ++i) {
-    mesh.triangles[i] = keyed[i].triangle;
-    mesh.one_sided[i] = keyed[i].one_sided;
-  }
-}
-
 }  // namespace sightline::occlusion

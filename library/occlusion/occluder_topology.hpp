@@ -93,8 +93,8 @@ struct OccluderTopology {
   void lay_out();
 };
 
-/// Along a curve that visits neighbours together (Morton 1966), so that runs of triangles lie together.
-void sort_along_curve(OccluderTopology& mesh);
+/// Numbers triangles anew, so that the boxes around runs of kGroup are small. O(n log n).
+void sort_into_groups(OccluderTopology& mesh);
 /// Finds `shared`, T-junctions only where they are to be closed. Neighbours are known, and triangles numbered
 /// for good.
 void find_shared_edges(OccluderTopology& mesh, bool close_junctions);
