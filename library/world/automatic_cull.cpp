@@ -57,6 +57,10 @@ private:
   }
 
   [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
+  // The objects that views saw before anything was hidden, once for each: no more are asked for.
+  [[nodiscard]] double in_view() const {
+    return static_cast<double>(masks_ ? before_ : before_ * different_.count);
+  }
 
   [[nodiscard]] bool draw_occluders() {
     const Zone zone(state_.zones, "sightline: draw occluders");
@@ -67,14 +71,14 @@ private:
     }
     const double views = static_cast<double>(different_.count);
     // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
-    const double in_view = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
-                 object_views = std::min(static_cast<double>(objects) * views, in_view);
+    const double in_chunks = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
+                 object_views = std::min(static_cast<double>(objects) * views, in_chunks);
     // The chunks are asked for and the rest is written again in any case; the objects too, if that leaves
     // enough for drawing.
     const double chunks =
         static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
     const double least = chunks + object_views * double{costs_.test};
-    const double whole = least + object_views * double{costs_.query};
+    const double whole = least + std::min(object_views, in_view()) * double{costs_.query};
     const double kept_back = 2 * whole <= purse_.left() ? whole : least;
     bool any = false;
     for (std::size_t d = 0; d < different_.count; ++d) {
@@ -122,7 +126,7 @@ private:
     const double saved = saving(tally);
     purse_.earn(saved);
     const double least = nodes + static_cast<double>(tally.left) * double{costs_.test};
-    const double whole = least + static_cast<double>(tally.left) * double{costs_.query};
+    const double whole = least + std::min(static_cast<double>(tally.left), in_view()) * double{costs_.query};
     const bool objects = purse_.affords(whole);
     if (!objects && (tally.hidden == 0 || !purse_.affords(least))) return false;
     if (!objects) set_occluders(false);

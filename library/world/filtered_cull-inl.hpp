@@ -68,17 +68,59 @@ inline std::uint64_t drop_hidden_chunks(const PassInput& input, const EntryGroup
   return dropped;
 }
 
-// Takes out the objects that the occluders hide, of those that the view sees otherwise. Returns how many.
+// Boxes of some of a chunk's objects, one after another, and whole vectors of them.
+struct PackedBoxes {
+  static constexpr std::size_t kMost = ChunkMap::kCapacity + 16;
+  alignas(64) std::array<std::array<float, kMost>, 6> sides;
+  std::size_t count = 0;
+
+  [[nodiscard]] geometry::BoxSpan boxes() const {
+    return {sides[0].data(),
+            sides[1].data(),
+            sides[2].data(),
+            sides[3].data(),
+            sides[4].data(),
+            sides[5].data(),
+            count};
+  }
+};
+
+// Packs the boxes of `which`, at least one; behind them the last again.
+HWY_INLINE void pack_boxes(const ChunkMap::ChunkView& chunk, const ObjectBits& which, PackedBoxes& out) {
+  const F f;
+  std::size_t count = 0;
+  for (std::size_t side = 0; side < 6; ++side) {
+    count = 0;
+    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(f))
+      count +=
+          store_kept(f, hn::Load(f, chunk.side(side) + i), mask_at(f, which, i), &out.sides[side][count]);
+    hn::StoreU(hn::Set(f, out.sides[side][count - 1]), f, &out.sides[side][count]);
+  }
+  out.count = (count + hn::Lanes(f) - 1) / hn::Lanes(f) * hn::Lanes(f);
+}
+
+// Takes out the objects that the occluders hide, of those that the view sees otherwise, who alone are asked
+// for. Returns how many.
 inline std::uint64_t drop_hidden_objects(const ChunkMap::ChunkView& chunk, const SectorView& view,
                                          ObjectBits& seen) {
   std::uint64_t dropped = 0;
   if (SIGHTLINE_MUTANT(world_by_frustum)) return dropped;
-  std::array<std::uint8_t, ChunkMap::kCapacity> visible;
-  view.occluders->ask->boxes(*view.occluders, view.projection, chunk.boxes(), visible.data());
-  for (std::uint32_t i = 0; i < chunk.count; ++i) {
-    if (visible[i] || !seen.at(i)) continue;
-    seen.drop(i);
-    ++dropped;
+  seen.keep(first_objects(chunk.count));
+  const int count = std::popcount(seen.words[0]) + std::popcount(seen.words[1]);
+  if (count == 0) return dropped;
+  PackedBoxes some;
+  const bool all = static_cast<std::uint32_t>(count) == chunk.count;
+  if (!all) pack_boxes(chunk, seen, some);
+  std::array<std::uint8_t, PackedBoxes::kMost> visible;
+  view.occluders->ask->boxes(*view.occluders, view.projection, all ? chunk.boxes() : some.boxes(),
+                             visible.data());
+  const std::uint8_t* answer = visible.data();
+  for (std::uint64_t& word : seen.words) {
+    for (std::uint64_t rest = word; rest != 0; rest &= rest - 1) {
+      if (*answer++) continue;
+      word &= ~(rest & (~rest + 1));
+      ++dropped;
+    }
   }
   return dropped;
 }

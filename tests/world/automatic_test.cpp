@@ -106,6 +106,29 @@ TEST(AutomaticOcclusion, BeginsNoTryThatItCannotAfford) {
   }
 }
 
+// A chunk that the view crosses has many objects that the frustum leaves out already: to ask for them, too,
+// would cost more than this frame may be spent on.
+TEST(AutomaticOcclusion, AsksForNoneThatTheFrustumLeavesOut) {
+  SolidBoxes row([] {
+    std::vector<Box> boxes;
+    for (int i = 0; i < 960; ++i)
+      boxes.push_back(box_at({0.4f * static_cast<float>(i - 480), 0, -100}, {0.1f, 0.5f, 0.1f}));
+    boxes.push_back(box_at({-5, 0, -50}, {7, 10, 0.5f}));  // before three quarters of the view
+    return boxes;
+  }());
+  const CullView view{.view = {*make_view({.eye = {0, 0, 0}, .vertical_fov = 0.2f}, 64, 64), {}}};
+  Culler culler, plain;
+  const std::size_t in_view = cull_with(plain, row.world, {&view, 1}, {}).result.count;
+  Promise promise;
+  CullResult last;
+  for (int frame = 0; frame < 8; ++frame) {
+    last = cull_with(culler, row.world, {&view, 1}, automatic(850)).result;
+    promise.frame(last);
+  }
+  EXPECT_GT(in_view, 40u);
+  EXPECT_LT(last.count, in_view / 2);
+}
+
 // Who is seen at a pixel centre of a world of solid boxes: what a ray meets first. Rays that begin inside a
 // box meet it there, as the near plane cuts it.
 std::vector<std::uint8_t> truly_seen(const std::vector<Box>& boxes, const View& view) {
