@@ -20,6 +20,13 @@ struct BoxSpan {
   std::size_t count = 0;
 };
 
+/// Of six arrays: min x, y, z, max x, y, z.
+template <class Rows>
+[[nodiscard]] BoxSpan span_of(const Rows& rows, std::size_t count) noexcept {
+  return {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
+          rows[4].data(), rows[5].data(), count};
+}
+
 /// `count` spheres, one array a coordinate.
 struct SphereSpan {
   const float *x = nullptr, *y = nullptr, *z = nullptr, *radius = nullptr;
@@ -32,15 +39,7 @@ inline constexpr std::size_t kBlock = 64;
 /// One array a coordinate, on the stack.
 struct BoxBlock {
   alignas(64) std::array<std::array<float, kBlock>, 6> values;
-  [[nodiscard]] BoxSpan span(std::size_t count) const noexcept {
-    return {values[0].data(),
-            values[1].data(),
-            values[2].data(),
-            values[3].data(),
-            values[4].data(),
-            values[5].data(),
-            count};
-  }
+  [[nodiscard]] BoxSpan span(std::size_t count) const noexcept { return span_of(values, count); }
 };
 struct SphereBlock {
   alignas(64) std::array<std::array<float, kBlock>, 4> values;

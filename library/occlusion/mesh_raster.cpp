@@ -278,10 +278,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
       for (std::size_t i = 0; i < count; ++i) box[side][i] = s.box[side][place(i)];
     }
     std::array<std::uint8_t, kGroupsAtOnce> visible;
-    query_boxes(
-        tiles, tiles.projection,
-        {box[0].data(), box[1].data(), box[2].data(), box[3].data(), box[4].data(), box[5].data(), count},
-        visible.data());
+    query_boxes(tiles, tiles.projection, geometry::span_of(box, count), visible.data());
     for (std::size_t i = 0; i < count; ++i) {
       if (budget && visible[i]) visible[i] = budget->pay(static_cast<double>(kGroup) * budget->triangle);
       if (visible[i]) prefetch_group(mesh, s.group[place(i)]);

@@ -74,15 +74,7 @@ struct PackedBoxes {
   alignas(64) std::array<std::array<float, kMost>, 6> sides;
   std::size_t count = 0;
 
-  [[nodiscard]] geometry::BoxSpan boxes() const {
-    return {sides[0].data(),
-            sides[1].data(),
-            sides[2].data(),
-            sides[3].data(),
-            sides[4].data(),
-            sides[5].data(),
-            count};
-  }
+  [[nodiscard]] geometry::BoxSpan boxes() const { return geometry::span_of(sides, count); }
 };
 
 // Packs the boxes of `which`, at least one; behind them the last again.

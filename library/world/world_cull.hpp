@@ -51,8 +51,7 @@ struct alignas(16) ObjectBits {
 static_assert(ChunkMap::kCapacity <= 128);
 
 [[nodiscard]] inline geometry::BoxSpan boxes_of(const ChunkMap::Group& group) noexcept {
-  const auto& b = group.bounds;
-  return {b[0].data(), b[1].data(), b[2].data(), b[3].data(), b[4].data(), b[5].data(), group.count};
+  return geometry::span_of(group.bounds, group.count);
 }
 
 /// Of a group's chunks, a bit each: those of which a view may see an object by the columns, and of these
