@@ -1,4 +1,4 @@
-// Boxes as sets of points: what holds what, unions, centres, coordinates by axis.
+// Boxes as sets of points: what holds what, unions, centres, surfaces, coordinates by axis.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,14 @@ inline Box united(const Box& a, const Box& b) noexcept {
 inline Box intersected(const Box& a, const Box& b) noexcept {
   return {{std::max(a.min.x, b.min.x), std::max(a.min.y, b.min.y), std::max(a.min.z, b.min.z)},
           {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y), std::min(a.max.z, b.max.z)}};
+}
+
+/// Half the surface; 0 for nothing. Doubles, so that no finite box overflows.
+inline double half_area(const Box& box) noexcept {
+  if (!(box.min.x <= box.max.x)) return 0;
+  const double x = double{box.max.x} - box.min.x, y = double{box.max.y} - box.min.y,
+               z = double{box.max.z} - box.min.z;
+  return x * y + y * z + z * x;
 }
 
 inline bool holds(const Box& outer, const Box& inner) noexcept {

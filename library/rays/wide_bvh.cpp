@@ -17,14 +17,6 @@ void include(Box& box, const Box& other) {
   box = united(box, other);
 }
 
-// Half the surface; 0 for nothing. Doubles, so that no finite box overflows.
-double half_area(const Box& box) {
-  if (!(box.min.x <= box.max.x)) return 0;
-  const double x = double{box.max.x} - box.min.x, y = double{box.max.y} - box.min.y,
-               z = double{box.max.z} - box.min.z;
-  return x * y + y * z + z * x;
-}
-
 struct Reference {
   Box box;
   std::array<float, 3> centre;
