@@ -110,6 +110,14 @@ struct LargePages {
         bytes >= kLargePage ? allocate_large(bytes) : ::operator new (bytes, std::align_val_t{kLine});
     return static_cast<T*>(memory);
   }
+  /// Whether so many elements begin as zero bytes.
+  [[nodiscard]] static constexpr bool begin_as_zeros([[maybe_unused]] std::size_t count) noexcept {
+#ifdef SIGHTLINE_MAPS_LARGE_PAGES
+    return count * sizeof(T) >= kLargePage;
+#else
+    return false;
+#endif
+  }
   /// The same elements, if any, with room for more. They must be such as memcpy() may move.
   [[nodiscard]] T* grow(T* memory, std::size_t count, std::size_t more) {
 #ifdef SIGHTLINE_MAPS_LARGE_PAGES
@@ -138,8 +146,9 @@ struct LargePages {
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
 
-/// The same, whose elements begin as what the memory happened to hold: what nobody writes takes no memory.
-/// On Linux it grows without a copy once it is large.
+/// The same, whose elements begin as zero bytes, which on Linux nobody writes once it is large: what is not
+/// used takes no memory, and it grows without a copy. What a heap leaves behind would not do: SIMD loads read
+/// beyond the last element, and processors take a hundred times as long where a number is subnormal.
 template <class T>
 class UnwrittenVector {
 public:
@@ -162,6 +171,8 @@ public:
   void reserve(std::size_t capacity) {
     if (capacity <= capacity_) return;
     memory_ = LargePages<T>().grow(memory_, capacity_, capacity);
+    if (!LargePages<T>::begin_as_zeros(capacity))
+      std::memset(static_cast<void*>(memory_ + capacity_), 0, (capacity - capacity_) * sizeof(T));
     capacity_ = capacity;
   }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -10,6 +11,7 @@
 namespace sightline {
 namespace {
 
+using geometry::AlignedVector;
 using geometry::kLargePage;
 using geometry::UnwrittenVector;
 
@@ -26,6 +28,22 @@ TEST(UnwrittenVector, KeepsItsElementsAsItGrows) {
     std::iota(values.begin() + before, values.end(), next);
     next += static_cast<std::uint32_t>(size - before);
     for (std::size_t i = 0; i < size; ++i) ASSERT_EQ(values[i], i);
+  }
+}
+
+// Whatever a heap left there before: subnormal numbers, with which all that reads beyond the last element
+// would compute a hundred times as slowly.
+TEST(UnwrittenVector, BeginsAsZeros) {
+  for (const std::size_t size : {std::size_t{1000}, kLargePage}) {
+    for (int block = 0; block < 2; ++block) {
+      AlignedVector<std::uint32_t> used(size, 0x00007fffu);
+      ASSERT_EQ(used.back(), 0x00007fffu);
+    }
+    UnwrittenVector<std::uint32_t> values(size / 2);
+    EXPECT_TRUE(std::ranges::all_of(values, [](std::uint32_t v) { return v == 0; }));
+    std::ranges::fill(values, 0x00007fffu);
+    values.resize(size);
+    EXPECT_TRUE(std::all_of(values.begin() + size / 2, values.end(), [](std::uint32_t v) { return v == 0; }));
   }
 }
 
