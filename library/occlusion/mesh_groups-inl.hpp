@@ -7,7 +7,9 @@
 #define SIGHTLINE_OCCLUSION_MESH_GROUPS_INL
 #endif
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "library/geometry/radix_sort.hpp"
 #include "library/geometry/view_depth.hpp"
@@ -59,9 +61,14 @@ HWY_INLINE WideBoxes moved_boxes(const OccluderTopology& mesh, const RowTransfor
   return {middle, {size_along(rows[0], h), size_along(rows[1], h), size_along(rows[2], h)}};
 }
 
-// Appends those of groups first … whose bits are set.
+// A depth in steps of a sixteenth of an octave, fine enough for an order that only saves time.
+HWY_INLINE std::int32_t depth_step(float depth) {
+  return static_cast<std::int32_t>(sortable(depth) >> 19);
+}
+
+// Appends those of groups first … whose bits are set. Depths are told apart from step `nearest_step` on.
 HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes& boxes, VF nearest,
-                              std::uint32_t those) {
+                              std::int32_t nearest_step, std::uint32_t those) {
   const F f;
   alignas(64) std::array<std::array<float, 16>, 7> out;
   hn::Store(hn::Sub(boxes.middle.x, boxes.half.x), f, out[0].data());
@@ -74,7 +81,8 @@ HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes
   for (; those != 0; those &= those - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(those));
     const std::size_t place = s.group.size();
-    s.near_first.push_back(std::uint64_t{sortable(out[6][i])} << 32 | place);
+    const std::int32_t step = std::clamp(depth_step(out[6][i]) - nearest_step, 0, 255);
+    s.near_first.push_back(static_cast<std::uint64_t>(step) << 56 | place);
     for (std::size_t side = 0; side < 6; ++side) s.box[side][place] = out[side][i];
     s.group.push_back(static_cast<std::uint32_t>(first + i));
   }
@@ -86,6 +94,7 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
   const F f;
   const ViewRows view = view_rows(tiles);
   MeshScratch& s = *tiles.mesh;
+  const std::int32_t nearest_step = depth_step(std::fabs(tiles.rays.near_plane.w));
   s.group.clear(), s.near_first.clear();
   for (std::size_t first = 0; first < mesh.groups.size(); first += hn::Lanes(f)) {
     const WideBoxes boxes = moved_boxes(mesh, transform, first);
@@ -97,10 +106,10 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
     }
     if (hn::AllFalse(f, in)) continue;
     const VF nearest = hn::Sub(dot_row(view.depth, q), size_along(view.depth, boxes.half));
-    if (const std::uint32_t those = bits_of(f, in)) append_groups(s, first, boxes, nearest, those);
+    if (const std::uint32_t those = bits_of(f, in))
+      append_groups(s, first, boxes, nearest, nearest_step, those);
   }
-  // By the upper half of the depths, near enough for an order that only saves time.
-  sort_by_high_bits(s.near_first, s.other, 48);
+  sort_by_high_bits(s.near_first, s.other, 56);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

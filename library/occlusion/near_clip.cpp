@@ -1,7 +1,6 @@
 #include "library/occlusion/near_clip.hpp"
 
-#include <algorithm>
-#include <span>
+#include <array>
 
 namespace sightline::occlusion {
 
@@ -9,18 +8,22 @@ namespace {
 
 // Sutherland & Hodgman 1974, one plane.
 bool clip(const Vec4& plane, double slack, Polygon& polygon) {
-  const auto side = [&](const glm::dvec3& p) { return dot(plane, p) + slack; };
-  const auto outside = [&](const glm::dvec3& p) { return !(side(p) >= 0); };
-  if (std::ranges::none_of(std::span(polygon.points).first(polygon.count), outside)) return true;
+  std::array<double, Polygon::kMost> side;
+  bool whole = true;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    side[i] = dot(plane, polygon.points[i]) + slack;
+    whole = whole && side[i] >= 0;
+  }
+  if (whole) return true;
   Polygon out;
   for (std::size_t i = 0; i < polygon.count; ++i) {
-    const glm::dvec3 &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
-    const double at = side(a), next = side(b);
+    const std::size_t next = i + 1 < polygon.count ? i + 1 : 0;
+    const glm::dvec3 &a = polygon.points[i], &b = polygon.points[next];
     if (out.count + 2 > Polygon::kMost) return false;
-    if (at >= 0) out.edge[out.count] = polygon.edge[i], out.points[out.count++] = a;
-    if ((at >= 0) != (next >= 0)) {
-      out.edge[out.count] = at >= 0 ? Polygon::kClipped : polygon.edge[i];
-      out.points[out.count++] = a + (b - a) * (at / (at - next));
+    if (side[i] >= 0) out.edge[out.count] = polygon.edge[i], out.points[out.count++] = a;
+    if ((side[i] >= 0) != (side[next] >= 0)) {
+      out.edge[out.count] = side[i] >= 0 ? Polygon::kClipped : polygon.edge[i];
+      out.points[out.count++] = a + (b - a) * (side[i] / (side[i] - side[next]));
     }
   }
   polygon = out;
