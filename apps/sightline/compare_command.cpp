@@ -72,6 +72,7 @@ void add_compare(CLI::App& app, int& exit) {
   auto options = std::make_shared<CompareOptions>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
+      ->check(not_empty())
       ->type_name("FILE");
   command
       .add_option("--methods", options->methods,

@@ -53,7 +53,7 @@ void expect_written() {
 void end_tidily_on_signals() {
   sigset_t ends;
   sigemptyset(&ends);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaddset(&ends, signal);
@@ -71,6 +71,7 @@ void end_tidily_on_signals() {
 
 int run(int argc, char** argv) {
   end_tidily_on_signals();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no larger is an error like a full disk
   CLI::App app{"Sightline decides what not to draw: visibility culling, measured and proven.", "sightline"};
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);

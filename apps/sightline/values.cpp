@@ -59,7 +59,9 @@ CLI::Validator output_file() {
   const auto refuse = [](const std::string& file) -> std::string {
     const fs::path folder = fs::path(file).parent_path();
     const bool open = access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0;
-    if (!file.empty() && open && !fs::is_directory(file)) return "";
+    std::error_code error;
+    const bool taken = fs::is_directory(file, error);
+    if (!file.empty() && open && !taken && error != std::errc::filename_too_long) return "";
     return "'" + file + "' cannot be written, expected a file in a folder that is there and open to writing";
   };
   return {refuse, ""};

@@ -142,6 +142,7 @@ void add_verify(CLI::App& app, int& exit) {
       ->type_name("DIR")
       ->capture_default_str();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
+      ->check(not_empty())
       ->type_name("FILE");
   command
       .add_option("--methods", options->methods,

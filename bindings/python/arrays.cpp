@@ -49,8 +49,9 @@ template <class T>
 Rows<T> rows_of(const py::array& array, const std::string& what, py::ssize_t columns) {
   const bool flat = columns == 1 && array.ndim() == 1;
   const bool fits = flat || (array.ndim() == 2 && array.shape(1) == columns);
+  if (!fits || !is_of<T>(array)) refuse_shape(what, array);
   const bool together = flat || columns == 1 || array.strides(1) == static_cast<py::ssize_t>(sizeof(T));
-  if (!fits || !is_of<T>(array) || !(together || array.size() == 0)) refuse_shape(what, array);
+  if (!together && array.size() != 0) refuse_shape(what, array);
   return {static_cast<const T*>(array.data()),
           stride_of(array, what, sizeof(T) * static_cast<std::size_t>(columns)), rows_of(array)};
 }
@@ -91,11 +92,7 @@ py::array handle_array(const py::object& given) {
 std::vector<double> doubles_of(const py::object& given, std::initializer_list<py::ssize_t> shape,
                                const std::string& what) {
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const Doubles array = Doubles::ensure(given);
-  if (!array) {
-    PyErr_Clear();
-    refuse(what + ", got what is no array of numbers");
-  }
+  const auto array = made_of<Doubles>(given, what + ", got what is no array of numbers");
   if (!std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim()))
     refuse_shape(what, array);
   return {array.data(), array.data() + array.size()};
@@ -110,10 +107,17 @@ template <class T>
 py::array_t<T, py::array::c_style> contiguous(const py::object& given, const std::string& what) {
   const py::array array = array_given(given, what);
   if (!is_of<T>(array)) refuse_shape(what, array);
-  return py::array_t<T, py::array::c_style>::ensure(array);
+  return made_of<py::array_t<T, py::array::c_style>>(array, what);
 }
 
 }  // namespace
+
+py::list listed(const py::object& given, const std::string& refusal) {
+  if (PyObject* const list = PySequence_List(given.ptr())) return py::reinterpret_steal<py::list>(list);
+  const py::error_already_set error;
+  if (error.matches(PyExc_TypeError) || error.matches(PyExc_NotImplementedError)) refuse(refusal);
+  throw error;
+}
 
 Boxes boxes_of(const py::object& given) {
   if (py::isinstance<Boxes>(given)) return given.cast<Boxes>();
@@ -227,11 +231,10 @@ Mat4 matrix_of(const py::object& given, const char* name) {
 }
 
 std::vector<Mat4> matrices_of(const py::object& given, const char* name) {
-  const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
-  if (!array) refuse(std::string(name) + ": expected (4, 4) or (n, 4, 4) numbers");
+  const std::string what = std::string(name) + ": expected (4, 4) or (n, 4, 4) numbers";
+  const auto array = made_of<py::array_t<float, py::array::c_style | py::array::forcecast>>(given, what);
   if (array.ndim() == 2) return {matrix_of(given, name)};
-  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
-    refuse(std::string(name) + ": expected (4, 4) or (n, 4, 4) numbers");
+  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4) refuse_shape(what, array);
   std::vector<Mat4> out(static_cast<std::size_t>(array.shape(0)));
   const float* at = array.data();
   for (Mat4& matrix : out) {

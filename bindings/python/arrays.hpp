@@ -33,6 +33,19 @@ T expect(Result<T> result) {
   return *std::move(result);
 }
 
+/// What NumPy makes of it, or a refusal; an array that there is no memory for raises NumPy's MemoryError.
+template <class Array>
+Array made_of(const py::object& given, const std::string& refusal) {
+  try {
+    return Array(given);
+  } catch (py::error_already_set& error) {
+    if (error.matches(PyExc_MemoryError)) throw;
+  }
+  refuse(refusal);
+}
+/// The elements of a sequence; refused where it has none to give. What its own methods raise is theirs.
+py::list listed(const py::object& given, const std::string& refusal);
+
 /// Boxes in arrays, which live as long as this.
 struct Boxes {
   BoxView view;

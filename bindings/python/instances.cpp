@@ -73,10 +73,10 @@ std::vector<InstancePlacement> placements_of(const py::object& worlds, const py:
   std::vector<InstancePlacement> out;
   for (std::size_t i = 0; i < names.size(); ++i) out.push_back({names[i], matrices[i], {}});
   if (origins.is_none()) return out;
-  const auto points = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(origins);
-  if (!points || points.ndim() != 2 || points.shape(1) != 3 ||
-      static_cast<std::size_t>(points.shape(0)) != names.size())
-    refuse("origins: expected numbers of shape (n, 3), one point for each of the worlds");
+  constexpr const char* what = "origins: expected numbers of shape (n, 3), one point for each of the worlds";
+  const auto points = made_of<py::array_t<double, py::array::c_style | py::array::forcecast>>(origins, what);
+  if (points.ndim() != 2 || points.shape(1) != 3 || static_cast<std::size_t>(points.shape(0)) != names.size())
+    refuse(what);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double* p = points.data(static_cast<py::ssize_t>(i), 0);
     out[i].origin = {p[0], p[1], p[2]};

@@ -81,8 +81,9 @@ PYBIND11_MODULE(sightline, m) {
   m.attr("Refused") = py::reinterpret_borrow<py::object>(refused);
   add_views(m);
   add_occlusion(m);
-  add_shadows(m);
   add_world(m);
+  add_shadows(m);
+  add_culling(m);
   add_instances(m);
   add_ranges(m);
   add_inspect(m);

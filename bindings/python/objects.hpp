@@ -61,6 +61,7 @@ OcclusionOptions occlusion_options(const std::string& coverage, const pybind11::
 // Each adds its classes and functions.
 void add_views(pybind11::module_& m);
 void add_world(pybind11::module_& m);
+void add_culling(pybind11::module_& m);  ///< views of a world, and cullers: after all that they name
 void add_world_occluders(pybind11::class_<Guarded<World>>& world);
 void add_snapshots(pybind11::module_& m, pybind11::class_<Guarded<World>>& world);
 void add_occlusion(pybind11::module_& m);

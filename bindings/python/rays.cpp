@@ -28,11 +28,7 @@ std::vector<Ray> rays_of(const py::object& origins, const py::object& directions
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].origin = from[i], rays[i].direction = along[i];
   if (longest.is_none()) return rays;
   using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-  const Floats given = Floats::ensure(longest);
-  if (!given) {
-    PyErr_Clear();
-    refuse("max_distances: expected a number or float32 of shape (n,)");
-  }
+  const auto given = made_of<Floats>(longest, "max_distances: expected a number or float32 of shape (n,)");
   const auto count = static_cast<std::size_t>(given.size());
   if (given.ndim() > 0 && count != rays.size()) refuse("max_distances: expected one a ray, or one for all");
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].max_distance = given.data()[given.ndim() > 0 ? i : 0];

@@ -139,18 +139,20 @@ std::size_t id_limit_of(const SharedWorld& world) {
   return looking(world, [](const World& w) { return w.id_limit(); });
 }
 
+constexpr const char* kNoViews = "cull: expected a View, a CullView, or some of them";
+
 ViewOfWorld view_of(const py::handle& given) {
   if (py::isinstance<WorldView>(given)) return {given.cast<WorldView>()};
-  if (!py::isinstance<ViewOfWorld>(given)) refuse("cull: expected a View, a CullView, or some of them");
+  if (!py::isinstance<ViewOfWorld>(given)) refuse(kNoViews);
   return given.cast<ViewOfWorld>();
 }
 
 }  // namespace
 
 std::vector<ViewOfWorld> views_of(const py::object& given) {
-  std::vector<ViewOfWorld> views;
   if (!py::isinstance<py::sequence>(given)) return {view_of(given)};
-  for (const py::handle view : py::reinterpret_borrow<py::sequence>(given)) views.push_back(view_of(view));
+  std::vector<ViewOfWorld> views;
+  for (const py::handle view : listed(given, kNoViews)) views.push_back(view_of(view));
   if (views.empty() || views.size() > kMaxViews)
     refuse("cull: expected 1 to " + std::to_string(kMaxViews) + " views, got " +
            std::to_string(views.size()));
@@ -377,6 +379,9 @@ void add_culler(py::module_& m) {
 void add_world(py::module_& m) {
   add_constants(m);
   add_world_class(m);
+}
+
+void add_culling(py::module_& m) {
   add_cull_view(m);
   add_levels_options(m);
   add_culler(m);

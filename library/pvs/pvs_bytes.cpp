@@ -136,7 +136,8 @@ Status read_header(Bytes file, CellPvs& cells, Header& header) {
 Result<std::vector<std::byte>> write_pvs(const CellPvs& cells) {
   if (!sound(cells)) {
     return Status{StatusCode::bad_argument,
-                  "pvs: the cells are not sound, expected sets in ascending order of objects that there are"};
+                  "pvs: the cells are not sound, expected a flag and a set for each, in ascending order of "
+                  "objects that there are"};
   }
   const std::vector<std::uint32_t> order = pvs::object_order(cells);
   std::vector<std::byte> packed;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -190,6 +191,36 @@ TEST(File, DevicesAreWrittenToAndNeverReplaced) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
   EXPECT_NO_THROW(io::write_file("/dev/null", "text"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(File, IsWrittenWhereALinkLeads) {
+  const TemporaryFolder folder;
+  io::write_file(folder / "file", "before");
+  std::filesystem::create_symlink("file", folder / "link");
+  std::filesystem::create_symlink(folder / "none yet", folder / "early");
+  std::filesystem::create_symlink("round", folder / "round");
+  io::write_file(folder / "link", "after");
+  io::write_file(folder / "early", "late");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(io::read_file(folder / "file", 100), "after");
+  EXPECT_EQ(io::read_file(folder / "none yet", 100), "late");
+  EXPECT_THROW(io::write_file(folder / "round", "text"), Error);
+  EXPECT_THROW(io::read_file(folder / "round", 100), Error);
+  EXPECT_EQ(folder.files(), 5u);
+}
+
+// As `--json /dev/stdout > file` has it: behind what was written there before.
+TEST(File, OpenFilesAreWrittenOnTo) {
+  const TemporaryFolder folder;
+  std::FILE* const open = std::fopen((folder / "file").c_str(), "w");
+  ASSERT_NE(open, nullptr);
+  std::fputs("first ", open);
+  std::fflush(open);
+  io::write_file("/dev/fd/" + std::to_string(fileno(open)), "second ");
+  std::fputs("third", open);
+  std::fclose(open);
+  EXPECT_EQ(io::read_file(folder / "file", 100), "first second third");
+  EXPECT_THROW(io::write_file("/proc/self/fd/987654", "text"), Error);
 }
 
 TEST(File, FolderAndMissingFolderAreRefused) {

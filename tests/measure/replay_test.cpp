@@ -91,6 +91,10 @@ TEST(Replay, RefusesWhatIsNone) {
                                  {"\"moves\": 0", "\"moves\": 99999999999"},
                                  {"\"materials\"", "\"moon\""},
                                  {"\"half\"", "7"},
+                                 {"\"object\": ", "\"object\": -"},
+                                 {"\"object\": ", "\"object\": 1099511627776"},
+                                 {"\"samples\": ", "\"samples\": 1."},
+                                 {"\"size\": [", "\"size\": [1, "},
                                  {"\"views\": [", "\"views\": [{}, {}, "}}) {
     std::string text = whole;
     const std::size_t at = text.find(from);

@@ -152,13 +152,18 @@ class Draw(Case):
         broken = WALL.copy()
         broken[1, 2] = np.nan
         self.refused("bad_mesh", "not finite", mesh, broken, INDICES, index=1)
+        # A copy that nobody has memory for: NumPy's own error.
+        self.assertRaises(MemoryError, mesh, np.broadcast_to(np.zeros(3, np.float32), (1 << 58, 3)), INDICES)
+        self.assertRaises(MemoryError, mesh, WALL, np.broadcast_to(np.uint32(0), 1 << 58))
+        self.assertRaises(MemoryError, self.occlusion.draw_mesh, self.wall, np.broadcast_to(np.eye(4), (1 << 54, 4, 4)))
         with self.assertRaisesRegex(ValueError, "three indices"):
             mesh(WALL, INDICES.ravel()[:5])
         for transform in (np.full((4, 4), np.nan), np.diag([1, 1, 1, 2])):
             self.bad("affine", self.occlusion.draw_mesh, self.wall, transform)
         self.bad("transform: expected shape (4, 4)", self.occlusion.draw_mesh, self.wall, np.eye(3))
         for call in (self.occlusion.draw_spheres, self.occlusion.may_see_spheres):
-            for spheres in (SPHERES.astype(float), SPHERES[:, :3], SPHERES[::-1], np.asfortranarray(SPHERES), BOXES, None):
+            for spheres in (SPHERES.astype(float), SPHERES[:, :3], SPHERES[::-1], np.asfortranarray(SPHERES), BOXES, None,
+                            SPHERES.ravel(), SPHERES[0, 0], np.array(1)):
                 self.bad("spheres: expected", call, spheres)
             self.bad("stride too short", call, np.broadcast_to(SPHERES[:1], (3, 4)))
         for call in (self.occlusion.draw_boxes, self.occlusion.may_see_boxes):

@@ -10,6 +10,15 @@ AHEAD = sightline.camera(far=np.inf)
 BEHIND = sightline.camera(forward=(0, 0, 1))
 
 
+class Unreadable:
+    """A sequence whose own methods raise."""
+    def __len__(self):
+        raise KeyError("length")
+
+    def __getitem__(self, at):
+        raise KeyError(at)
+
+
 class Insert(Case):
     def test_every_form_puts_the_same_boxes_in(self):
         things = row_of_things(50)
@@ -234,8 +243,9 @@ class Cull(Case):
         cull = self.culler.cull
         for count in (0, 9):
             self.bad(f"expected 1 to 8 views, got {count}", cull, self.world, [AHEAD] * count)
-        for views in (None, 3, "view", [AHEAD, None]):
+        for views in (None, 3, "view", [AHEAD, None], np.array(5), memoryview(boxes_of(self.things))):
             self.bad("expected a View, a CullView", cull, self.world, views)
+        self.assertRaises(KeyError, cull, self.world, Unreadable())
         for area in (np.nan, -1, np.inf):
             self.bad("min_area", cull, self.world, [AHEAD, sightline.CullView(AHEAD, min_area=area)], index=1)
         view = sightline.CullView(AHEAD, layers=5, distance_view=0)

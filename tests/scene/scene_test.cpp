@@ -54,7 +54,8 @@ TEST(Scene, AGoodOneIsAccepted) {
 
 TEST(Scene, RefusesBadBounds) {
   for (const Box& bad :
-       {Box{{kNaN, 0, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {1, kInfinity, 1}}, Box{{0, 0, 2}, {1, 1, 1}}}) {
+       {Box{{kNaN, 0, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {1, kInfinity, 1}}, Box{{0, 0, 2}, {1, 1, 1}},
+        Box{{0, 0, 0}, {1, 1, 2e11f}}, Box{{-2e11f, 0, 0}, {1, 1, 1}}}) {
     Scene scene = triangle();
     scene.bounds.set(0, bad);
     EXPECT_THAT(test::refusal([&] { check(scene); }), HasSubstr("object 0"));

@@ -193,7 +193,7 @@ bool CellBaker::bake(const CellPvs& cells, std::uint32_t cell, std::vector<Objec
   std::uint64_t in_window = 0;
   bool more = true;
   for (std::uint32_t viewpoints = 0; more && viewpoints < options_.most_viewpoints;) {
-    for (std::size_t i = 0; more && i < a_batch; ++i, ++viewpoints) {
+    for (std::size_t i = 0; more && i < a_batch && viewpoints < options_.most_viewpoints; ++i, ++viewpoints) {
       look(eye, few_, random);
       more = points.next(kTries, eye);
     }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -30,10 +31,9 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-void write_pieces(const std::filesystem::path& to, const std::filesystem::path& named, const char* mode,
+void write_pieces(File file, const std::filesystem::path& named,
                   std::span<const std::span<const std::byte>> pieces) {
   const auto fail = [&] { throw Error(named.string() + ": cannot be written: " + reason(errno)); };
-  File file(std::fopen(to.c_str(), mode));
   if (!file) fail();
   for (const std::span<const std::byte> piece : pieces) {
     if (!piece.empty() && std::fwrite(piece.data(), 1, piece.size(), file.get()) != piece.size()) fail();
@@ -43,11 +43,39 @@ void write_pieces(const std::filesystem::path& to, const std::filesystem::path& 
   if (std::fclose(file.release()) != 0) fail();
 }
 
+// What a path stands for once links are followed: a file that took a link's place would part it from what it
+// names. Of an open file of this process, as /dev/stdout and /dev/fd/1 name one, its number.
+struct Target {
+  std::filesystem::path path;
+  int open = -1;
+};
+
+Target target_of(const std::filesystem::path& named) {
+  constexpr int kMostLinks = 40;
+  const std::filesystem::path opened = fmt::format("/proc/{}/fd", ::getpid());
+  std::filesystem::path path = named;
+  std::error_code none;
+  for (int links = 0; links < kMostLinks && std::filesystem::is_symlink(path, none); ++links) {
+    const std::filesystem::path folder = std::filesystem::weakly_canonical(path.parent_path(), none);
+    const std::string name = path.filename().string();
+    if (int number = 0;
+        folder == opened &&
+        std::from_chars(name.data(), name.data() + name.size(), number).ptr == name.data() + name.size())
+      return {path, number};
+    path = path.parent_path() / std::filesystem::read_symlink(path, none);  // an absolute one as it is
+  }
+  if (std::filesystem::is_symlink(path, none))
+    throw Error(named.string() + ": cannot be written: " + reason(ELOOP));
+  return {path};
+}
+
 }  // namespace
 
 std::vector<std::byte> read_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none || error == std::errc::too_many_symbolic_link_levels)
+    throw Error(path.string() + ": cannot be read: " + error.message());
   if (!std::filesystem::exists(status)) throw Error(path.string() + ": no such file");
   if (!std::filesystem::is_regular_file(status))
     throw Error(path.string() + ": not a regular file, expected one");
@@ -69,15 +97,21 @@ void write_file(const std::filesystem::path& path, std::span<const std::span<con
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     throw Error(path.string() + ": is a folder, expected a file to write");
+  const Target to = target_of(path);
+  if (to.open >= 0) {
+    std::fflush(stdout);  // which goes first, if it is that
+    const int same = ::dup(to.open);
+    return write_pieces(File(same < 0 ? nullptr : ::fdopen(same, "wb")), path, pieces);
+  }
   const bool device =
       std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-  if (device) return write_pieces(path, path, "wb", pieces);
+  if (device) return write_pieces(File(std::fopen(path.c_str(), "wb")), path, pieces);
   // A short name: with some letters more, one as long as a name may be could not be made.
   static std::atomic<unsigned> count = 0;
-  const Unfinished temporary(path.parent_path() / fmt::format("sightline-{}-{}.tmp", ::getpid(), count++));
-  write_pieces(temporary.path(), path, "wbx", pieces);
+  const Unfinished temporary(to.path.parent_path() / fmt::format("sightline-{}-{}.tmp", ::getpid(), count++));
+  write_pieces(File(std::fopen(temporary.path().c_str(), "wbx")), path, pieces);
   std::error_code failed;
-  std::filesystem::rename(temporary.path(), path, failed);
+  std::filesystem::rename(temporary.path(), to.path, failed);
   if (failed) throw Error(path.string() + ": cannot be written: " + failed.message());
 }
 

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <type_traits>
+#include <vector>
 
 #include <sightline/workbench/error.hpp>
 
@@ -20,14 +25,24 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostMoves = 1'000'000;
+constexpr std::uint32_t kMostPixels = 4096;                 // a side
 constexpr std::array kFaces{"materials", "both", "front"};  // in the order of RasterState
+
+// Whether a value is of the type, which Json would bend other numbers to.
+template <class Value>
+bool is_one(const Json& value) {
+  if constexpr (std::is_unsigned_v<Value>)
+    return value.is_number_unsigned() &&
+           value.template get<std::uint64_t>() <= std::numeric_limits<Value>::max();
+  return true;
+}
 
 // A member of the type asked for; says which one is missing or another.
 template <class Value>
 Value member(const Json& document, const char* name, const std::string& file) {
   const auto found = document.find(name);
   try {
-    if (found != document.end()) return found->template get<Value>();
+    if (found != document.end() && is_one<Value>(*found)) return found->template get<Value>();
   } catch (const Json::exception&) {
   }
   throw Error(fmt::format("{}: \"{}\" is missing or of another type than a replay has", file, name));
@@ -79,8 +94,13 @@ Replay load_replay(const std::filesystem::path& path,
   if (replay.samples > 64) throw Error(file + ": expected at most 64 \"samples\"");
   if (!(replay.moving >= 0 && replay.moving <= 1) || lost.moves > kMostMoves)
     throw Error(fmt::format("{}: expected \"moving\" from 0 to 1 and at most {} moves", file, kMostMoves));
-  const auto size = member<std::array<std::uint32_t, 2>>(document, "size", file);
-  lost.width = size[0], lost.height = size[1];
+  const auto size = member<std::vector<Json>>(document, "size", file);
+  const auto is_length = [](const Json& side) {
+    return is_one<std::uint32_t>(side) && side >= 1 && side <= kMostPixels;
+  };
+  if (size.size() != 2 || !std::ranges::all_of(size, is_length))
+    throw Error(fmt::format("{}: expected \"size\" to be two whole numbers from 1 to {}", file, kMostPixels));
+  lost.width = size[0].get<std::uint32_t>(), lost.height = size[1].get<std::uint32_t>();
   const Json what = member<Json>(document, "lost", file);
   lost.object = member<ObjectId>(what, "object", file);
   lost.pixels = member<std::uint64_t>(what, "pixels", file);
@@ -95,6 +115,9 @@ Replay load_replay(const std::filesystem::path& path,
 
 MethodVerdict look_again(Bench& bench, const Replay& replay) {
   const LostObject& lost = replay.lost;
+  if (lost.object >= bench.scene().size())
+    throw Error(fmt::format("the replay's \"lost\" names object {}, expected one of the scene's {}",
+                            lost.object, bench.scene().size()));
   Mover mover(bench.scene(), replay.moving, 1);
   const auto move = [&] {
     if (replay.moving > 0) bench.update(mover.move());

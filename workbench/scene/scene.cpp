@@ -190,6 +190,9 @@ void check(const Scene& s) {
   scene::check_materials(s);
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_valid(s.bounds[i])) refuse_object(s, i, "bounds must be finite with min <= max");
+    const Vec3 reach = largest(s.bounds[i]);
+    if (std::max({reach.x, reach.y, reach.z}) > kWorldReach)
+      refuse_object(s, i, "it reaches farther than 1e11 m");
     if (!std::isfinite(s.radius[i]) || s.radius[i] < 0) refuse_object(s, i, "radius must be finite and >= 0");
     if (s.mesh[i] >= s.meshes.size()) refuse_object(s, i, "its mesh is out of range");
   }

@@ -124,7 +124,7 @@ typedef struct sightline_handle {
 } sightline_handle;
 
 /** Handles in the caller's own memory: a member of structs, or an array (stride sizeof(sightline_handle)).
- * Only sightline_world_insert() writes there. */
+ * Only sightline_world_insert() and sightline_instances_insert() write there. */
 typedef struct sightline_handles {
   sightline_handle* first; /**< where the first one lies */
   size_t stride;           /**< bytes from a handle to the next */
