@@ -120,9 +120,9 @@ public:
   /// much of the image. Spheres that are not valid or reach behind the near plane are left out. Leave out,
   /// too, those of things that reach behind it, as their inside shows. Errors, Cost: as draw_boxes.
   Status draw_spheres(const SphereView& spheres) noexcept;
-  /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1). Corners are moved in
-  /// single precision, and all promises are about where they come to stand. The caller's jobs draw bands of
-  /// the image at once, to the same bits.
+  /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1), seen from where it
+  /// stands before it is moved: no corner is rounded. A transform that flattens the mesh draws nothing. The
+  /// caller's jobs draw bands of the image at once, to the same bits.
   /// Errors: stale_buffer before begin(); bad_argument for a transform that is not finite or not affine.
   /// Cost: linear in the triangles in view, 10 to 20 ns each and 1 ns a tile. Allocates: until it has seen
   /// its largest mesh, for each job.

@@ -101,9 +101,9 @@ inline constexpr float kMostDoubt = 1e4f, kMostNearness = 1e30f;
 /// less by the part e / d at most, of a d that is off by a 40th where kEdgeOnPart just lets it pass. Needs
 /// 0.82.
 inline constexpr float kPolygonApart = 1.25f;
-/// Corners that are moved to where the mesh stands round 4 u of Σ along each axis, which bends a polygon: √3
-/// of it. Needs 0.65.
-inline constexpr float kMoveRounding = 8 * static_cast<float>(kUnit);
+/// A placement whose volume is a smaller part of its axes' product flattens: what is seen in the space before
+/// it would lose a third of double precision's digits. Not a bound.
+inline constexpr double kLeastVolume = 1e-6;
 /// Of |at|, when that plane is moved: the move rounds 1 u of it, and its terms next to nothing. Needs 0.48.
 inline constexpr float kPolygonRounding = 1.25e-7f;
 /// Of a tile's nearest value: what else its pixels' sums may round to. No promise hangs on it: where it is

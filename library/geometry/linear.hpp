@@ -58,23 +58,16 @@ inline Mat4 to_mat4(const glm::dmat4& m) noexcept {
   return out;
 }
 
-/// An affine transform as SIMD kernels read it: three rows of (linear part | translation).
-struct RowTransform {
-  std::array<Vec4, 3> rows;
-  bool in_place = false;  ///< all stays where it is
+/// An affine transform, not rounded.
+struct ExactAffine {
+  glm::dmat3 linear{1};
+  glm::dvec3 translation{0};
+
+  bool operator==(const ExactAffine&) const = default;
 };
-
-inline RowTransform row_transform(const Mat4& matrix) noexcept {
-  RowTransform out;
-  out.in_place = matrix == Mat4{};
-  for (std::size_t r = 0; r < 3; ++r)
-    out.rows[r] = {matrix.m[r], matrix.m[4 + r], matrix.m[8 + r], matrix.m[12 + r]};
-  return out;
-}
-
-inline Vec3 transform_point(const RowTransform& transform, const Vec3& p) noexcept {
-  const auto row = [&](const Vec4& r) { return r.x * p.x + r.y * p.y + r.z * p.z + r.w; };
-  return {row(transform.rows[0]), row(transform.rows[1]), row(transform.rows[2])};
+inline ExactAffine exact_affine(const Mat4& matrix) noexcept {
+  const glm::dmat4 m = to_double(matrix);
+  return {glm::dmat3(m), glm::dvec3(m[3])};
 }
 
 inline bool is_finite(const Vec3& v) noexcept {

@@ -91,7 +91,8 @@ bool set_plane(const DepthTiles& tiles, const WidePlane& plane, const Outline& o
     return plane.normal.x * v[0] + plane.normal.y * v[1] + plane.normal.z * v[2];
   };
   const double scale = orthographic ? along(rays.forward) : plane.at;
-  if (!(std::fabs(scale) > (orthographic ? kEdgeOnSine : kEdgeOnPart * outline.reach + kEdgeOnDistance)))
+  if (!(std::fabs(scale) >
+        (orthographic ? double{rays.edge_on} : kEdgeOnPart * outline.reach + kEdgeOnDistance)))
     return false;
   out.across = static_cast<float>(along(rays.across) / scale);
   out.down = static_cast<float>(along(rays.down) / scale);

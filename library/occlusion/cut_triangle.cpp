@@ -56,7 +56,7 @@ std::optional<double> slant_of(const DepthTiles& tiles, const ExactCorners& corn
   };
   const double scale = orthographic ? along(rays.forward) : glm::dot(normal, corners[0]) / length;
   if (!(length > 0) ||
-      !(std::fabs(scale) > (orthographic ? kEdgeOnSine : kEdgeOnPart * reach + kEdgeOnDistance)))
+      !(std::fabs(scale) > (orthographic ? double{rays.edge_on} : kEdgeOnPart * reach + kEdgeOnDistance)))
     return {};
   return (std::fabs(along(rays.across)) + std::fabs(along(rays.down))) / std::fabs(scale);
 }
@@ -71,8 +71,7 @@ void cut_by(double a, double b, double& begin, double& end) {
 
 }  // namespace
 
-glm::dvec3 about_eye(const EyeProjection& e, const RowTransform& transform, const Vec3& point) noexcept {
-  const Vec3 at = transform_point(transform, point);
+glm::dvec3 about_eye(const EyeProjection& e, const Vec3& at) noexcept {
   return {double{at.x} - e.eye_high.x - e.eye_low.x, double{at.y} - e.eye_high.y - e.eye_low.y,
           double{at.z} - e.eye_high.z - e.eye_low.z};
 }

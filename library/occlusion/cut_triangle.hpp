@@ -12,9 +12,7 @@ namespace sightline::occlusion {
 /// Corners about the eye.
 using ExactCorners = std::array<glm::dvec3, 3>;
 
-/// Moved, and about the eye.
-glm::dvec3 about_eye(const EyeProjection& projection, const RowTransform& transform,
-                     const Vec3& point) noexcept;
+glm::dvec3 about_eye(const EyeProjection& projection, const Vec3& point) noexcept;
 
 struct CutTriangle {
   /// Whether the mesh goes on in it: no pixel can reach across what is left of it, whichever edge it enters

@@ -20,14 +20,14 @@
 namespace sightline::occlusion {
 
 using geometry::BoxSpan;
-using geometry::RowTransform;
+using geometry::ExactAffine;
 using geometry::SphereSpan;
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
 /// What a view has found out about a mesh. Reused from mesh to mesh.
 struct MeshScratch {
-  /// The groups in view, and their boxes about the view's origin: min x, y, z, max x, y, z.
+  /// The groups in view, and their boxes: min x, y, z, max x, y, z.
   std::vector<std::uint32_t> group;
   std::array<geometry::AlignedVector<float>, 6> box;
   std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
@@ -37,8 +37,7 @@ struct MeshScratch {
   geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
-  float front = 1;    ///< which way triangles turn on the image that are seen from their front
-  float stretch = 1;  ///< how much longer the mesh's placement may make distances
+  float front = 1;  ///< which way triangles turn on the image that are seen from their front
 };
 
 /// The nearness of a tile that one plane covers.
@@ -147,13 +146,14 @@ struct MeshBudget {
     return true;
   }
 };
-/// Draws all of the mesh, in as many bands of the image at once as there are jobs. Allocates until it has
-/// seen its largest mesh.
+/// Draws all of the mesh, in as many bands of the image at once as there are jobs. `placement` is to metres
+/// about the view's origin; one that flattens the mesh draws nothing. Allocates until it has seen its largest
+/// mesh.
 void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& mesh,
-               const RowTransform& transform, const JobSystem& jobs);
-/// Draws a part of it, what the budget pays for.
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-               MeshBudget& budget);
+               const ExactAffine& placement, const JobSystem& jobs);
+/// The same by one thread; with a budget what that pays for.
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const ExactAffine& placement,
+               MeshBudget* budget = nullptr);
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
 struct BoxQuestions {

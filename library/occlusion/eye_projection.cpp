@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "library/geometry/error_bounds.hpp"
-#include "library/geometry/linear.hpp"
 
 namespace sightline::occlusion {
 
@@ -88,6 +87,7 @@ PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
     out.down[a] = static_cast<float>(down[a]);
     out.forward[a] = static_cast<float>(rows.forward[a]);
   }
+  out.edge_on = static_cast<float>(kEdgeOnSine);
   const double turn = glm::determinant(glm::dmat3(rows.x, rows.y, last));
   out.turns_right = turn * scale < 0;
   const glm::dvec4 front = geometry::near_plane(view);
@@ -101,6 +101,30 @@ PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
     out.near_plane = to_vec4(rows.w, rows.constant.z - kLeastW);
   }
   return out;
+}
+
+bool place(const ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept {
+  const glm::dmat3& m = placement.linear;
+  const double volume = glm::determinant(m);
+  if (!(std::fabs(volume) > kLeastVolume * glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2])))
+    return false;
+  const glm::dmat3 inverse = glm::inverse(m), turned = glm::transpose(m);
+  EyeProjection& e = projection;
+  const glm::dvec3 eye = to_double(e.eye_high) + to_double(e.eye_low);
+  const Split about = split(inverse * (eye - placement.translation));
+  e.eye_high = about.rounded, e.eye_low = about.rest;
+  for (Vec4* row : {&e.x, &e.y, &e.w, &e.nearness, &rays.near_plane})
+    *row = to_vec4(turned * glm::dvec3(row->x, row->y, row->z), row->w);
+  rays.edge_on *= static_cast<float>(glm::length(inverse * glm::make_vec3(rays.forward.data())));
+  for (auto* direction : {&rays.at, &rays.across, &rays.down, &rays.forward}) {
+    const glm::dvec3 its = inverse * glm::dvec3(glm::make_vec3(direction->data()));
+    for (int a = 0; a < 3; ++a) (*direction)[static_cast<std::size_t>(a)] = static_cast<float>(its[a]);
+  }
+  double squares = 0;
+  for (int c = 0; c < 3; ++c) squares += glm::dot(inverse[c], inverse[c]);
+  rays.stretch = static_cast<float>(std::sqrt(squares / 3));
+  rays.turns_right = rays.turns_right != (volume < 0);
+  return true;
 }
 
 }  // namespace sightline::occlusion

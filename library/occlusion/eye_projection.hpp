@@ -10,6 +10,8 @@
 #include <sightline/types.hpp>
 #include <sightline/view.hpp>
 
+#include "library/geometry/linear.hpp"
+
 namespace sightline::occlusion {
 
 /// A view's projection about its eye, so that coordinates near the eye keep their digits: a point p is first
@@ -27,7 +29,10 @@ struct PixelRays {
   /// w = 1; orthographic: where its ray crosses depth 0, relative to the eye.
   std::array<float, 3> at{}, across{}, down{};
   std::array<float, 3> forward{};  ///< orthographic: the ray's direction
-  Vec4 near_plane;                 ///< · (q, 1) >= 0 in front of the near plane
+  /// Orthographic: a plane is drawn whose unit normal's product with it is larger.
+  float edge_on = 0;
+  float stretch = 1;  ///< how long a metre of the view is in the space that this is in
+  Vec4 near_plane;    ///< · (q, 1) >= 0 in front of the near plane
   /// Corners that go counterclockwise round a face do so to the right on the image.
   bool turns_right = false;
 };
@@ -39,5 +44,8 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin,
 /// origin.
 EyeProjection placed_projection(const View& view, const glm::dmat4& placement, std::uint32_t scale) noexcept;
 PixelRays pixel_rays(const View& view, std::uint32_t scale = 1) noexcept;
+/// Turns both, of one view, to the space of what `placement` moves from there to metres about the view's
+/// origin. False, and nothing done, where it flattens.
+bool place(const geometry::ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept;
 
 }  // namespace sightline::occlusion

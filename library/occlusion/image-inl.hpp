@@ -28,12 +28,6 @@ using Corners = std::array<VPoints, 3>;  // of a vector of triangles, about the 
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Most levels are one mesh that is drawn where it lies.
-HWY_INLINE VPoints moved(const RowTransform& transform, const VPoints& p) {
-  if (transform.in_place) return p;
-  return {dot_row(transform.rows[0], p), dot_row(transform.rows[1], p), dot_row(transform.rows[2], p)};
-}
-
 // As EyeProjection says.
 HWY_INLINE VPoints about_eye(const EyeProjection& e, const VPoints& p) {
   const F f;
@@ -55,7 +49,7 @@ HWY_INLINE VF side_of_planes(const DepthTiles& tiles, const Corners& corners) {
   const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
   const VF along = orthographic ? dot(normal, tiles.rays.forward) : dot(normal, corners[0]);
   const VF least = orthographic
-                       ? hn::Set(f, static_cast<float>(kEdgeOnSine))
+                       ? hn::Set(f, tiles.rays.edge_on)
                        : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
                                  hn::Set(f, static_cast<float>(kEdgeOnDistance)));
   const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));

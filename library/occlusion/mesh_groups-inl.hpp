@@ -48,17 +48,11 @@ HWY_INLINE VF size_along(const Vec4& row, const VPoints& half) {
   return dot(half, std::array<float, 3>{std::fabs(row.x), std::fabs(row.y), std::fabs(row.z)});
 }
 
-// The boxes around the moved boxes of groups first ….
-HWY_INLINE WideBoxes moved_boxes(const OccluderTopology& mesh, const RowTransform& transform,
-                                 std::size_t first) {
+HWY_INLINE WideBoxes boxes_of_groups(const OccluderTopology& mesh, std::size_t first) {
   const F f;
   const float* box = &mesh.box[first / 16 * 96 + first % 16];
-  const VPoints c{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
-      h{hn::Load(f, box + 48), hn::Load(f, box + 64), hn::Load(f, box + 80)};
-  const VPoints middle = moved(transform, c);
-  if (transform.in_place) return {middle, h};
-  const auto& rows = transform.rows;
-  return {middle, {size_along(rows[0], h), size_along(rows[1], h), size_along(rows[2], h)}};
+  return {{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
+          {hn::Load(f, box + 48), hn::Load(f, box + 64), hn::Load(f, box + 80)}};
 }
 
 // A depth in steps of a sixteenth of an octave, fine enough for an order that only saves time.
@@ -89,15 +83,14 @@ HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
-HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh,
-                              const RowTransform& transform) {
+HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh) {
   const F f;
   const ViewRows view = view_rows(tiles);
   MeshScratch& s = *tiles.mesh;
   const std::int32_t nearest_step = depth_step(std::fabs(tiles.rays.near_plane.w));
   s.group.clear(), s.near_first.clear();
   for (std::size_t first = 0; first < mesh.groups.size(); first += hn::Lanes(f)) {
-    const WideBoxes boxes = moved_boxes(mesh, transform, first);
+    const WideBoxes boxes = boxes_of_groups(mesh, first);
     const VPoints q = about_eye(tiles.projection, boxes.middle);
     auto in = hn::FirstN(f, mesh.groups.size() - first);
     for (const Vec4& side : view.sides) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "library/occlusion/depth_tiles.hpp"
@@ -184,10 +185,9 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
 
 // Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
 // draw_with_margin() has it. Returns how many tiles lie around it.
-HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& mesh,
-                                    const RowTransform& transform, std::size_t group,
+HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
                                     const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
-  const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, group, i);
+  const ExactCorners corners = exact_corners(tiles.projection, mesh, group, i);
   const float way = mesh.groups[group].one_sided >> i & 1 ? tiles.mesh->front : 0;
   if (tiles.margin == 0) return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), {}, 0});
   Convex image;
@@ -201,35 +201,19 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   return around;
 }
 
-// How far rounding may carry a group's corners when they are moved.
-HWY_INLINE float moved_by_rounding(const OccluderTopology& mesh, const RowTransform& transform,
-                                   std::size_t group) {
-  if (transform.in_place) return 0;
-  const float* box = &mesh.box[group / 16 * 96 + group % 16];  // middle, half
-  const auto reach = [&](std::size_t axis) { return std::fabs(box[16 * axis]) + box[16 * (axis + 3)]; };
-  float largest = 0;
-  for (const Vec4& r : transform.rows) {
-    largest = std::max(largest, std::fabs(r.x) * reach(0) + std::fabs(r.y) * reach(1) +
-                                    std::fabs(r.z) * reach(2) + std::fabs(r.w));
-  }
-  return kMoveRounding * largest;
-}
-
 // What a budget does not pay for is left out, and hides nothing; seams beside it stay as true as they are:
 // the mesh goes on there.
-HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group, MeshBudget* budget, TileList<1>& list) {
+HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
+                           MeshBudget* budget, TileList<1>& list) {
   ReadyTriangles ready;
   if (tiles.margin > 0) prefetch_rim(mesh, group);
-  set_up(tiles, mesh, transform, group, ready);
+  set_up(tiles, mesh, group, ready);
   if ((ready.drawn | ready.cut) == 0) return;
   Rim rim;
-  if (tiles.margin > 0) find_rim(tiles, mesh, transform, group, ready.drawn | ready.cut, rim);
+  if (tiles.margin > 0) find_rim(tiles, mesh, group, ready.drawn | ready.cut, rim);
   const OccluderTopology::Group& its = mesh.groups[group];
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
                         HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, budget, list); };
-  const float apart =
-      its.follows == 0 ? 0 : its.apart * tiles.mesh->stretch + moved_by_rounding(mesh, transform, group);
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t leads = its.follows >> 1 & ~its.follows; leads != 0; leads &= leads - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(leads));
@@ -237,7 +221,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
     if ((rest & piece.bits()) == 0) continue;
     Convex polygon;
     float nearest = 0;
-    if (!make_polygon(tiles, ready, piece, its.straight >> i & 1, apart, polygon, nearest)) continue;
+    if (!make_polygon(tiles, ready, piece, its.straight >> i & 1, its.apart, polygon, nearest)) continue;
     draw(piece, polygon, nearest);
     rest &= ~piece.bits();
   }
@@ -249,7 +233,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, cons
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     // How much of the image it covers shows once it is clipped.
     if (budget && !budget->affords(budget->polygon + tiles.columns * tiles.rows * budget->tile)) break;
-    const std::uint32_t around = draw_cut(tiles, mesh, transform, group, ready, rim, i);
+    const std::uint32_t around = draw_cut(tiles, mesh, group, ready, rim, i);
     if (budget) budget->pay(budget->polygon + around * budget->tile);
   }
 }
@@ -262,10 +246,9 @@ HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) 
 
 constexpr std::size_t kGroupsAtOnce = 16;  // as many boxes are asked for together
 
-void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                    MeshBudget* budget) {
+void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, MeshBudget* budget) {
   if (budget && !budget->pay(static_cast<double>(mesh.groups.size()) * budget->look)) return;
-  find_groups(tiles, mesh, transform);
+  find_groups(tiles, mesh);
   const MeshScratch& s = *tiles.mesh;
   TileList<1> list;
 
@@ -284,7 +267,7 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, const RowTr
       if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (visible[i]) draw_group(tiles, mesh, transform, s.group[place(i)], budget, list);
+      if (visible[i]) draw_group(tiles, mesh, s.group[place(i)], budget, list);
     }
     draw_listed(tiles, list);
   }
@@ -299,33 +282,15 @@ HWY_EXPORT(draw_triangles);
 
 namespace {
 
-// Whether triangles turn the other way once they are moved so.
-bool mirrors(const RowTransform& transform) {
-  const auto row = [&](std::size_t a) {
-    const Vec4& r = transform.rows[a];
-    return glm::dvec3(r.x, r.y, r.z);
-  };
-  return glm::dot(row(0), glm::cross(row(1), row(2))) < 0;
-}
-
-float front_of(const DepthTiles& tiles, const RowTransform& transform) {
-  return tiles.rays.turns_right != mirrors(transform) ? 1.0f : -1.0f;
-}
-
-// How much longer distances may become.
-float stretch_of(const RowTransform& transform) {
-  if (transform.in_place) return 1;
-  double squares = 0;
-  for (const Vec4& r : transform.rows) {
-    const glm::dvec3 row(r.x, r.y, r.z);
-    squares += glm::dot(row, row);
-  }
-  return static_cast<float>(std::sqrt(squares) * (1 + 1e-6));
+// The tiles as the mesh sees them from where it stands before it is placed, so that no corner is moved.
+std::optional<DepthTiles> placed(const DepthTiles& tiles, const ExactAffine& placement) {
+  std::optional<DepthTiles> out = tiles;
+  if (placement != ExactAffine{} && !place(placement, out->projection, out->rays)) return {};
+  return out;
 }
 
 // For a mesh that is to be drawn.
-void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology& mesh,
-                const RowTransform& transform) {
+void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology& mesh) {
   const std::size_t groups = mesh.groups.size();
   if (s.known.size() < groups) {
     for (auto& side : s.box) side.resize(groups);
@@ -334,7 +299,7 @@ void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology&
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
-  s.front = front_of(tiles, transform), s.stretch = stretch_of(transform);
+  s.front = tiles.rays.turns_right ? 1.0f : -1.0f;
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
 }
 
@@ -344,7 +309,6 @@ struct MeshBands {
   const DepthTiles& tiles;
   std::span<MeshScratch> scratch;  // one a job
   const OccluderTopology& mesh;
-  const RowTransform& transform;
 
   void draw(std::uint32_t job) const {
     const auto count = static_cast<std::uint32_t>(scratch.size());
@@ -352,7 +316,7 @@ struct MeshBands {
     band.mesh = &scratch[job];
     band.first_row = job * tiles.rows / count * kTile;
     band.end_row = std::min(tiles.height, (job + 1) * tiles.rows / count * kTile);
-    HWY_DYNAMIC_DISPATCH(draw_triangles)(band, mesh, transform, nullptr);
+    HWY_DYNAMIC_DISPATCH(draw_triangles)(band, mesh, nullptr);
   }
 };
 
@@ -360,21 +324,25 @@ constexpr std::uint32_t kLeastRows = 6;  // of tiles; a thinner band is not wort
 
 }  // namespace
 
-void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-               MeshBudget& budget) {
-  make_ready(*tiles.mesh, tiles, mesh, transform);
-  HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, &budget);
+void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const ExactAffine& placement,
+               MeshBudget* budget) {
+  std::optional<DepthTiles> there = placed(tiles, placement);
+  if (!there) return;
+  make_ready(*there->mesh, *there, mesh);
+  HWY_DYNAMIC_DISPATCH(draw_triangles)(*there, mesh, budget);
 }
 
 void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& mesh,
-               const RowTransform& transform, const JobSystem& jobs) {
+               const ExactAffine& placement, const JobSystem& jobs) {
   const std::uint32_t most = std::min(std::min(jobs.threads, kMaxJobs), tiles.rows / kLeastRows);
   const std::uint32_t count = jobs.run ? std::max(1u, most) : 1;
   if (memory.scratch.size() < count) memory.scratch.resize(count), tiles.mesh = memory.scratch.data();
   const std::span scratch = std::span(memory.scratch).first(count);
-  for (MeshScratch& s : scratch) make_ready(s, tiles, mesh, transform);
-  if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(tiles, mesh, transform, nullptr);
-  MeshBands bands{tiles, scratch, mesh, transform};
+  std::optional<DepthTiles> there = placed(tiles, placement);
+  if (!there) return;
+  for (MeshScratch& s : scratch) make_ready(s, *there, mesh);
+  if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(*there, mesh, nullptr);
+  MeshBands bands{*there, scratch, mesh};
   jobs.run(
       jobs.user, count, [](void* data, std::uint32_t job) { static_cast<MeshBands*>(data)->draw(job); },
       &bands);

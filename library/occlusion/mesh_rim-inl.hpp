@@ -91,8 +91,7 @@ HWY_NOINLINE inline void append_band(const DepthTiles& tiles, const std::optiona
 
 // Bands of what the image shows of the edges: of those before the near plane first, whatever a vector's
 // width, for there may be too many.
-HWY_NOINLINE void flush_ends(const DepthTiles& tiles, const RowTransform& transform, RimEnds& ends,
-                             Rim& out) {
+HWY_NOINLINE void flush_ends(const DepthTiles& tiles, RimEnds& ends, Rim& out) {
   const F f;
   const EyeProjection& e = tiles.projection;
   std::uint32_t cut = 0;
@@ -100,7 +99,7 @@ HWY_NOINLINE void flush_ends(const DepthTiles& tiles, const RowTransform& transf
     const auto those = hn::FirstN(f, ends.count - first);
     const auto load = [&](const std::array<std::array<float, kGroup>, 3>& p) HWY_ATTR {
       const auto axis = [&](std::size_t k) HWY_ATTR { return hn::Load(f, &p[k][first]); };
-      return about_eye(e, moved(transform, VPoints{axis(0), axis(1), axis(2)}));
+      return about_eye(e, VPoints{axis(0), axis(1), axis(2)});
     };
     const VPoints a = load(ends.a), b = load(ends.b);
     const VF one = hn::Set(f, 1.0f), a_over_w = hn::Div(one, dot_row(e.w, a)),
@@ -114,7 +113,7 @@ HWY_NOINLINE void flush_ends(const DepthTiles& tiles, const RowTransform& transf
   for (; cut != 0; cut &= cut - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(cut));
     const auto end = [&](const std::array<std::array<float, kGroup>, 3>& p) {
-      return about_eye(e, transform, {p[0][i], p[1][i], p[2][i]});
+      return about_eye(e, {p[0][i], p[1][i], p[2][i]});
     };
     append_band(tiles, in_view(tiles, end(ends.a), end(ends.b)), ends.of[i], out);
   }
@@ -150,19 +149,18 @@ constexpr std::size_t kBlocksAtOnce = 8;
 
 // Where the near plane cuts a triangle that lies beside some of the drawn.
 inline void append_near_edge(const DepthTiles& tiles, const OccluderTopology& mesh,
-                             const RowTransform& transform, const OccluderTopology::AroundTriangles& those,
-                             std::size_t place, std::uint32_t drawn, Rim& out) {
+                             const OccluderTopology::AroundTriangles& those, std::size_t place,
+                             std::uint32_t drawn, Rim& out) {
   std::uint32_t of = 0;
   for (std::size_t i = 0; i < kGroup; ++i) of |= (std::uint32_t{those.beside[i]} >> place & 1u) << i;
   if ((of & drawn) == 0) return;
   const auto t = static_cast<std::size_t>(those.triangle[place]);
-  const ExactCorners corners = exact_corners(tiles.projection, mesh, transform, t / kGroup, t % kGroup);
+  const ExactCorners corners = exact_corners(tiles.projection, mesh, t / kGroup, t % kGroup);
   append_band(tiles, near_edge(tiles, corners), of, out);
 }
 
 // The steepest triangle around each of the drawn, and where the near plane cuts some; of a few blocks.
 HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mesh,
-                            const RowTransform& transform,
                             std::span<const OccluderTopology::AroundTriangles> blocks, std::uint32_t drawn,
                             Rim& out) {
   const F f;
@@ -178,8 +176,7 @@ HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mes
       cut |= bits_of(f, hn::Eq(hn::Abs(facing), hn::Set(f, kCut))) << lane;
     }
     for (; cut != 0; cut &= cut - 1)
-      append_near_edge(tiles, mesh, transform, blocks[b], static_cast<std::size_t>(std::countr_zero(cut)),
-                       drawn, out);
+      append_near_edge(tiles, mesh, blocks[b], static_cast<std::size_t>(std::countr_zero(cut)), drawn, out);
   }
   for (std::uint32_t bits = drawn; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(bits));
@@ -194,8 +191,8 @@ HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mes
   }
 }
 
-HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mesh,
-                            const RowTransform& transform, std::size_t group, std::uint32_t drawn, Rim& out) {
+HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
+                            std::uint32_t drawn, Rim& out) {
   const OccluderTopology::Group& its = mesh.groups[group];
   for (std::uint32_t bits = drawn; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(bits));
@@ -203,7 +200,7 @@ HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mes
   }
   for (std::uint32_t b = its.first_around; b < its.end_around; b += kBlocksAtOnce) {
     const std::size_t count = std::min<std::size_t>(kBlocksAtOnce, its.end_around - b);
-    look_around(tiles, mesh, transform, std::span(mesh.around).subspan(b, count), drawn, out);
+    look_around(tiles, mesh, std::span(mesh.around).subspan(b, count), drawn, out);
   }
 }
 
@@ -215,11 +212,11 @@ HWY_INLINE void prefetch_rim(const OccluderTopology& mesh, std::size_t group) {
 }
 
 // What lies around those of a group's triangles that are drawn. Facings are known.
-HWY_NOINLINE void find_rim(const DepthTiles& tiles, const OccluderTopology& mesh,
-                           const RowTransform& transform, std::size_t group, std::uint32_t drawn, Rim& out) {
+HWY_NOINLINE void find_rim(const DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
+                           std::uint32_t drawn, Rim& out) {
   const OccluderTopology::Group& its = mesh.groups[group];
   out.count = 0, out.unknown = its.alone, out.of_some = 0;
-  look_around(tiles, mesh, transform, group, drawn, out);
+  look_around(tiles, mesh, group, drawn, out);
   RimEnds ends;
   for (std::uint32_t i = its.first_rim; i < its.end_rim; ++i) {
     const OccluderTopology::RimEdges& edges = mesh.rim[i];
@@ -232,10 +229,10 @@ HWY_NOINLINE void find_rim(const DepthTiles& tiles, const OccluderTopology& mesh
       ends.a[0][to] = a.x, ends.a[1][to] = a.y, ends.a[2][to] = a.z;
       ends.b[0][to] = b.x, ends.b[1][to] = b.y, ends.b[2][to] = b.z;
       ends.of[to] = edges.of[k];
-      if (ends.count == kGroup) flush_ends(tiles, transform, ends, out);
+      if (ends.count == kGroup) flush_ends(tiles, ends, out);
     }
   }
-  flush_ends(tiles, transform, ends, out);
+  flush_ends(tiles, ends, out);
 }
 
 // Of a vector of edges those whose bands hold no pixel centre of a polygon. An edge that goes straight on

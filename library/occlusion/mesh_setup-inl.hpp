@@ -16,14 +16,14 @@ namespace sightline::occlusion::HWY_NAMESPACE {
 constexpr std::size_t kGroup = OccluderTopology::kGroup;
 
 // A vector of triangles' corners about the eye, from triangle 16·group + lane on.
-HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh,
-                                     const RowTransform& transform, std::size_t group, std::size_t lane) {
+HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh, std::size_t group,
+                                     std::size_t lane) {
   const F f;
   Corners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + lane];
     const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
-    out[k] = about_eye(e, moved(transform, p));
+    out[k] = about_eye(e, p);
   }
   return out;
 }
@@ -108,13 +108,13 @@ struct Candidates {
   VF nearness[3], nearest;  // found where some are drawn
 };
 
-HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh,
-                                    const RowTransform& transform, std::size_t group, std::size_t lane) {
+HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
+                                    std::size_t lane) {
   const F f;
   const EyeProjection& e = tiles.projection;
   Candidates c;
   c.group = group, c.lane = lane;
-  c.corners = corners_about_eye(e, mesh, transform, group, lane);
+  c.corners = corners_about_eye(e, mesh, group, lane);
   c.image = on_image(e, c.corners);
   c.before = before_near(tiles, c.corners);
   c.facing = facing_of(tiles, c.corners, c.image, c.before, mesh.groups[group].one_sided >> lane);
@@ -180,7 +180,7 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF plane_at = dot(unit, nearest_of(c));
   const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
   out.distance = hn::Abs(scale);
-  const VF least = orthographic ? hn::Set(f, static_cast<float>(kEdgeOnSine))
+  const VF least = orthographic ? hn::Set(f, rays.edge_on)
                                 : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
                                           hn::Set(f, static_cast<float>(kEdgeOnDistance)));
   out.sound = hn::And(hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f)),
@@ -192,29 +192,27 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF sides = out.sides = hn::Add(largest(pq), largest(pr));
   out.doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
                       hn::Mul(length, hn::Abs(scale)));
-  if (orthographic) out.doubt = hn::Mul(out.doubt, hn::Add(sides, sides));
+  out.doubt = hn::Mul(out.doubt, orthographic ? hn::Add(sides, sides) : hn::Set(f, rays.stretch));
   return out;
 }
 
 // Triangle 16·group + i of the mesh in double precision.
 HWY_NOINLINE inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
-                                               const RowTransform& transform, std::size_t group,
-                                               std::size_t i) {
+                                               std::size_t group, std::size_t i) {
   ExactCorners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
-    out[k] = about_eye(e, transform, {from[0], from[kGroup], from[2 * kGroup]});
+    out[k] = about_eye(e, {from[0], from[kGroup], from[2 * kGroup]});
   }
   return out;
 }
 
 // Of those of a group that the near plane cuts, which count where a pixel's margin does.
-HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                           std::size_t group) {
+HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
   float* facing = &tiles.mesh->facing[group * kGroup];
   for (std::size_t i = 0; i < kGroup; ++i) {
     if (std::fabs(facing[i]) != kCut) continue;
-    const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, transform, group, i));
+    const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, group, i));
     tiles.mesh->slant[group * kGroup + i] = its.slant;
     if (!its.counts) facing[i] = 0;
   }
@@ -222,15 +220,14 @@ HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, cons
 
 // Found when first asked for. Where a pixel's margin counts, those seen edge on are as if they were not
 // there: the mesh ends at them.
-void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                 std::size_t group) {
+void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
   const F f;
   MeshScratch& s = *tiles.mesh;
   if (s.known[group] == s.turn) return;
   s.known[group] = s.turn;
   std::uint32_t cut = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
-    Candidates c = candidates_of(tiles, mesh, transform, group, lane);
+    Candidates c = candidates_of(tiles, mesh, group, lane);
     if (tiles.margin > 0) {
       find_nearness(tiles.projection, c);
       const TrianglePlanes planes = planes_of(tiles, c);
@@ -242,7 +239,7 @@ void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, const RowTrans
     }
     hn::Store(c.facing, f, &s.facing[group * kGroup + lane]);
   }
-  if (cut != 0) know_cut(tiles, mesh, transform, group);
+  if (cut != 0) know_cut(tiles, mesh, group);
 }
 
 HWY_INLINE void set_planes(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
@@ -287,14 +284,14 @@ HWY_INLINE Edges edges_of(const DepthTiles& tiles, const OccluderTopology& mesh,
 
 // Which way the neighbours at edge k turn on the image, as facing_of() says; where there is none, 0. From
 // what the group itself holds of them, so that no other needs to be looked at.
-HWY_INLINE VF facing_beyond(const DepthTiles& tiles, const OccluderTopology& mesh,
-                            const RowTransform& transform, const Candidates& c, std::size_t k) {
+HWY_INLINE VF facing_beyond(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
+                            std::size_t k) {
   const F f;
   const EyeProjection& e = tiles.projection;
   const std::size_t next = (k + 1) % 3;
   const float* from = &mesh.beyond[(c.group * 9 + 3 * k) * kGroup + c.lane];
   const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
-  const Corners corners{c.corners[next], c.corners[k], about_eye(e, moved(transform, p))};
+  const Corners corners{c.corners[next], c.corners[k], about_eye(e, p)};
   const VF over_w = hn::Div(hn::Set(f, 1.0f), dot_row(e.w, corners[2]));
   OnImage image;
   image.x[0] = c.image.x[next], image.x[1] = c.image.x[k];
@@ -318,14 +315,13 @@ HWY_INLINE VF counted_beyond(const DepthTiles& tiles, const OccluderTopology& me
 
 // Edge k of each triangle, moved inwards by `inset` where no other triangle that turns the same way goes on
 // there; what bounds the rows narrows `outline`.
-HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                         const Candidates& c, std::size_t k, VF inset, std::uint32_t shared,
-                         Rectangles& outline, ReadyTriangles& out) {
+HWY_INLINE void set_edge(const DepthTiles& tiles, const OccluderTopology& mesh, const Candidates& c,
+                         std::size_t k, VF inset, std::uint32_t shared, Rectangles& outline,
+                         ReadyTriangles& out) {
   const F f;
   const VF* y = c.image.y;
   if (mesh.groups[c.group].straight != 0) hn::Store(y[k], f, &out.y[k][c.lane]);
-  const VF others =
-      tiles.margin > 0 ? counted_beyond(tiles, mesh, c, k) : facing_beyond(tiles, mesh, transform, c, k);
+  const VF others = tiles.margin > 0 ? counted_beyond(tiles, mesh, c, k) : facing_beyond(tiles, mesh, c, k);
   const auto seam = hn::Or(hn::Gt(hn::Mul(others, c.facing), hn::Zero(f)), mask_of(f, shared));
   out.seam[k] |= bits_of(f, seam) << c.lane;
   const auto falls = hn::Gt(y[(k + 1) % 3], y[k]);
@@ -396,9 +392,8 @@ inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, cons
 }
 
 // A vector of a group's triangles, some of which are drawn if `some`.
-HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                       Candidates& c, const std::array<std::uint32_t, 3>& shared, bool some,
-                       ReadyTriangles& out) {
+HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
+                       const std::array<std::uint32_t, 3>& shared, bool some, ReadyTriangles& out) {
   const F f;
   if (some) {
     if (hn::AllFalse(f, c.drawn)) find_nearness(tiles.projection, c);
@@ -407,8 +402,7 @@ HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, co
   out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << c.lane;
   const VF inset = inset_of(tiles, widest_of(c.outline));
   Rectangles outline = c.outline;
-  for (std::size_t k = 0; k < 3; ++k)
-    set_edge(tiles, mesh, transform, c, k, inset, shared[k] >> c.lane, outline, out);
+  for (std::size_t k = 0; k < 3; ++k) set_edge(tiles, mesh, c, k, inset, shared[k] >> c.lane, outline, out);
   if ((out.cut >> c.lane & ((1u << hn::Lanes(f)) - 1)) != 0) set_whole_edges(c, out);
   // Where only seams bound a corner of the outline, rounding may carry them beyond it.
   store(outline, out, c.lane);
@@ -417,15 +411,15 @@ HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, co
 
 // The triangles of a group. All or none are set up, however many a vector holds: whether they are drawn as
 // polygons does not depend on that.
-HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const RowTransform& transform,
-                       std::size_t group, ReadyTriangles& out) {
+HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
+                       ReadyTriangles& out) {
   const F f;
   const std::size_t lanes = hn::Lanes(f);
   std::array<Candidates, kGroup / hn::MaxLanes(F())> vectors;
   const VF exact = hn::Zero(f);
   bool some = false;
   for (std::size_t v = 0; v * lanes < kGroup; ++v) {
-    Candidates& c = vectors[v] = candidates_of(tiles, mesh, transform, group, v * lanes);
+    Candidates& c = vectors[v] = candidates_of(tiles, mesh, group, v * lanes);
     std::uint32_t cut = bits_of(f, hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut)));
     if (cut != 0) cut &= ~beyond_a_side(tiles, c.corners, {exact, exact, exact});
     out.cut |= cut << c.lane;
@@ -433,12 +427,10 @@ HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, const Ro
   }
   if (!some && out.cut == 0) return;
   const OccluderTopology::Group& its = mesh.groups[group];
-  if (tiles.margin > 0 || its.first_shared < its.end_shared) know_facing(tiles, mesh, transform, group);
-  for (const std::uint32_t other : around_group(tiles, mesh, group))
-    know_facing(tiles, mesh, transform, other);
+  if (tiles.margin > 0 || its.first_shared < its.end_shared) know_facing(tiles, mesh, group);
+  for (const std::uint32_t other : around_group(tiles, mesh, group)) know_facing(tiles, mesh, other);
   const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
-  for (std::size_t v = 0; v * lanes < kGroup; ++v)
-    set_up(tiles, mesh, transform, vectors[v], shared, some, out);
+  for (std::size_t v = 0; v * lanes < kGroup; ++v) set_up(tiles, mesh, vectors[v], shared, some, out);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -173,7 +173,7 @@ Status OcclusionBuffer::draw_mesh(const OccluderMesh& mesh, const Mat4& transfor
     return {StatusCode::bad_argument,
             "occlusion: the transform is not finite or not affine, expected the last row 0 0 0 1"};
   }
-  occlusion::draw_mesh(*state_, state_->memory, *mesh.topology_, geometry::row_transform(transform), jobs);
+  occlusion::draw_mesh(*state_, state_->memory, *mesh.topology_, geometry::exact_affine(transform), jobs);
   return {};
 }
 

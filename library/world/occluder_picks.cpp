@@ -29,19 +29,16 @@ bool in_parts(const OccluderShape& shape) noexcept {
   return shape.all.triangles() > kWhole;
 }
 
-// About the view's origin. Where it is the placement's, nothing is rounded.
-Mat4 transform_about(const OccluderPlacement& placement, const WorldPoint& origin) {
-  Mat4 out = placement.transform;
-  const double offset[3] = {placement.origin.x - origin.x, placement.origin.y - origin.y,
-                            placement.origin.z - origin.z};
-  for (std::size_t a = 0; a < 3; ++a)
-    if (offset[a] != 0) out.m[12 + a] = static_cast<float>(double{out.m[12 + a]} + offset[a]);
+// About the view's origin.
+geometry::ExactAffine placement_about(const OccluderPlacement& placement, const WorldPoint& origin) {
+  geometry::ExactAffine out = geometry::exact_affine(placement.transform);
+  out.translation +=
+      glm::dvec3(placement.origin.x - origin.x, placement.origin.y - origin.y, placement.origin.z - origin.z);
   return out;
 }
 
 // What a direction is at least scaled by, by Gershgorin's discs, rounded downwards.
-double least_scale(const Mat4& m) {
-  const glm::dmat3 linear(geometry::to_double(m));
+double least_scale(const glm::dmat3& linear) {
   const glm::dmat3 products = glm::transpose(linear) * linear;
   double least = products[0][0];
   for (int a = 0; a < 3; ++a)
@@ -273,31 +270,33 @@ double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spar
   if (!here || !sight.large(box) || !sight.in_range(carrier.object, stored)) return spare;
   drawn_.push_back(carrier.object);
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
-  const Mat4 transform = transform_about(carrier.placement, sight.view.view.origin);
+  const geometry::ExactAffine placement = placement_about(carrier.placement, sight.view.view.origin);
   // What lies inside an object would still show a front to a pixel that looks from inside it.
   const bool cut = sight.cuts(box);
   const OccluderMesh& mesh = cut ? shape.shown() : shape.all;
-  spare = draw_triangles(sight, mesh, transform, pick, spare);
+  spare = draw_triangles(sight, mesh, placement, pick, spare);
   if (cut) return spare;
   if (!shape.boxes.empty()) draw_boxes(shape, carrier.placement);
-  if (shape.turned.triangles() > 0 && boxes_.empty())
-    static_cast<void>(buffer_.draw_mesh(shape.turned, transform));
-  draw_spheres(shape, transform);
+  if (shape.turned.triangles() > 0 && boxes_.empty()) draw_mesh(shape.turned, placement);
+  draw_spheres(shape, placement);
   return spare;
 }
 
+void OccluderPicks::draw_mesh(const OccluderMesh& mesh, const geometry::ExactAffine& placement) {
+  if (mesh.triangles() > 0)
+    occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh), placement);
+}
+
 // A large mesh for what was put by for it and the spare, of which it leaves some.
-double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mesh, const Mat4& transform,
-                                     const Pick& pick, double spare) {
+double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mesh,
+                                     const geometry::ExactAffine& placement, const Pick& pick, double spare) {
   if (mesh.triangles() == 0) return spare;
   if (!pick.parts) {
-    // What is refused is not drawn, and hides nothing.
-    static_cast<void>(buffer_.draw_mesh(mesh, transform));
+    draw_mesh(mesh, placement);
     return spare;
   }
   occlusion::MeshBudget budget = sight.parts_budget(pick.claim - pick.whole + spare);
-  occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh),
-                       geometry::row_transform(transform), budget);
+  occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh), placement, &budget);
   return budget.left;
 }
 
@@ -319,13 +318,13 @@ void OccluderPicks::draw_boxes(const OccluderShape& shape, const OccluderPlaceme
   static_cast<void>(buffer_.draw_boxes(std::span<const WorldBox>(boxes_)));
 }
 
-void OccluderPicks::draw_spheres(const OccluderShape& shape, const Mat4& transform) {
+void OccluderPicks::draw_spheres(const OccluderShape& shape, const geometry::ExactAffine& placement) {
   if (shape.spheres.empty()) return;
   spheres_.clear();
-  const double scale = least_scale(transform);
-  const geometry::RowTransform rows = geometry::row_transform(transform);
+  const double scale = least_scale(placement.linear);
   for (const Sphere& s : shape.spheres) {
-    const Vec3 c = geometry::transform_point(rows, s.centre);
+    const Vec3 c =
+        geometry::to_vec3(placement.linear * geometry::to_double(s.centre) + placement.translation);
     // Less what the centre may have been moved by in rounding.
     const double moved = 1e-6 * (std::fabs(double{c.x}) + std::fabs(double{c.y}) + std::fabs(double{c.z}));
     const double radius = double{s.radius} * scale - moved;

@@ -48,10 +48,11 @@ private:
   bool look_at(const Sight& sight, std::uint32_t carrier);
   double choose(double budget);
   double draw_one(const Sight& sight, const Pick& pick, double spare);
-  double draw_triangles(const Sight& sight, const OccluderMesh& mesh, const Mat4& transform, const Pick& pick,
-                        double spare);
+  void draw_mesh(const OccluderMesh& mesh, const geometry::ExactAffine& placement);
+  double draw_triangles(const Sight& sight, const OccluderMesh& mesh, const geometry::ExactAffine& placement,
+                        const Pick& pick, double spare);
   void draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement);
-  void draw_spheres(const OccluderShape& shape, const Mat4& transform);
+  void draw_spheres(const OccluderShape& shape, const geometry::ExactAffine& placement);
 
   OcclusionBuffer buffer_;
   std::vector<std::uint32_t> seen_;  // carriers that were seen the last time

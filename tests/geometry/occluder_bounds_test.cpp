@@ -140,22 +140,6 @@ TEST(ErrorBounds, PlanesOfPolygons) {
     return ((double{to} - (double{at} - by)) / (double{kPolygonRounding} * std::fabs(at))) + 1;
   };
   expect_share(worst(3, moved), 0.48);
-  // How far from where it should be a corner comes to stand.
-  const auto placed = [](Draws& d) {
-    geometry::RowTransform to;
-    Vec3 p{d.any_float(0.1, 100), d.any_float(0.1, 100), d.any_float(0.1, 100)};
-    glm::dvec3 exact;
-    double largest = 0;
-    for (glm::length_t axis = 0; axis < 3; ++axis) {
-      Vec4& r = to.rows[static_cast<std::size_t>(axis)];
-      r = {d.any_float(0.01, 2), d.any_float(0.01, 2), d.any_float(0.01, 2), d.any_float(0.1, 100)};
-      const double x = double{r.x} * p.x, y = double{r.y} * p.y, z = double{r.z} * p.z;
-      exact[axis] = x + y + z + r.w;
-      largest = std::max(largest, std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(double{r.w}));
-    }
-    return glm::length(to_double(geometry::transform_point(to, p)) - exact) / (kMoveRounding * largest);
-  };
-  expect_share(worst(14, placed), 0.65);
 }
 
 TEST(ErrorBounds, SurelyFacingTheEye) {

@@ -150,11 +150,15 @@ TEST(Coverage, HidesNothingThatAnyPlaceSees) {
   }
 }
 
-double nearest_of(const ExactRays& rays, double x, double y, const scene::Shape& shape) {
+double nearest_of(const ExactRays& rays, double x, double y, const scene::Shape& shape,
+                  const geometry::ExactAffine& placement = {}) {
   double best = ExactRays::kMiss;
   for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return shape.positions[shape.indices[i + k]]; };
-    best = std::max(best, rays.hit(x, y, {corner(0), corner(1), corner(2)}));
+    const auto corner = [&](std::size_t k) {
+      const glm::dvec3 p = geometry::to_double(shape.positions[shape.indices[i + k]]);
+      return placement.linear * p + placement.translation;
+    };
+    best = std::max(best, rays.hit(x, y, std::array{corner(0), corner(1), corner(2)}));
   }
   return best;
 }
@@ -305,8 +309,8 @@ TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   }
 }
 
-// A small box far from the origin, close before the eye: moving the corners of its walls there bends them by
-// more than they were ever apart.
+// A small box far from the origin, close before the eye: corners that were moved there in single precision
+// would bend its walls, and lie nearer than these.
 TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
   const scene::Shape shape = test::fine_box({{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}}, 2);
   const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
@@ -317,13 +321,10 @@ TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
     const Vec3 at = random.inside({{-600, -600, -600}, {600, 600, 600}});
     const Mat4 to{
         {c, 0, -s, 0, 0.6f * s, 0.8f, 0.6f * c, 0, 0.8f * s, -0.6f, 0.8f * c, 0, at.x, at.y, at.z, 1}};
-    const auto moved = [&](const Vec3& p) {
-      return geometry::transform_point(geometry::row_transform(to), p);
-    };
-    scene::Shape there = shape;
-    for (Vec3& p : there.positions) p = moved(p);
+    const geometry::ExactAffine there = geometry::exact_affine(to);
     Camera camera{.near_plane = 0.0001f};
-    camera.eye = moved(random.inside({{-0.04f, -0.04f, 0.053f}, {0.04f, 0.04f, 0.08f}}));
+    const Vec3 before = random.inside({{-0.04f, -0.04f, 0.053f}, {0.04f, 0.04f, 0.08f}});
+    camera.eye = geometry::to_vec3(there.linear * geometry::to_double(before) + there.translation);
     camera.forward = {at.x - camera.eye.x, at.y - camera.eye.y, at.z - camera.eye.z};
     const View view = *make_view(camera, 32, 24);
     const ExactRays rays(view);
@@ -331,7 +332,7 @@ TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
     ASSERT_TRUE(buffer.begin({view, {}}));
     ASSERT_TRUE(buffer.draw_mesh(mesh, to));
     hold_pixels(
-        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, there); }, held);
+        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape, there); }, held);
   }
   EXPECT_GT(static_cast<double>(held.drawn), 0.8 * static_cast<double>(held.whole));
 }

@@ -66,9 +66,12 @@ public:
 
   /// Where the pixel's ray meets a triangle in front of the near plane, either face.
   [[nodiscard]] double hit(double x, double y, const std::array<Vec3, 3>& triangle) const {
+    using geometry::to_double;
+    return hit(x, y, std::array{to_double(triangle[0]), to_double(triangle[1]), to_double(triangle[2])});
+  }
+  [[nodiscard]] double hit(double x, double y, const std::array<glm::dvec3, 3>& triangle) const {
     const auto [origin, direction] = ray(x, y);
-    const glm::dvec3 p = geometry::to_double(triangle[0]), a = geometry::to_double(triangle[1]) - p,
-                     b = geometry::to_double(triangle[2]) - p;
+    const glm::dvec3 p = triangle[0], a = triangle[1] - p, b = triangle[2] - p;
     const glm::dvec3 normal = glm::cross(a, b), to = p - origin;
     const double slope = glm::dot(normal, direction);
     if (slope == 0) return kMiss;

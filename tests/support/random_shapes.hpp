@@ -150,14 +150,14 @@ inline Mat4 any_placement(scene::Random& random) {
 /// where one sees their fronts.
 inline std::vector<Corners> placed(const scene::Shape& shape, const Mat4& placement) {
   const bool in_place = placement == Mat4{};
-  const geometry::RowTransform rows = geometry::row_transform(placement);
+  const geometry::ExactAffine its = geometry::exact_affine(placement);
   const bool mirrored = glm::determinant(glm::dmat3(geometry::to_double(placement))) < 0;
   std::vector<Corners> out;
   for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
     Corners corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = shape.positions[shape.indices[i + k]];
-      corners[k] = in_place ? p : geometry::transform_point(rows, p);
+      corners[k] = in_place ? p : geometry::to_vec3(its.linear * geometry::to_double(p) + its.translation);
     }
     if (mirrored) std::swap(corners[1], corners[2]);
     out.push_back(corners);

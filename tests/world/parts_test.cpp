@@ -111,8 +111,7 @@ std::vector<float> drawn(const OccluderMesh& mesh, const View& view, double* lef
   if (!left) {
     EXPECT_TRUE(buffer.draw_mesh(mesh));
   } else {
-    occlusion::draw_mesh(OcclusionAccess::tiles(buffer), OcclusionAccess::topology(mesh),
-                         geometry::row_transform(Mat4{}), budget);
+    occlusion::draw_mesh(OcclusionAccess::tiles(buffer), OcclusionAccess::topology(mesh), {}, &budget);
     *left = budget.left;
   }
   std::vector<float> out(std::size_t{view.width} * view.height);
