@@ -339,7 +339,7 @@ public:
 
   /// Teaches what an object costs, where CullCosts::object is 0: how many nanoseconds the frame took that
   /// drew what the last cull left. What each further object adds is learned, once frames differ in how many
-  /// they draw. Errors: bad_argument for a time that is not finite or negative.
+  /// they draw. Errors: bad_argument for a time that is not from 0 to 1e15.
   Status report_frame_time(double nanoseconds) noexcept;
 
 private:

@@ -99,12 +99,16 @@ bool is_finite(const Mat4& m) {
 // Scaled by the rows so that a small but sound matrix is not taken for a singular one.
 template <class Matrix>
 bool is_singular(const Matrix& matrix) {
-  Matrix rows = glm::transpose(matrix);
-  for (int r = 0; r < Matrix::length(); ++r) {
-    const double length = glm::length(rows[r]);
-    if (length > 0) rows[r] /= length;
+  // Whatever its columns and rows are measured in: a shift of a large image is no part of what a metre is.
+  Matrix scaled = matrix;
+  for (int way = 0; way < 2; ++way) {
+    for (int c = 0; c < Matrix::length(); ++c) {
+      const double length = glm::length(scaled[c]);
+      if (length > 0) scaled[c] /= length;
+    }
+    scaled = glm::transpose(scaled);
   }
-  return !(std::fabs(glm::determinant(rows)) > 1e-12);
+  return !(std::fabs(glm::determinant(scaled)) > 1e-12);
 }
 
 }  // namespace

@@ -206,8 +206,9 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
 }
 
 Status Culler::report_frame_time(double nanoseconds) noexcept {
-  if (!(nanoseconds >= 0) || !std::isfinite(nanoseconds))
-    return {StatusCode::bad_argument, "cull: a frame's time is negative or not finite"};
+  constexpr double kLongest = 1e15;  // eleven days: what costs are made of stays a float
+  if (!(nanoseconds >= 0) || !(nanoseconds <= kLongest))
+    return {StatusCode::bad_argument, "cull: a frame's time is out of range, expected 0 to 1e15 nanoseconds"};
   state_->object_cost.took(nanoseconds);
   return {};
 }

@@ -18,7 +18,8 @@ namespace world {
 
 namespace {
 
-constexpr double kSlack = 1e-3;  // metres; a box is stored as much larger, at most
+// Of a box's distance from the placement's origin: what its caller's floats may have lost of it, twice over.
+constexpr double kBoxRounding = 2.5e-7;
 
 WorldBox about(const WorldPoint& origin, const glm::dvec3& low, const glm::dvec3& high) {
   return {{origin.x + low.x, origin.y + low.y, origin.z + low.z},
@@ -134,10 +135,9 @@ void let_go(WorldOccluders& o, std::uint32_t carrier) noexcept {
 }  // namespace
 
 bool stands_in(const WorldBox& inner, const WorldPoint& origin, const WorldBox& outer) noexcept {
-  // What a matrix in single precision may have moved a corner by, too: it knows places about the origin.
   const auto within = [](double low, double high, double at, double outer_low, double outer_high) {
     const double away = std::max(std::fabs(outer_low - at), std::fabs(outer_high - at));
-    const double slack = kSlack + 1e-6 * away + 1e-15 * std::fabs(at);
+    const double slack = kBoxRounding * away + 1e-15 * std::fabs(at);
     return low >= outer_low - slack && high <= outer_high + slack;
   };
   return within(inner.min.x, inner.max.x, origin.x, outer.min.x, outer.max.x) &&

@@ -100,6 +100,21 @@ TEST(View, RefusesMatricesThatCannotBeCulledWith) {
   EXPECT_FALSE(check(view));
 }
 
+// A wide image that is shifted is as sound as one that is not, in whatever unit.
+TEST(View, AcceptsLargeImagesBesideTheirMiddle) {
+  for (const float height : {1e-3f, 1.0f, 4e4f, 1e8f}) {
+    for (const Depth depth : {Depth::standard, Depth::reversed}) {
+      const Camera camera{.orthographic_height = height,
+                          .near_plane = 1,
+                          .far_plane = 20000,
+                          .shift_x = 1,
+                          .shift_y = -0.5f,
+                          .depth = depth};
+      EXPECT_TRUE(make_view(camera, 64, 64)) << height;
+    }
+  }
+}
+
 // However far the eye is from the origin along every axis, its axes are sound.
 TEST(View, IsSoundFarFromItsOrigin) {
   for (const float far : {1e4f, 1e5f, 1e7f, 1e10f}) {

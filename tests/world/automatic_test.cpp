@@ -221,7 +221,8 @@ TEST(AutomaticOcclusion, LearnsWhatAnObjectCosts) {
   EXPECT_NEAR(last.frustum_cost / counted(frustum.result, frustum.result.count, automatic(30000).costs), 1,
               1e-3);
   EXPECT_EQ(culler.report_frame_time(-1).code(), StatusCode::bad_argument);
-  EXPECT_EQ(culler.report_frame_time(NAN).code(), StatusCode::bad_argument);
+  for (const double time : {double{NAN}, double{INFINITY}, 1e16, 1e45})
+    EXPECT_EQ(culler.report_frame_time(time).code(), StatusCode::bad_argument) << time;
 }
 
 }  // namespace

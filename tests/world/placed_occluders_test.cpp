@@ -51,6 +51,33 @@ TEST(PlacedOccluders, NoWallHidesItself) {
   }
 }
 
+// A wall that is moved by less than a millimetre reaches out of its box until its occluder is placed again:
+// what stands beside the box is seen.
+TEST(PlacedOccluders, WallsThatReachOutOfTheirBoxHideNothing) {
+  constexpr double kMoved = 9e-4;
+  Occluder wall;
+  wall.boxes = {{{-1, -1, -0.1f}, {1, 1, 0.1f}}};
+  const View view = *make_view({.eye = {-1 + static_cast<float>(kMoved) / 2, 0, 4},
+                                .orthographic_height = 4 * static_cast<float>(kMoved),
+                                .near_plane = 0.1f,
+                                .far_plane = 100},
+                               2048, 1024);
+  World world;
+  const OccluderPlacement placement{*world.add_occluder(wall)};
+  std::vector<WorldBox> boxes{{{-1, -1, -0.1}, {1, 1, 0.1}}};
+  for (int i = 0; i < 20; ++i) {
+    const double x = -1 + kMoved * (i + 0.5) / 20, e = kMoved / 60;
+    boxes.push_back({{x - e, -e, -1 - e}, {x + e, e, -1 + e}});
+  }
+  std::vector<Handle> handles(boxes.size());
+  ASSERT_TRUE(world.insert(BoxView(std::span<const WorldBox>(boxes)), handles));
+  ASSERT_TRUE(world.set_occluders(std::span(handles).first(1), std::span(&placement, 1)));
+  EXPECT_EQ(shown(world, view, {}), 1u);
+  boxes[0].min.x += kMoved, boxes[0].max.x += kMoved;
+  ASSERT_TRUE(world.move(std::span(handles).first(1), BoxView(std::span<const WorldBox>(boxes).first(1))));
+  EXPECT_EQ(shown(world, view, {}), boxes.size());
+}
+
 // A ball far from its occluder's origin, brought before the eye by its placement, and specks behind it that
 // pixels' rays meet beside it.
 TEST(PlacedOccluders, BallsFarFromTheirOriginHideNothingBesideThem) {
