@@ -113,7 +113,7 @@ HWY_NOINLINE void flush_ends(const DepthTiles& tiles, RimEnds& ends, Rim& out) {
   for (; cut != 0; cut &= cut - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(cut));
     const auto end = [&](const std::array<std::array<float, kGroup>, 3>& p) {
-      return about_eye(e, {p[0][i], p[1][i], p[2][i]});
+      return about_eye(e, Vec3{p[0][i], p[1][i], p[2][i]});
     };
     append_band(tiles, in_view(tiles, end(ends.a), end(ends.b)), ends.of[i], out);
   }

@@ -202,7 +202,7 @@ HWY_NOINLINE inline ExactCorners exact_corners(const EyeProjection& e, const Occ
   ExactCorners out;
   for (std::size_t k = 0; k < 3; ++k) {
     const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
-    out[k] = about_eye(e, {from[0], from[kGroup], from[2 * kGroup]});
+    out[k] = about_eye(e, Vec3{from[0], from[kGroup], from[2 * kGroup]});
   }
   return out;
 }
