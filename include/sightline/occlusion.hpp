@@ -121,11 +121,11 @@ public:
   /// too, those of things that reach behind it, as their inside shows. Errors, Cost: as draw_boxes.
   Status draw_spheres(const SphereView& spheres) noexcept;
   /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1), seen from where it
-  /// stands before it is moved: no corner is rounded. A transform that flattens the mesh draws nothing. The
-  /// caller's jobs draw bands of the image at once, to the same bits.
-  /// Errors: stale_buffer before begin(); bad_argument for a transform that is not finite or not affine.
-  /// Cost: linear in the triangles in view, 10 to 20 ns each and 1 ns a tile. Allocates: until it has seen
-  /// its largest mesh, for each job.
+  /// stands before it is moved: no corner is rounded. A transform that flattens the mesh, or skews it much
+  /// (turned, then scaled to less than half along one axis), draws nothing. The caller's jobs draw bands of
+  /// the image at once, to the same bits. Errors: stale_buffer before begin(); bad_argument for a transform
+  /// that is not finite or not affine. Cost: linear in the triangles in view, 10 to 20 ns each and 1 ns a
+  /// tile. Allocates: until it has seen its largest mesh, for each job.
   Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
   /// Whether some pixel centre may see the box. False is certain; of a box that is not finite, true. Cost: 30

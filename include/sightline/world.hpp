@@ -143,10 +143,10 @@ public:
   Status remove_occluder(OccluderId occluder);
   /// Gives each object an occluder, switched on, which hides from culls with Occlusion::automatic what lies
   /// behind it. Call it again when the object has moved: an occluder that reaches out of its object's box is
-  /// not drawn, nor is a mesh that the transform flattens. It is drawn exactly where the transform says,
-  /// whatever the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown occluder, a
-  /// transform that is not finite or not affine, an origin beyond kWorldReach), stale_handle. Cost: linear.
-  /// Allocates: some 200 bytes an object that carries one, 4 an id.
+  /// not drawn, nor is a mesh that the transform flattens or skews much. It is drawn exactly where the
+  /// transform says, whatever the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown
+  /// occluder, a transform that is not finite or not affine, an origin beyond kWorldReach), stale_handle.
+  /// Cost: linear. Allocates: some 200 bytes an object that carries one, 4 an id.
   Status set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements);
   /// Switches what the objects carry on (1) or off (0), as doors do; those that carry nothing stay so.
   /// Errors: bad_argument, stale_handle. Cost: linear.

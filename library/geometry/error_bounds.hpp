@@ -101,9 +101,10 @@ inline constexpr float kMostDoubt = 1e4f, kMostNearness = 1e30f;
 /// less by the part e / d at most, of a d that is off by a 40th where kEdgeOnPart just lets it pass. Needs
 /// 0.82.
 inline constexpr float kPolygonApart = 1.25f;
-/// A placement whose volume is a smaller part of its axes' product flattens: what is seen in the space before
-/// it would lose a third of double precision's digits. Not a bound.
-inline constexpr double kLeastVolume = 1e-6;
+/// What is seen in the space before a placement rounds there: as much more counts here as the way there and
+/// back adds up to. 3 at most of what is turned, and scaled along its own axes; 4 where turned things are
+/// scaled to half along one axis. Of that Σ kInset needs 0.08 within the image, 0.3 beside it.
+inline constexpr double kMostSkew = 4;
 /// Of |at|, when that plane is moved: the move rounds 1 u of it, and its terms next to nothing. Needs 0.48.
 inline constexpr float kPolygonRounding = 1.25e-7f;
 /// Of a tile's nearest value: what else its pixels' sums may round to. No promise hangs on it: where it is

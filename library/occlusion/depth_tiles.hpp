@@ -147,7 +147,7 @@ struct MeshBudget {
   }
 };
 /// Draws all of the mesh, in as many bands of the image at once as there are jobs. `placement` is to metres
-/// about the view's origin; one that flattens the mesh draws nothing. Allocates until it has seen its largest
+/// about the view's origin; one that place() refuses draws nothing. Allocates until it has seen its largest
 /// mesh.
 void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& mesh,
                const ExactAffine& placement, const JobSystem& jobs);

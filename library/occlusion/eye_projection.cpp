@@ -44,6 +44,19 @@ Rows rows_of(const View& view, double scale) {
   return out;
 }
 
+// Whether the way there and back adds up to much, by magnitudes along some axis (Skeel 1979), or there is no
+// way back. Scaling what is placed along its own axes does not change it.
+bool skews_much(const glm::dmat3& there, const glm::dmat3& back) {
+  for (int r = 0; r < 3; ++r) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < 3; ++k) sum += std::fabs(there[k][r]) * std::fabs(back[c][k]);
+    }
+    if (!(sum <= kMostSkew)) return true;
+  }
+  return false;
+}
+
 // Of rows about an eye. In line, so that nothing grows where nothing is placed.
 [[gnu::always_inline]] inline EyeProjection about_eye(const Rows& rows, const glm::dvec3& eye) {
   EyeProjection out;
@@ -105,10 +118,8 @@ PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
 
 bool place(const ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept {
   const glm::dmat3& m = placement.linear;
-  const double volume = glm::determinant(m);
-  if (!(std::fabs(volume) > kLeastVolume * glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2])))
-    return false;
   const glm::dmat3 inverse = glm::inverse(m), turned = glm::transpose(m);
+  if (skews_much(m, inverse)) return false;
   EyeProjection& e = projection;
   const glm::dvec3 eye = to_double(e.eye_high) + to_double(e.eye_low);
   const Split about = split(inverse * (eye - placement.translation));
@@ -123,7 +134,7 @@ bool place(const ExactAffine& placement, EyeProjection& projection, PixelRays& r
   double squares = 0;
   for (int c = 0; c < 3; ++c) squares += glm::dot(inverse[c], inverse[c]);
   rays.stretch = static_cast<float>(std::sqrt(squares / 3));
-  rays.turns_right = rays.turns_right != (volume < 0);
+  rays.turns_right = rays.turns_right != (glm::determinant(m) < 0);
   return true;
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <sightline/occlusion.hpp>
 
 #include <algorithm>
@@ -335,6 +337,50 @@ TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
         random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape, there); }, held);
   }
   EXPECT_GT(static_cast<double>(held.drawn), 0.8 * static_cast<double>(held.whole));
+}
+
+// Whatever the placement: turned, scaled along any axes, mirrored, skewed. What it skews much is not drawn.
+TEST(Coverage, OfMeshesThatAreSkewedIsNoNearerThanTheyAre) {
+  const scene::Shape shape = test::fine_box({{-1, -1, -1}, {1, 1, 1}}, 2);
+  const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
+  for (const double least : {1.0, 0.6, 0.1, 1e-3, 1e-5, 0.0}) {
+    Random random(41);
+    Held held;
+    for (int round = 0; round < 60; ++round) {
+      const auto turn = [&] {
+        const Vec3 axis = random.direction();
+        return glm::dmat3(
+            glm::rotate(glm::dmat4(1), double{random.between(0, 6.28f)}, geometry::to_double(axis)));
+      };
+      glm::dmat3 scale(1);
+      scale[2][2] = round % 2 == 0 ? least : -least;
+      const Vec3 at = random.inside({{-50, -50, -50}, {50, 50, 50}});
+      const glm::dmat3 before = turn(), after = turn();
+      glm::dmat4 linear(after * scale * before);
+      linear[3] = glm::dvec4(geometry::to_double(at), 1);
+      const Mat4 to = geometry::to_mat4(linear);
+      const Vec3 from = random.direction();
+      const float away = random.between(0.5f, 6);
+      const Camera camera{.eye = {at.x + away * from.x, at.y + away * from.y, at.z + away * from.z},
+                          .forward = {-from.x, -from.y, -from.z},
+                          .near_plane = 0.001f};
+      const View view = *make_view(camera, 48, 36);
+      const ExactRays rays(view);
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}));
+      ASSERT_TRUE(buffer.draw_mesh(mesh, to));
+      hold_pixels(
+          random, buffer,
+          [&](double x, double y) { return nearest_of(rays, x, y, shape, geometry::exact_affine(to)); },
+          held);
+    }
+    const double share =
+        static_cast<double>(held.drawn) / static_cast<double>(std::max<std::size_t>(held.whole, 1));
+    if (least >= 0.6)
+      EXPECT_GT(share, 0.85) << least;
+    else if (least < 0.1)
+      EXPECT_EQ(held.drawn, 0u) << least;
+  }
 }
 
 // More ends around triangles than there is room for, some of them behind the near plane: which are left out

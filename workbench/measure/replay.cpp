@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostMoves = 1'000'000;
-constexpr std::uint32_t kMostPixels = 4096;                 // a side
+constexpr std::uint32_t kMostPixels = 4096;                 // a side, as --size has it
 constexpr std::array kFaces{"materials", "both", "front"};  // in the order of RasterState
 
 // Whether a value is of the type, which Json would bend other numbers to.
