@@ -33,6 +33,7 @@ scripts/check-clones.sh
 tests/structure/planted_clones.sh
 scripts/check-figures.sh
 tests/structure/planted_figures.sh
+tests/structure/changed_comments.sh
 
 stage "release build and tests"
 cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null

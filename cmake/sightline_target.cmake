@@ -2,10 +2,8 @@
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 find_program(SIGHTLINE_CCACHE ccache)
-if(SIGHTLINE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Without this ccache takes no source that has a precompiled header.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
-                                  ${SIGHTLINE_CCACHE})
+if(SIGHTLINE_CCACHE AND NOT WIN32 AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_CURRENT_LIST_DIR}/through_ccache.sh ${SIGHTLINE_CCACHE})
 endif()
 
 function(sightline_target name)

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# A header in a precompiled header, changed in its comments alone: ccache must not take the one compiled before, beside
+# which g++ would read the header twice.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export CCACHE_DIR=$work/cache
+
+through="$PWD/cmake/through_ccache.sh ccache c++ -MD -Winvalid-pch -Werror"
+cd "$work"
+echo '#include "header.hpp"' >all.hpp
+for comment in first other; do
+  printf '// The %s comment\n#pragma once\nstruct Once {};\n' $comment >header.hpp
+  printf '#include "header.hpp"\nint %s;\n' $comment >source.cpp
+  touch -d '1 minute ago' header.hpp # ccache looks at no header that is younger than the compilation
+  $through -x c++-header all.hpp -o all.hpp.gch
+  $through -include all.hpp -c source.cpp -o source.o
+done
+[ "$(ccache --print-stats | awk '$1 == "cache_miss" { print $2 }')" = 4 ] # all went through it
+echo "a header whose comments changed is precompiled anew"
