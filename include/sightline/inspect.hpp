@@ -106,8 +106,8 @@ Result<std::array<WorldPoint, 8>> view_corners(const WorldView& view, double far
 /// where there is none. Errors: stale_buffer before begin(); buffer_too_small. Cost: linear in the pixels.
 /// Threads: only reads the buffer. Allocates: 4 bytes a pixel.
 Status depth_image(const OcclusionBuffer& buffer, std::span<std::uint8_t> pixels);
-/// The same of what automatic occlusion drew for the view that stands at this place in the culler's calls.
-/// Errors: the same; stale_buffer, too, where it has drawn nothing there. Cost, Threads, Allocates: the same.
+/// The same of what automatic occlusion drew the last time for the view at this place of the culler's calls.
+/// Errors: the same; stale_buffer, too, where it drew nothing then. Cost, Threads, Allocates: the same.
 Status depth_image(const Culler& culler, std::size_t place, std::span<std::uint8_t> pixels);
 
 }  // namespace sightline

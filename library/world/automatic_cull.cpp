@@ -16,11 +16,12 @@ namespace {
 
 // What is remembered from frame to frame.
 struct Memory {
-  std::array<OccluderPicks, kMaxViews> picks;  // by the place of the caller's view
-  std::vector<std::uint32_t> hidden;           // of PassInput
-  std::vector<std::uint8_t> seen;              // what the triangles of each object left of its mask
-  std::size_t asking = 0;                      // how many objects' triangles are asked, of the first
-  std::uint32_t parts = 0;                     // in so many jobs
+  std::array<OccluderPicks, kMaxViews> picks;           // by the place of the caller's view
+  std::array<const OccluderPicks*, kMaxViews> drawn{};  // what was drawn for each place: equal views share
+  std::vector<std::uint32_t> hidden;                    // of PassInput
+  std::vector<std::uint8_t> seen;                       // what the triangles of each object left of its mask
+  std::size_t asking = 0;                               // how many objects' triangles are asked, of the first
+  std::uint32_t parts = 0;                              // in so many jobs
 };
 
 // One frame's try: look for occluders, draw them, ask for chunks, for objects, for their triangles. Each step
@@ -81,13 +82,17 @@ private:
     const double whole = least + std::min(object_views, in_view()) * double{costs_.query};
     const double kept_back = 2 * whole <= purse_.left() ? whole : least;
     bool any = false;
+    memory_.drawn.fill(nullptr);
     for (std::size_t d = 0; d < different_.count; ++d) {
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
       drawn_[d] =
           share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
                                                  {state_.out, result_.count}, buffer_, costs_, share, purse_);
-      any = any || drawn_[d];
+      if (!drawn_[d]) continue;
+      any = true;
+      for (std::size_t v = place; v < views_.size(); ++v)
+        if (different_.bits[d] >> v & 1) memory_.drawn[v] = &memory_.picks[place];
     }
     return any;
   }
@@ -274,8 +279,8 @@ public:
             const CullOptions& options, const CullCosts& costs, CullResult& result) override {
     Try(state, memory_, views, different, options, costs, result).run();
   }
-  [[nodiscard]] const OccluderPicks& picks(std::size_t place) const noexcept override {
-    return memory_.picks[place];
+  [[nodiscard]] const OccluderPicks* drawn(std::size_t place) const noexcept override {
+    return memory_.drawn[place];
   }
 
 private:

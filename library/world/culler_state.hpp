@@ -73,8 +73,8 @@ public:
   virtual ~Hiding() = default;
   virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
                     const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
-  /// What is kept for the view at this place.
-  [[nodiscard]] virtual const OccluderPicks& picks(std::size_t place) const noexcept = 0;
+  /// What was drawn the last time for the view at this place; null: nothing.
+  [[nodiscard]] virtual const OccluderPicks* drawn(std::size_t place) const noexcept = 0;
 };
 
 struct CullerState {

@@ -27,14 +27,15 @@ struct InspectorState {
   std::vector<DebugBox> boxes;
 };
 
-// What automatic occlusion drew for the view at this place, if it has drawn any.
-const OccluderPicks* picks_of(const Culler& culler, std::size_t place) {
+// What automatic occlusion drew for the view at this place the last time; null: nothing.
+const OccluderPicks* drawn_at(const Culler& culler, std::size_t place) {
   const Hiding* hiding = CullerAccess::state(culler).hiding.get();
-  return hiding && place < kMaxViews ? &hiding->picks(place) : nullptr;
+  return hiding && place < kMaxViews ? hiding->drawn(place) : nullptr;
 }
-
-bool drew_for(const OccluderPicks* picks, const WorldView& view) {
-  return picks && !picks->drawn().empty() && picks->buffer().begun() && picks->buffer().view() == view;
+// The same, where it was for this view.
+const OccluderPicks* drawn_for(const Culler& culler, std::size_t place, const WorldView& view) {
+  const OccluderPicks* picks = drawn_at(culler, place);
+  return picks && picks->buffer().view() == view ? picks : nullptr;
 }
 
 void look_at_sectors(InspectorState& state, std::span<const CullView> views) {
@@ -79,8 +80,8 @@ void look_at_occluders(InspectorState& state, std::span<const CullView> views, c
   const WorldState& world = *state.inner.world;
   const std::size_t first = state.boxes.size();
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const OccluderPicks* picks = picks_of(culler, v);
-    if (!drew_for(picks, views[v].view)) continue;
+    const OccluderPicks* picks = drawn_for(culler, v, views[v].view);
+    if (!picks) continue;
     for (const ObjectId id : picks->drawn()) {
       if (id >= world.objects.size() || world.objects[id].sector == ChunkMap::kNone) continue;
       const auto known = std::find_if(state.boxes.begin() + static_cast<std::ptrdiff_t>(first),
@@ -116,9 +117,8 @@ Result<Inspection> CullInspector::inspect(const World& world, std::span<const Cu
   world::InspectorState& state = *state_;
   state.views.assign(views.begin(), views.end());
   for (std::size_t v = 0; v < views.size() && culler; ++v) {
-    const world::OccluderPicks* picks = world::picks_of(*culler, v);
-    if (!state.views[v].occlusion && world::drew_for(picks, views[v].view))
-      state.views[v].occlusion = &picks->buffer();
+    const world::OccluderPicks* picks = world::drawn_for(*culler, v, views[v].view);
+    if (picks && !views[v].occlusion) state.views[v].occlusion = &picks->buffer();
   }
   CullResult found;
   const world::DifferentViews different = world::begin_cull(state.inner, world, state.views, found);
@@ -200,8 +200,8 @@ Status depth_image(const OcclusionBuffer& buffer, std::span<std::uint8_t> pixels
 }
 
 Status depth_image(const Culler& culler, std::size_t place, std::span<std::uint8_t> pixels) {
-  const world::OccluderPicks* picks = world::picks_of(culler, place);
-  if (!picks || !picks->buffer().begun())
+  const world::OccluderPicks* picks = world::drawn_at(culler, place);
+  if (!picks)
     return {StatusCode::stale_buffer, "depth image: the culler has drawn no occluders for that view"};
   return depth_image(picks->buffer(), pixels);
 }

@@ -209,6 +209,43 @@ TEST(Inspector, ShowsWhatAutomaticOcclusionDrew) {
   EXPECT_EQ(depth_image(OcclusionBuffer(), picture).code(), StatusCode::stale_buffer);
 }
 
+// The cull draws once for both.
+TEST(Inspector, ShowsTheSameOfTwoPlacesOfOneView) {
+  std::vector<Box> boxes{{{-20, 0, -12}, {20, 30, -10}}};
+  Random random(5);
+  for (int i = 0; i < 3000; ++i)
+    boxes.push_back(test::box_at(random.inside({{-100, 0, -200}, {100, 10, -20}}), {.5f, .5f, .5f}));
+  test::SolidBoxes scene(std::move(boxes));
+  const CullView view{.view = {test::looking({0, 5, 0}, {0, 0, -1}), {}}},
+      other{.view = {test::looking({0, 6, 0}, {0, 0, -1}), {}}};
+  Culler culler;
+  CullInspector inspector;
+  std::array<std::vector<std::uint8_t>, 2> pictures;
+  for (auto& picture : pictures) picture.resize(160 * 120);
+  const auto expect_same_of_both = [&] {
+    const std::array same{view, view};
+    const auto culled = test::cull_with(culler, scene.world, same, test::automatic(50'000));
+    ASSERT_GT(culled.result.culled_occlusion, 100u);
+    const auto looked = inspector.inspect(scene.world, same, &culler);
+    ASSERT_TRUE(looked);
+    EXPECT_EQ(looked->views[0], looked->views[1]);
+    EXPECT_EQ(looked->views[0].hidden, culled.result.culled_occlusion);
+    for (const DebugBox& box : looked->boxes) EXPECT_TRUE(box.seen == 0 || box.seen == 3);
+    for (std::size_t place = 0; place < 2; ++place) ASSERT_TRUE(depth_image(culler, place, pictures[place]));
+    EXPECT_EQ(pictures[0], pictures[1]);
+  };
+  expect_same_of_both();
+  // Now the second place has what it drew for the same view when the wall stood elsewhere.
+  const std::array others{other, view};
+  for (int frame = 0; frame < 2; ++frame)
+    test::cull_with(culler, scene.world, others, test::automatic(50'000));
+  const Box away = test::box_at({0, 15, -700}, {20, 15, 1});
+  ASSERT_TRUE(scene.world.move(std::span(scene.handles).first(1), BoxView(std::span(&away, 1))));
+  const OccluderPlacement placement = test::filling(away, scene.unit);
+  ASSERT_TRUE(scene.world.set_occluders(std::span(scene.handles).first(1), std::span(&placement, 1)));
+  expect_same_of_both();
+}
+
 TEST(Inspector, CornersOfAViewProjectToTheImages) {
   Random random(5);
   for (int round = 0; round < 1000; ++round) {
