@@ -231,7 +231,8 @@ void add_occlusion(py::module_& m) {
            py::arg("view"), py::arg("coverage") = "centres", py::arg("scale") = 1)
       .def_property_readonly("view", &begun_view, "The view it was begun with, or None.")
       .def("draw_boxes", &draw_boxes,
-           "Draws solid boxes: every point inside one must be solid. Those that are not valid are left out.",
+           "Draws solid boxes: every point inside one must be solid. Those that are not valid or reach\n"
+           "farther than 1e11 m from the eye are left out.",
            py::arg("boxes"))
       .def("draw_spheres", &draw_spheres,
            "Draws solid spheres. Those that are not valid or reach behind the near plane are left out.",

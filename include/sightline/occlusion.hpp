@@ -111,10 +111,10 @@ public:
   /// Whether begin() has succeeded.
   [[nodiscard]] bool begun() const noexcept;
 
-  /// Draws solid boxes, rounded inwards; every point inside a box must be solid. Boxes that are not valid or
-  /// have no inside are left out. Front to back is fastest; the result does not depend on the order. Errors:
-  /// stale_buffer before begin(); bad_argument for boxes that are not sound. Cost: linear, 20 ns a box and 1
-  /// ns a tile it covers.
+  /// Draws solid boxes, rounded inwards; every point inside a box must be solid. Boxes that are not valid,
+  /// reach farther than kWorldReach from the eye or have no inside are left out. Front to back is fastest;
+  /// the result does not depend on the order. Errors: stale_buffer before begin(); bad_argument for boxes
+  /// that are not sound. Cost: linear, 20 ns a box and 1 ns a tile it covers.
   Status draw_boxes(const BoxView& boxes) noexcept;
   /// Draws solid spheres; every point inside a sphere must be solid. Cheaper than anything else that fills as
   /// much of the image. Spheres that are not valid or reach behind the near plane are left out. Leave out,
@@ -122,10 +122,10 @@ public:
   Status draw_spheres(const SphereView& spheres) noexcept;
   /// Draws the mesh moved by `transform`, an affine matrix (its last row is 0, 0, 0, 1), seen from where it
   /// stands before it is moved: no corner is rounded. A transform that flattens the mesh, or skews it much
-  /// (turned, then scaled to less than half along one axis), draws nothing. The caller's jobs draw bands of
-  /// the image at once, to the same bits. Errors: stale_buffer before begin(); bad_argument for a transform
-  /// that is not finite or not affine. Cost: linear in the triangles in view, 10 to 20 ns each and 1 ns a
-  /// tile. Allocates: until it has seen its largest mesh, for each job.
+  /// (turned, then scaled to less than a tenth along one axis), draws nothing. The caller's jobs draw bands
+  /// of the image at once, to the same bits. Errors: stale_buffer before begin(); bad_argument for a
+  /// transform that is not finite or not affine. Cost: linear in the triangles in view, 10 to 20 ns each and
+  /// 1 ns a tile. Allocates: until it has seen its largest mesh, for each job.
   Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
   /// Whether some pixel centre may see the box. False is certain; of a box that is not finite, true. Cost: 30

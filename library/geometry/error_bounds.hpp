@@ -103,8 +103,11 @@ inline constexpr float kMostDoubt = 1e4f, kMostNearness = 1e30f;
 inline constexpr float kPolygonApart = 1.25f;
 /// What is seen in the space before a placement rounds there: as much more counts here as the way there and
 /// back adds up to. 3 at most of what is turned, and scaled along its own axes; 4 where turned things are
-/// scaled to half along one axis. Of that Σ kInset needs 0.08 within the image, 0.3 beside it.
-inline constexpr double kMostSkew = 4;
+/// scaled to half along one axis: of that Σ kInset needs 0.08 within the image, 0.3 beside it. Outlines of
+/// what is skewed more lie as many times farther within. Nothing is drawn that is skewed beyond the most: so
+/// often 20 u of the nearness (kNearnessRounding) and 9 u before the near plane still are within their
+/// bounds.
+inline constexpr double kFreeSkew = 4, kMostSkew = 16;
 /// Of |at|, when that plane is moved: the move rounds 1 u of it, and its terms next to nothing. Needs 0.48.
 inline constexpr float kPolygonRounding = 1.25e-7f;
 /// Of a tile's nearest value: what else its pixels' sums may round to. No promise hangs on it: where it is

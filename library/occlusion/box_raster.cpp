@@ -140,7 +140,8 @@ HWY_INLINE std::uint32_t find_edges(const Facing& facing, bool turns_right, VF i
   return all.right & all.left;
 }
 
-// Sides about the eye. Returns a bit a box: its sides are in order.
+// Sides about the eye. Returns a bit a box: its sides are in order, and none is so far away that distances
+// from planes along it round to more than a box.
 HWY_INLINE std::uint32_t load_sides(const EyeProjection& e, const Box* boxes, std::size_t count,
                                     std::array<VPoints, 2>& at, ProjectedBoxes& out) {
   const F f;
@@ -157,8 +158,13 @@ HWY_INLINE std::uint32_t load_sides(const EyeProjection& e, const Box* boxes, st
     hn::Store(at[s].y, f, side[1].data());
     hn::Store(at[s].z, f, side[2].data());
   }
+  const VF reach = hn::Set(f, static_cast<float>(kWorldReach));
+  const auto in_order = [&](VF low, VF high) HWY_ATTR {
+    return hn::And(hn::Le(low, high), hn::And(hn::Ge(low, hn::Neg(reach)), hn::Le(high, reach)));
+  };
   const auto& [low, high] = at;
-  return bits_of(f, hn::And(hn::And(hn::Le(low.x, high.x), hn::Le(low.y, high.y)), hn::Le(low.z, high.z))) &
+  return bits_of(
+             f, hn::And(hn::And(in_order(low.x, high.x), in_order(low.y, high.y)), in_order(low.z, high.z))) &
          ((1u << count) - 1);
 }
 

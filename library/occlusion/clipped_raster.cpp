@@ -98,7 +98,7 @@ bool set_plane(const DepthTiles& tiles, const WidePlane& plane, const Outline& o
   out.down = static_cast<float>(along(rays.down) / scale);
   out.at = static_cast<float>((orthographic ? along(rays.at) - plane.at : along(rays.at)) / scale);
   out.at -= kNearnessRounding * std::fabs(outline.nearest) +
-            (std::fabs(out.across) + std::fabs(out.down)) * (kPixelPlay + tiles.margin);
+            (std::fabs(out.across) + std::fabs(out.down)) * (kPixelPlay + tiles.around());
   return true;
 }
 
@@ -150,7 +150,7 @@ std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& 
   Convex out;
   if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return 0;
   const float inset =
-      kInset + tiles.margin + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
+      kInset + tiles.around() + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
   out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
   for (std::size_t i = 0; i < outline.count; ++i) {
     const std::uint8_t edge = polygon.edge[i];
@@ -159,7 +159,7 @@ std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& 
     else
       add_edge(outline, i, area > 0, inset, out);
   }
-  out.at -= tiles.margin * std::max(0.0f, around.slant - (std::fabs(out.across) + std::fabs(out.down)));
+  out.at -= tiles.around() * std::max(0.0f, around.slant - (std::fabs(out.across) + std::fabs(out.down)));
   return HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, around.without);
 }
 

@@ -77,7 +77,8 @@ glm::dvec3 about_eye(const EyeProjection& e, const Vec3& at) noexcept {
 }
 
 CutTriangle cut_triangle(const DepthTiles& tiles, const ExactCorners& corners) noexcept {
-  const double inset = double{kInset} + tiles.margin + 2 * kInsetGrowth * std::max(tiles.width, tiles.height);
+  const double inset =
+      double{kInset} + tiles.around() + 2 * kInsetGrowth * std::max(tiles.width, tiles.height);
   const std::optional<double> slant = slant_of(tiles, corners);
   if (!slant) return {};
   // The corners' rounding turns the plane by far less.

@@ -169,7 +169,7 @@ HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, fl
 // on a surface seen edge on; and to where they are farthest as far from a pixel's centre as it counts.
 HWY_INLINE VF moved_back(const DepthTiles& tiles, VF at, VF across, VF down, VF nearest) {
   const F f;
-  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay + tiles.margin));
+  const VF slant = hn::Mul(hn::Add(hn::Abs(across), hn::Abs(down)), hn::Set(f, kPixelPlay + tiles.around()));
   if (SIGHTLINE_MUTANT(occluders_a_step_too_near))
     return hn::Add(at, hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)));
   return hn::Sub(at, hn::Add(hn::Mul(hn::Set(f, kNearnessRounding), hn::Abs(nearest)), slant));
@@ -179,7 +179,7 @@ HWY_INLINE VF moved_back(const DepthTiles& tiles, VF at, VF across, VF down, VF 
 HWY_INLINE VF inset_of(const DepthTiles& tiles, VF widest) {
   const F f;
   if (SIGHTLINE_MUTANT(outlines_not_inset)) return hn::Zero(f);
-  return hn::Add(hn::Set(f, kInset + tiles.margin), hn::Mul(hn::Set(f, kInsetGrowth), widest));
+  return hn::Add(hn::Set(f, kInset + tiles.around()), hn::Mul(hn::Set(f, kInsetGrowth), widest));
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

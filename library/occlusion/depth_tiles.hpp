@@ -75,6 +75,8 @@ struct DepthTiles {
   std::uint32_t scale = 1;              ///< pixels of the view along a side of one of the buffer's
   /// How far from a pixel's centre, along x and y, an occluder must cover all and what is asked for counts.
   float margin = 0;
+  /// How much farther within its outline a mesh lies whose placement skews it; pixels.
+  float skewed = 0;
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// Rows of pixels that are drawn to and asked for; whole tiles, but at the image's end.
@@ -96,6 +98,8 @@ struct DepthTiles {
   /// A cull's way to what answers for boxes; set where the buffer is begun, so that programs that never begin
   /// one need not link it.
   const BoxQuestions* ask = nullptr;
+
+  [[nodiscard]] float around() const noexcept { return margin + skewed; }
 };
 
 /// The plane's nearness at a pixel of its tile, to the bit as vectors of pixels have it.

@@ -1,5 +1,6 @@
 #include "library/occlusion/eye_projection.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "library/geometry/error_bounds.hpp"
@@ -44,17 +45,16 @@ Rows rows_of(const View& view, double scale) {
   return out;
 }
 
-// Whether the way there and back adds up to much, by magnitudes along some axis (Skeel 1979), or there is no
-// way back. Scaling what is placed along its own axes does not change it.
-bool skews_much(const glm::dmat3& there, const glm::dmat3& back) {
-  for (int r = 0; r < 3; ++r) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 3; ++k) sum += std::fabs(there[k][r]) * std::fabs(back[c][k]);
-    }
-    if (!(sum <= kMostSkew)) return true;
+// What the way there and back adds up to, by magnitudes, along the axis where it is most (Skeel 1979): 1 for
+// what is moved. Scaling what is placed along its own axes does not change it. No number: there is no way
+// back.
+double skew_of(const glm::dmat3& there, const glm::dmat3& back) {
+  glm::dvec3 sum(0);
+  for (int c = 0; c < 3; ++c) {
+    for (int k = 0; k < 3; ++k) sum += glm::abs(there[k]) * std::fabs(back[c][k]);
   }
-  return false;
+  const double all = sum.x + sum.y + sum.z;
+  return std::isfinite(all) ? std::max({sum.x, sum.y, sum.z}) : all;
 }
 
 // Of rows about an eye. In line, so that nothing grows where nothing is placed.
@@ -116,10 +116,11 @@ PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
   return out;
 }
 
-bool place(const ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept {
+double place(const ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept {
   const glm::dmat3& m = placement.linear;
   const glm::dmat3 inverse = glm::inverse(m), turned = glm::transpose(m);
-  if (skews_much(m, inverse)) return false;
+  const double skew = skew_of(m, inverse);
+  if (!(skew <= kMostSkew)) return 0;
   EyeProjection& e = projection;
   const glm::dvec3 eye = to_double(e.eye_high) + to_double(e.eye_low);
   const Split about = split(inverse * (eye - placement.translation));
@@ -135,7 +136,7 @@ bool place(const ExactAffine& placement, EyeProjection& projection, PixelRays& r
   for (int c = 0; c < 3; ++c) squares += glm::dot(inverse[c], inverse[c]);
   rays.stretch = static_cast<float>(std::sqrt(squares / 3));
   rays.turns_right = rays.turns_right != (glm::determinant(m) < 0);
-  return true;
+  return std::max(1.0, skew / kFreeSkew);
 }
 
 }  // namespace sightline::occlusion

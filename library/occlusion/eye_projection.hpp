@@ -45,7 +45,8 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin,
 EyeProjection placed_projection(const View& view, const glm::dmat4& placement, std::uint32_t scale) noexcept;
 PixelRays pixel_rays(const View& view, std::uint32_t scale = 1) noexcept;
 /// Turns both, of one view, to the space of what `placement` moves from there to metres about the view's
-/// origin. False, and nothing done, where it flattens, or skews so much that rounding there counts more here.
-bool place(const geometry::ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept;
+/// origin. Returns how many times as far as kInset rounding may move what is seen there; 0, and nothing done,
+/// where it flattens or skews beyond kMostSkew.
+double place(const geometry::ExactAffine& placement, EyeProjection& projection, PixelRays& rays) noexcept;
 
 }  // namespace sightline::occlusion

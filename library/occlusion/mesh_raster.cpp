@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "library/geometry/error_bounds.hpp"
 #include "library/occlusion/depth_tiles.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -82,7 +83,8 @@ HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& read
                                    TileList<1>& list) {
   const auto slants = std::span(rim.slant).subspan(piece.first, piece.count);
   const float own = std::fabs(tight.across) + std::fabs(tight.down),
-              slant = *std::ranges::max_element(slants), deeper = tiles.margin * std::max(0.0f, slant - own);
+              slant = *std::ranges::max_element(slants),
+              deeper = tiles.around() * std::max(0.0f, slant - own);
   const bool again = deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]);
   Bands bands;
   const bool known = bands_in(rim, piece.bits(), tight, bands);
@@ -285,7 +287,11 @@ namespace {
 // The tiles as the mesh sees them from where it stands before it is placed, so that no corner is moved.
 std::optional<DepthTiles> placed(const DepthTiles& tiles, const ExactAffine& placement) {
   std::optional<DepthTiles> out = tiles;
-  if (placement != ExactAffine{} && !place(placement, out->projection, out->rays)) return {};
+  if (placement == ExactAffine{}) return out;
+  const double inset = place(placement, out->projection, out->rays);
+  if (inset == 0) return {};
+  const auto side = static_cast<float>(std::max(tiles.width, tiles.height));
+  out->skewed = static_cast<float>(inset - 1) * (geometry::kInset + 2 * geometry::kInsetGrowth * side);
   return out;
 }
 

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "support/exact_rays.hpp"
+#include "support/small_scenes.hpp"
+
 namespace sightline {
 namespace {
 
@@ -89,6 +92,36 @@ TEST(OcclusionRefusals, MeshesAndTransforms) {
 }
 
 // A view says where its boxes stand: about another origin, in doubles, in any layout.
+// At 1e16 m a float's step is wider than a box.
+TEST(OcclusionRefusals, BoxesThatReachTooFarCoverNothing) {
+  scene::Random random(7);
+  for (const float reach : {1e3f, 1e6f, 1e9f, 1e13f, 1e17f, 1e20f, 3e38f}) {
+    std::size_t covered = 0;
+    for (int round = 0; round < 100; ++round) {
+      Camera camera{.eye = random.inside({{-5, -5, -5}, {5, 5, 5}}), .forward = random.direction()};
+      camera.orthographic_height = round % 2 == 0 ? 20.0f : 0;
+      const View view = *make_view(camera, 24, 16);
+      Box box = test::box_of(random, 20);
+      for (float* side : {&box.min.x, &box.min.y, &box.min.z})
+        if (random.below(3) == 0) *side = -reach;
+      for (float* side : {&box.max.x, &box.max.y, &box.max.z})
+        if (random.below(3) == 0) *side = reach;
+      OcclusionBuffer buffer;
+      ASSERT_TRUE(buffer.begin({view, {}}));
+      EXPECT_TRUE(buffer.draw_boxes(std::span(&box, 1)));
+      std::vector<float> drawn(24 * 16);
+      ASSERT_TRUE(buffer.read_nearness(drawn));
+      const test::ExactRays rays(view);
+      for (std::uint32_t p = 0; p < drawn.size(); ++p) {
+        if (drawn[p] == -INFINITY) continue;
+        ++covered;
+        ASSERT_GT(rays.hit(p % 24 + 0.5, p / 24 + 0.5, box), test::ExactRays::kMiss) << box.min.x;
+      }
+    }
+    if (reach < 1e11f) EXPECT_GT(covered, 500u) << reach;
+  }
+}
+
 TEST(OcclusionRefusals, BoxesStandWhereTheirViewSays) {
   const WorldPoint far{1e7, 0, -1e7};
   const WorldView view{kView.view, far};

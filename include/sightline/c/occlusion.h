@@ -141,9 +141,9 @@ SIGHTLINE_API sightline_status sightline_occlusion_begin_with(sightline_occlusio
 SIGHTLINE_API sightline_status sightline_occlusion_view(const sightline_occlusion* occlusion,
                                                         sightline_view* view);
 
-/** Draws solid boxes, rounded inwards; every point inside a box must be solid. Boxes that are not valid or
- * have no inside are left out. Front to back is fastest. Errors: BAD_ARGUMENT; STALE_BUFFER before begin.
- * Cost: linear, 20 ns a box and 1 ns a tile it covers. */
+/** Draws solid boxes, rounded inwards; every point inside a box must be solid. Boxes that are not valid,
+ * reach farther than 1e11 m from the eye or have no inside are left out. Front to back is fastest. Errors:
+ * BAD_ARGUMENT; STALE_BUFFER before begin. Cost: linear, 20 ns a box and 1 ns a tile it covers. */
 SIGHTLINE_API sightline_status sightline_occlusion_draw_boxes(sightline_occlusion* occlusion,
                                                               const sightline_box_view* boxes);
 /** Draws solid spheres about the view's origin. Those that are not valid or reach behind the near plane are
