@@ -157,6 +157,10 @@ fi
 mkdir ended
 (cd ended && exec timeout --signal=INT 3 "$sightline" reproduce object-frustum --quick --json o.json --report o >/dev/null 2>&1)
 [ -z "$(ls -A ended)" ] || fail "an ended reproduction leaves: $(ls -A ended)"
+# A reader that has gone ends it like other programs.
+(cd ended && "$sightline" compare "$world" --size 32x24 --no-draw --json r.json | true
+  [ "${PIPESTATUS[0]}" = 141 ]) || fail "a closed pipe does not end compare by SIGPIPE"
+[ -z "$(ls -A ended | grep -v '^r[.]json$')" ] || fail "a closed pipe leaves: $(ls -A ended)"
 
 # One that the caller has it ignore does not end it.
 expect 0 "holds" bash -c 'trap "" HUP; "$0" verify "$1" --views 400 & sleep 0.3; kill -HUP $!; wait $!' "$sightline" "$world"
@@ -173,6 +177,8 @@ for file in empty.glb random.glb random.bsp truncated.glb folder.glb no-object.g
   refused "$file" "$sightline" info $file
 done
 refused "random.pk3" "$sightline" info random.pk3:maps/x.bsp
+echo '{"asset":{"version":"2.0"},"buffers":[{"uri":"a\u0000b.bin","byteLength":4}]}' >zero.gltf
+refused "a?b.bin" "$sightline" info zero.gltf
 
 # Views that no camera has.
 echo '{"views":[{"eye":[0,0,0],"forward":[0,1,0],"up":[0,1,0]}]}' >singular.json

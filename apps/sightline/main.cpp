@@ -1,4 +1,5 @@
 // The command line: a thin face on the workbench. Results go to stdout, complaints to stderr.
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -42,9 +43,10 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error, std::sp
 }
 
 void expect_written() {
+  errno = 0;
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw Error("standard output: cannot be written to");
+    throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
 // Signals that end the program are blocked everywhere but in one thread that waits for them: it may do more
@@ -72,6 +74,7 @@ void end_tidily_on_signals() {
 int run(int argc, char** argv) {
   end_tidily_on_signals();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no larger is an error like a full disk
+  std::signal(SIGPIPE, SIG_IGN);  // and so is a pipe that nobody reads
   CLI::App app{"Sightline decides what not to draw: visibility culling, measured and proven.", "sightline"};
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);
@@ -108,6 +111,9 @@ int main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     // Which is what is wrong where a print fails, but not with what is printed.
     const bool printing = std::ferror(stdout) != 0;
+    // A reader that has seen enough is no mistake: end as programs do then, now that all is tidied up.
+    if (printing && error.code() == std::errc::broken_pipe)
+      std::signal(SIGPIPE, SIG_DFL), std::raise(SIGPIPE);
     std::fprintf(stderr, "sightline: %s\n",
                  printing ? "standard output: cannot be written to" : error.what());
   } catch (const std::exception& error) {

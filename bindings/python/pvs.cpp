@@ -65,6 +65,7 @@ std::vector<std::uint8_t> flags_of(const py::object& given) {
   if (!py::isinstance<py::iterable>(given)) refuse(what);
   std::vector<std::uint8_t> flags;
   for (const py::handle flag : given) {
+    if (flags.size() > kMostCells) break;  // refused below; some give flags without an end
     py::detail::make_caster<bool> taken;
     if (!taken.load(flag, true)) refuse(what);
     flags.push_back(py::detail::cast_op<bool>(taken));
@@ -83,6 +84,7 @@ py::bytes write(const py::object& bounds, const py::object& counts, const py::ob
   if (!py::isinstance<py::sequence>(sets))
     refuse("sets: expected a sequence of arrays, uint32 (k,), one a cell");
   for (const py::handle set : sets) {
+    if (cells.first.size() > kMostCells + 1) break;
     const auto members = numbers_of(py::reinterpret_borrow<py::object>(set), "sets");
     cells.visible.insert(cells.visible.end(), members.begin(), members.end());
     cells.first.push_back(cells.visible.size());

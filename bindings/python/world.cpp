@@ -60,8 +60,12 @@ void set_distances(SharedWorld& world, const py::object& handles, const py::obje
   expect(changing(world, [&](World& w) { return w.set_distances(which, given); }));
 }
 
-std::uint32_t add_levels(SharedWorld& world, const std::vector<float>& sizes) {
-  return expect(changing(world, [&](World& w) { return w.add_levels(sizes); }));
+std::uint32_t add_levels(SharedWorld& world, const py::object& sizes) {
+  constexpr const char* what = "sizes: expected numbers of shape (n,)";
+  const auto given = made_of<py::array_t<float, py::array::c_style | py::array::forcecast>>(sizes, what);
+  if (given.ndim() != 1) refuse(what);
+  const std::span<const float> numbers(given.data(), static_cast<std::size_t>(given.size()));
+  return expect(changing(world, [&](World& w) { return w.add_levels(numbers); }));
 }
 
 void set_levels(SharedWorld& world, const py::object& handles, const py::object& tables) {

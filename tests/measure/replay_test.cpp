@@ -91,6 +91,7 @@ TEST(Replay, RefusesWhatIsNone) {
                                  {"\"moves\": 0", "\"moves\": 99999999999"},
                                  {"\"materials\"", "\"moon\""},
                                  {"\"half\"", "7"},
+                                 {"\"moves\": 0", "\"moves\": 0, \"movse\": 0"},
                                  {"\"object\": ", "\"object\": -"},
                                  {"\"object\": ", "\"object\": 1099511627776"},
                                  {"\"samples\": ", "\"samples\": 1."},

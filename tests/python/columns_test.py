@@ -83,6 +83,9 @@ class Columns(Case):
         culler.cull(world, camera, masks=True, levels=sightline.Levels(fade=1, hysteresis=0.1))
         self.bad("hysteresis", culler.cull, world, camera, levels=sightline.Levels(hysteresis=1))
         self.refused("bad_argument", "do not descend", world.add_levels, [1, 2], index=1)
+        for sizes in (None, 3, "sizes", [[2, 1]], ["a"], object(), memoryview(np.ones((2, 2)))):
+            self.bad("sizes: expected numbers", world.add_levels, sizes)
+        self.assertEqual(world.add_levels(memoryview(np.array([2, 1]))), world.add_levels((2, 1)) - 1)
 
     def test_scales_and_places_that_are_none(self):
         world, camera = sightline.World(), sightline.camera()

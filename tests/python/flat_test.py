@@ -1,4 +1,5 @@
 """Frusta, rays and visible sets: what they answer, and what is refused."""
+import itertools
 import unittest
 
 import numpy as np
@@ -119,7 +120,8 @@ class Pvs(Case):
             for cell in (-1, 4, 1 << 40):
                 self.bad("no such cell", call, cell)
         for changes in (dict(counts=(5, 1, 1)), dict(objects=9), dict(open=[1, 1, 0]), dict(sets=self.SETS[:3]),
-                        dict(sets=self.SETS[:3] + [np.array([2, 1], np.uint32)])):
+                        dict(sets=self.SETS[:3] + [np.array([2, 1], np.uint32)]),
+                        dict(open=itertools.repeat(True))):  # without an end
             with self.assertRaises(sightline.Refused, msg=str(changes)) as caught:
                 self.bytes_of(**changes)
             self.assertEqual(caught.exception.status, "bad_argument")

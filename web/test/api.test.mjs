@@ -377,6 +377,9 @@ test('arrays of visible sets and hits are checked', () => {
   const hits = { objects: Uint32Array.of(0), distances: Float32Array.of(1) };
   for (const objects of [-1, Infinity, new Date()]) assert.throws(() => visibleSet(hits, objects), refusal('bad_argument', /objects/));
   assert.throws(() => visibleSet(null, 1), refusal('bad_argument', /hits/));
+  hits.objects = Uint32Array.of(0xffffffff, 4); // the first ray meets nothing
+  assert.throws(() => visibleSet(hits, 4), refusal('bad_argument', /hits of object 4, expected those of 4 objects/));
+  assert.deepEqual(visibleSet(hits, 5), Uint32Array.of(4));
   assert.throws(() => new OccluderMesh(new Float32Array(9), Uint32Array.of(0, 1, 2), 'back'), refusal('bad_argument', /sides/));
 });
 

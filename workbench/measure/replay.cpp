@@ -80,6 +80,12 @@ Replay load_replay(const std::filesystem::path& path,
   const std::string file = path.string(), text = io::read_file(path, kMostBytes);
   const Json document = Json::parse(text, nullptr, false);
   if (!document.is_object()) throw Error(file + ": expected a replay, which is a JSON object");
+  constexpr std::array known{"scene",   "pvs",   "method", "device", "faces", "moving",
+                             "samples", "moves", "size",   "lost",   "views"};
+  for (const auto& [name, value] : document.items()) {
+    if (std::ranges::find(known, name) == known.end())
+      throw Error(fmt::format("{}: \"{}\" is no member of a replay", file, name));
+  }
   Replay replay;
   replay.scene = member<std::string>(document, "scene", file);
   replay.pvs = member<std::string>(document, "pvs", file);

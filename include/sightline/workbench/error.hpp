@@ -1,8 +1,10 @@
 // What the workbench throws: a sentence a user can act on.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <sightline/status.hpp>
 
@@ -11,7 +13,15 @@ namespace sightline {
 /// Bad input or a machine that lacks something; what() is one sentence: what, where, what was expected.
 class Error : public std::runtime_error {
 public:
-  using std::runtime_error::runtime_error;
+  /// Names from files may hold anything: what would cut the sentence short or steer a terminal becomes '?'.
+  explicit Error(std::string sentence) : std::runtime_error(readable(std::move(sentence))) {}
+
+private:
+  static std::string readable(std::string sentence) {
+    const auto is_control = [](char c) { return (c >= 0 && c < ' ' && c != '\n' && c != '\t') || c == 127; };
+    std::ranges::replace_if(sentence, is_control, '?');
+    return sentence;
+  }
 };
 
 /// What the library refused and why, with the element's number, or a file's byte, where one is to blame.

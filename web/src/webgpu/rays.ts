@@ -2,6 +2,7 @@
 import { refuse, said } from '../errors.js';
 import { calling, countOf, expectLength, fields, type Input } from '../memory.js';
 import { buffer, check, Owned, pointerOf, wasm } from '../runtime.js';
+import { noObject } from '../rays.js';
 import { readView, viewBytes, writeView, type View } from '../views.js';
 
 /** What each ray meets first. */
@@ -126,7 +127,11 @@ export function visibleSet(hits: RayHits, objects: number): Uint32Array {
   if (!Number.isInteger(objects) || objects < 0 || objects > 2 ** 31)
     refuse(`visibleSet: ${said(objects)} objects, expected an integer from 0 to 2^31`);
   const seen = new Uint8Array(objects);
-  for (const object of met) if (object < objects) seen[object] = 1;
+  for (const object of met) {
+    if (object === noObject) continue;
+    if (object >= objects) refuse(`visibleSet: hits of object ${object}, expected those of ${objects} objects`);
+    seen[object] = 1;
+  }
   const visible = new Uint32Array(seen.reduce((sum, one) => sum + one, 0));
   let count = 0;
   for (let object = 0; object < objects; ++object) if (seen[object]) visible[count++] = object;
