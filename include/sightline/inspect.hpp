@@ -81,7 +81,7 @@ public:
   CullInspector& operator=(CullInspector&&) noexcept;
 
   /// What Culler::cull() does for these views, in the same order whenever it is called. With a `culler` that
-  /// has culled these views with automatic occlusion, what it drew for them the last time hides, too: all
+  /// has culled these views with automatic occlusion, what its last such cull drew for them hides, too: all
   /// that it hides counts as hidden, though a cull asks no more than it can afford; objects' own triangles
   /// are not asked. Errors: as of cull(): bad_argument, bad_view, stale_buffer; index() is the view's. Cost:
   /// some times a cull's. Threads: only reads the world, the buffers and the culler, which must not cull
@@ -106,8 +106,8 @@ Result<std::array<WorldPoint, 8>> view_corners(const WorldView& view, double far
 /// where there is none. Errors: stale_buffer before begin(); buffer_too_small. Cost: linear in the pixels.
 /// Threads: only reads the buffer. Allocates: 4 bytes a pixel.
 Status depth_image(const OcclusionBuffer& buffer, std::span<std::uint8_t> pixels);
-/// The same of what automatic occlusion drew the last time for the view at this place of the culler's calls.
-/// Errors: the same; stale_buffer, too, where it drew nothing then. Cost, Threads, Allocates: the same.
+/// The same of what the last cull with automatic occlusion drew for the view at this place of its call.
+/// Errors: the same; stale_buffer, too, where it drew nothing. Cost, Threads, Allocates: the same.
 Status depth_image(const Culler& culler, std::size_t place, std::span<std::uint8_t> pixels);
 
 }  // namespace sightline

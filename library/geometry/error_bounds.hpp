@@ -62,9 +62,13 @@ inline constexpr float kReciprocalRounding = 1e-6f;
 /// u|x|. In a view of up to 1.2 radians Σ|x_i q_i| / w is at most some 3 image widths, and an edge adds 8 u
 /// of its coordinates: (bx-ax)/(by-ay), ax - ay·slope and at + slope·y round six times. Needs 0.3 of ends
 /// within two images around images of 8192 pixels; farther ends move along the edge more than across it, and
-/// within the image it needs 0.08. What it does not cover: telescopes, whose focal length of f pixels asks
-/// for 7 u·f: beyond 9000 pixels a turned view may need more than kInset.
+/// within the image it needs 0.08. Both sums are at most a row's length times the point's: what a telescope's
+/// focal length of f pixels asks for, 7 u·f, is kCornerRounding of it, in place of kInset where that is less.
 inline constexpr float kInset = 1.0f / 256, kInsetGrowth = 2e-6f;
+/// Pixels per pixel of the focal length, and of a corner's own place: by so much rounding may move it. Which
+/// way a triangle turns is sure where twice its area is more than that along its edges: over thousands of
+/// pixels a triangle seen edge on has several pixels of area by rounding alone.
+inline constexpr float kCornerRounding = 8 * static_cast<float>(kUnit);
 /// An edge that rises by less is no side of the outline. Sure because it is less than kInset: the outline's
 /// rows end that much inside, so none lies between such an edge's ends.
 inline constexpr float kFlatEdge = 1e-3f;
@@ -134,6 +138,8 @@ inline constexpr float kFacePart = 1e-5f, kFaceDistance = 1e-6f, kFaceSine = 1e-
 inline double near_plane_slack(double at_eye, double eye) noexcept {
   return 1e-5 * (std::fabs(at_eye) + 1e-3 * eye + 1e-3);
 }
+/// Of an orthographic image's size, the same: 9 u of half of it.
+inline constexpr double kNearSideways = 1e-6;
 /// In w, where a view has no front plane.
 inline constexpr double kLeastW = 1e-6;
 /// What a triangle asked for keeps before the near plane: a part of the plane's distance from the eye, for

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -12,6 +13,7 @@
 
 #include "library/geometry/aligned_vector.hpp"
 #include "library/geometry/box_reader.hpp"
+#include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
 #include "library/occlusion/convex.hpp"
 #include "library/occlusion/eye_projection.hpp"
@@ -75,8 +77,9 @@ struct DepthTiles {
   std::uint32_t scale = 1;              ///< pixels of the view along a side of one of the buffer's
   /// How far from a pixel's centre, along x and y, an occluder must cover all and what is asked for counts.
   float margin = 0;
-  /// How much farther within its outline a mesh lies whose placement skews it; pixels.
-  float skewed = 0;
+  /// How far rounding may move a corner within the image, in pixels: more in telescopes, and of meshes whose
+  /// placement skews them.
+  float rounding = 0;
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t stride = 0;             ///< tiles from row to row, a multiple of 16 beyond the columns
   /// Rows of pixels that are drawn to and asked for; whole tiles, but at the image's end.
@@ -99,7 +102,8 @@ struct DepthTiles {
   /// one need not link it.
   const BoxQuestions* ask = nullptr;
 
-  [[nodiscard]] float around() const noexcept { return margin + skewed; }
+  /// How far from a pixel's centre kInset is not enough to tell what an occluder covers.
+  [[nodiscard]] float around() const noexcept { return margin + std::max(0.0f, rounding - geometry::kInset); }
 };
 
 /// The plane's nearness at a pixel of its tile, to the bit as vectors of pixels have it.

@@ -85,6 +85,15 @@ EyeProjection placed_projection(const View& view, const glm::dmat4& placement, s
   return about_eye(rows, glm::dvec3(glm::inverse(placement) * glm::dvec4(rows.eye, 1)));
 }
 
+float corner_rounding(const EyeProjection& e, const View& view, std::uint32_t scale) noexcept {
+  const auto length = [](const Vec4& row) { return std::hypot(row.x, row.y, row.z); };
+  // An orthographic view has no focal length; what it sees lies about as far away as the image is wide.
+  const float focal = e.orthographic
+                          ? static_cast<float>(view.width + view.height) / static_cast<float>(scale)
+                          : std::max(length(e.x), length(e.y)) / length(e.w);
+  return kCornerRounding * focal;
+}
+
 PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
   const Rows rows = rows_of(view, pixel);
   PixelRays out;
@@ -108,7 +117,12 @@ PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {
   if (glm::length(normal) > 0.5) {
     const double at_eye = glm::dot(normal, rows.eye) + front.w;
     // A little behind the plane: what is cut off must not be drawn.
-    const double safe = near_plane_slack(at_eye, glm::length(rows.eye));
+    // An orthographic image reaches sideways however near its plane is.
+    const double sideways =
+        rows.orthographic
+            ? std::hypot(view.width / glm::length(rows.x), view.height / glm::length(rows.y)) / pixel
+            : 0;
+    const double safe = near_plane_slack(at_eye, glm::length(rows.eye)) + kNearSideways * sideways;
     out.near_plane = to_vec4(normal, at_eye - safe);
   } else {
     out.near_plane = to_vec4(rows.w, rows.constant.z - kLeastW);

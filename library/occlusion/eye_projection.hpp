@@ -44,6 +44,8 @@ EyeProjection eye_projection(const WorldView& view, const WorldPoint& origin,
 /// origin.
 EyeProjection placed_projection(const View& view, const glm::dmat4& placement, std::uint32_t scale) noexcept;
 PixelRays pixel_rays(const View& view, std::uint32_t scale = 1) noexcept;
+/// How far rounding may move a corner within the image, in pixels as above.
+float corner_rounding(const EyeProjection& projection, const View& view, std::uint32_t scale) noexcept;
 /// Turns both, of one view, to the space of what `placement` moves from there to metres about the view's
 /// origin. Returns how many times as far as kInset rounding may move what is seen there; 0, and nothing done,
 /// where it flattens or skews beyond kMostSkew.

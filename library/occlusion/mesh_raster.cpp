@@ -41,6 +41,11 @@ struct Piece {
   }
 };
 
+// Of the group the piece that triangle i leads.
+HWY_INLINE Piece piece_at(const OccluderTopology::Group& group, std::size_t i) {
+  return {i, 1 + static_cast<std::size_t>(std::countr_one(group.follows >> (i + 1))), group.inner};
+}
+
 // Adds edge k of triangle i. What bounds its own lines alone does so where it ends at a corner beside it,
 // too, if it is to be kept away from.
 HWY_INLINE void add_edge(const ReadyTriangles& ready, std::size_t i, std::size_t k, Convex& out) {
@@ -203,6 +208,17 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   return around;
 }
 
+// The triangles that are drawn, and those of their pieces that do not show themselves in this band of the
+// image: what lies around a piece must not depend on bands.
+HWY_INLINE std::uint32_t whole_pieces(const OccluderTopology::Group& group, const ReadyTriangles& ready) {
+  std::uint32_t out = ready.drawn;
+  for (std::uint32_t leads = group.follows >> 1 & ~group.follows; leads != 0; leads &= leads - 1) {
+    const Piece piece = piece_at(group, static_cast<std::size_t>(std::countr_zero(leads)));
+    if ((ready.drawn & piece.bits()) != 0) out |= piece.bits();
+  }
+  return out;
+}
+
 // What a budget does not pay for is left out, and hides nothing; seams beside it stay as true as they are:
 // the mesh goes on there.
 HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
@@ -212,14 +228,15 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, std:
   set_up(tiles, mesh, group, ready);
   if ((ready.drawn | ready.cut) == 0) return;
   Rim rim;
-  if (tiles.margin > 0) find_rim(tiles, mesh, group, ready.drawn | ready.cut, rim);
+  if (tiles.margin > 0)
+    find_rim(tiles, mesh, group, whole_pieces(mesh.groups[group], ready) | ready.cut, rim);
   const OccluderTopology::Group& its = mesh.groups[group];
   const auto draw = [&](const Piece& piece, const Convex& polygon, float nearest)
                         HWY_ATTR { draw_piece(tiles, ready, rim, piece, polygon, nearest, budget, list); };
   std::uint32_t rest = ready.drawn;
   for (std::uint32_t leads = its.follows >> 1 & ~its.follows; leads != 0; leads &= leads - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(leads));
-    const Piece piece{i, 1 + static_cast<std::size_t>(std::countr_one(its.follows >> (i + 1))), its.inner};
+    const Piece piece = piece_at(its, i);
     if ((rest & piece.bits()) == 0) continue;
     Convex polygon;
     float nearest = 0;
@@ -290,8 +307,11 @@ std::optional<DepthTiles> placed(const DepthTiles& tiles, const ExactAffine& pla
   if (placement == ExactAffine{}) return out;
   const double inset = place(placement, out->projection, out->rays);
   if (inset == 0) return {};
-  const auto side = static_cast<float>(std::max(tiles.width, tiles.height));
-  out->skewed = static_cast<float>(inset - 1) * (geometry::kInset + 2 * geometry::kInsetGrowth * side);
+  if (inset > 1) {
+    const auto side = static_cast<float>(std::max(tiles.width, tiles.height));
+    out->rounding = static_cast<float>(inset) *
+                    std::max(tiles.rounding, geometry::kInset + 2 * geometry::kInsetGrowth * side);
+  }
   return out;
 }
 

@@ -57,6 +57,18 @@ HWY_INLINE hn::Mask<F> wide_enough(const DepthTiles& tiles, const OnImage& image
   return hn::Ge(hn::Abs(area), hn::Mul(inset_of(tiles, farthest), longest));
 }
 
+// Twice the area from which on it is sure which way a triangle turns.
+HWY_INLINE VF least_area(const DepthTiles& tiles, const OnImage& image) {
+  const F f;
+  const auto from_first = [&](std::size_t k) HWY_ATTR {
+    return hn::Add(hn::Abs(hn::Sub(image.x[k], image.x[0])), hn::Abs(hn::Sub(image.y[k], image.y[0])));
+  };
+  const VF length = hn::Add(from_first(1), from_first(2)),
+           farthest = hn::Add(length, hn::Add(hn::Abs(image.x[0]), hn::Abs(image.y[0])));
+  const VF rounding = hn::Add(hn::Set(f, tiles.rounding), hn::Mul(hn::Set(f, kCornerRounding), farthest));
+  return hn::Max(hn::Set(f, kLeastDrawnArea), hn::Mul(length, rounding));
+}
+
 // Which of the corners lie before the near plane.
 using Before = std::array<hn::Mask<F>, 3>;
 
@@ -68,7 +80,7 @@ HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const O
                         const Before& before, std::uint32_t one_sided) {
   const F f;
   const VF area = area_of(image);
-  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = hn::Set(f, kLeastDrawnArea);
+  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = least_area(tiles, image);
   VF facing = hn::IfThenElse(hn::Gt(area, least), one,
                              hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
   if (tiles.margin > 0) facing = hn::IfThenElseZero(wide_enough(tiles, image, area), facing);

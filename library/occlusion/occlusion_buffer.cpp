@@ -115,6 +115,7 @@ Status OcclusionBuffer::begin(const WorldView& view, const OcclusionOptions& opt
   // Of a pixel of scale x scale the centres lie up to that far from its own centre; all of it half a side.
   state_->margin = options.coverage == Coverage::area ? 0.5f : 0.5f - 0.5f / static_cast<float>(scale);
   state_->projection = occlusion::eye_projection(view, view.origin, scale);
+  state_->rounding = occlusion::corner_rounding(state_->projection, view.view, scale);
   state_->rays = occlusion::pixel_rays(view.view, scale);
   set_size(*state_, state_->memory, (view.view.width + scale - 1) / scale,
            (view.view.height + scale - 1) / scale);

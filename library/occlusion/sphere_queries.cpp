@@ -90,7 +90,7 @@ void query_all_spheres(const DepthTiles& tiles, const EyeProjection& e, const Sp
                        std::uint8_t* visible) {
   const std::array<const float*, 4> arrays{spheres.x, spheres.y, spheres.z, spheres.radius};
   answer_all(tiles, arrays, spheres.count, visible,
-             [&](const auto& from) HWY_ATTR { return question_of(e, spheres_of(e, from), tiles.margin); });
+             [&](const auto& from) HWY_ATTR { return question_of(e, spheres_of(e, from), tiles.around()); });
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -82,7 +82,6 @@ private:
     const double whole = least + std::min(object_views, in_view()) * double{costs_.query};
     const double kept_back = 2 * whole <= purse_.left() ? whole : least;
     bool any = false;
-    memory_.drawn.fill(nullptr);
     for (std::size_t d = 0; d < different_.count; ++d) {
       const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
       const std::size_t place = different_.first[d];
@@ -279,6 +278,7 @@ public:
             const CullOptions& options, const CullCosts& costs, CullResult& result) override {
     Try(state, memory_, views, different, options, costs, result).run();
   }
+  void forget_drawn() noexcept override { memory_.drawn.fill(nullptr); }
   [[nodiscard]] const OccluderPicks* drawn(std::size_t place) const noexcept override {
     return memory_.drawn[place];
   }

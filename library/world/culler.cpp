@@ -114,6 +114,7 @@ void write_values(const Columns& columns, std::span<ObjectId> ids) noexcept {
 // What the passes cost, and what else the world's occluders hide.
 void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
           const CullOptions& options, CullResult& result) {
+  if (state.hiding) state.hiding->forget_drawn();
   CullCosts costs = options.costs;
   if (costs.object == 0) costs.object = static_cast<float>(state.object_cost.value(double{kObjectCost}));
   result.frustum_cost = result.cost =

@@ -73,7 +73,9 @@ public:
   virtual ~Hiding() = default;
   virtual void hide(CullerState& state, std::span<const CullView> views, const DifferentViews& different,
                     const CullOptions& options, const CullCosts& costs, CullResult& result) = 0;
-  /// What was drawn the last time for the view at this place; null: nothing.
+  /// Before a cull that may hide or not.
+  virtual void forget_drawn() noexcept = 0;
+  /// What was drawn since for the view at this place; null: nothing.
   [[nodiscard]] virtual const OccluderPicks* drawn(std::size_t place) const noexcept = 0;
 };
 

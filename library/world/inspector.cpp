@@ -27,7 +27,7 @@ struct InspectorState {
   std::vector<DebugBox> boxes;
 };
 
-// What automatic occlusion drew for the view at this place the last time; null: nothing.
+// What the last cull with automatic occlusion drew for the view at this place; null: nothing.
 const OccluderPicks* drawn_at(const Culler& culler, std::size_t place) {
   const Hiding* hiding = CullerAccess::state(culler).hiding.get();
   return hiding && place < kMaxViews ? hiding->drawn(place) : nullptr;

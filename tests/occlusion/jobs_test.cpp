@@ -3,6 +3,7 @@
 
 #include <sightline/occlusion.hpp>
 
+#include "support/occluder_meshes.hpp"
 #include "support/run_threads.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -71,6 +72,30 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThread) {
     }
   }
   EXPECT_GT(covered, 200'000u);
+}
+
+// Flat pieces that bands cut: what lies around those of their triangles that a band does not show counts
+// there.
+TEST(OcclusionJobs, DrawTheBitsOfOneThreadOfFlatPieces) {
+  Random random(9);
+  std::size_t covered = 0;
+  for (int scene = 0; scene < 60; ++scene) {
+    const scene::Shape shape = test::fine_box({{-1, -1, -1}, {1, 1, 1}}, 1 + random.below(4));
+    const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
+    const Vec3 from = random.direction(), aside = random.inside({{-.5f, -.5f, -.5f}, {.5f, .5f, .5f}});
+    const float far = random.between(1.2f, 4);
+    const Camera camera{.eye = {far * from.x, far * from.y, far * from.z},
+                        .forward = {aside.x - from.x, aside.y - from.y, aside.z - from.z},
+                        .near_plane = 0.05f};
+    const View view = *make_view(camera, 120, 200);
+    for (const OcclusionOptions& options :
+         {OcclusionOptions{}, OcclusionOptions{Coverage::area}, OcclusionOptions{Coverage::area, 2}}) {
+      const std::vector<float> alone = drawn(mesh, view, options, {});
+      for (const float nearness : alone) covered += nearness > 0;
+      EXPECT_EQ(drawn(mesh, view, options, {test::run_threads, nullptr, 3}), alone) << scene;
+    }
+  }
+  EXPECT_GT(covered, 100'000u);
 }
 
 // What lies beyond a job's band is none of its business, even where the mesh is drawn a second time behind

@@ -206,6 +206,14 @@ TEST(Inspector, ShowsWhatAutomaticOcclusionDrew) {
   EXPECT_EQ(*std::ranges::min_element(picture), 0);
   EXPECT_EQ(depth_image(culler, 0, std::span(picture).first(9)).code(), StatusCode::buffer_too_small);
   EXPECT_EQ(depth_image(culler, 9, picture).code(), StatusCode::stale_buffer);
+  // Another world, in which nothing hides, and a culler that was told so by a cull.
+  World bare;
+  ASSERT_TRUE(bare.insert(BoxView(scene.boxes), scene.handles));
+  const auto all = test::cull_with(culler, bare, {&view, 1}, test::automatic(50'000));
+  EXPECT_EQ(depth_image(culler, 0, picture).code(), StatusCode::stale_buffer);
+  const auto bare_looked = inspector.inspect(bare, {&view, 1}, &culler);
+  ASSERT_TRUE(bare_looked);
+  EXPECT_EQ(bare_looked->views[0].visible, all.result.count);
   EXPECT_EQ(depth_image(OcclusionBuffer(), picture).code(), StatusCode::stale_buffer);
 }
 
