@@ -6,15 +6,16 @@
 //
 // What the last update left on the screen is drawn into a depth buffer of the screen's own pixels; a tile whose bounds nobody
 // can see through it is masked, as a region of the renderer's own LoadRegionPlugin would mask it.
-import type { BufferGeometry, Camera, Material, Mesh, Object3D } from 'three';
+import type { BufferAttribute, BufferGeometry, Camera, Mesh, Object3D } from 'three';
 import { Box3, Matrix4, Vector3 } from 'three';
 import { refuse, said } from './errors.js';
 import './index.js';
 import { bytes, reading, readOptions, type Block } from './memory.js';
 import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
 import { isLoaded, ready, supported } from './runtime.js';
+import { isInstancedGeometry, isStill, pointsOf, type Points } from './three/bounds.js';
 import { eyeOf, isRigid } from './three/eye.js';
-import { determinantOf, isSolid, type Eye } from './three/occluders.js';
+import { determinantOf, isInFrustum, markOf, mayOcclude, setFrustum, type Eye } from './three/occluders.js';
 import { release } from './three/release.js';
 
 export { ready, supported };
@@ -44,6 +45,13 @@ const isTiles = (tiles: Tiles | undefined): boolean => typeof tiles?.addEventLis
 /** What hides things for one camera. */
 interface Sight { buffer: OcclusionBuffer; eye: Eye }
 
+/** A geometry as an occluder, null where it is none, and what it was made of. */
+interface Made { mesh: OccluderMesh | null; both: boolean; points: Points; index: BufferAttribute | null; versions: number; forget: () => void }
+
+// What is drawn once, as its geometry stands.
+const isPlain = (mesh: Mesh): boolean => isStill(mesh) && !isInstancedGeometry(mesh) &&
+  !(mesh as { isInstancedMesh?: boolean }).isInstancedMesh && !(mesh as { isBatchedMesh?: boolean }).isBatchedMesh;
+
 export class SightlineTilesPlugin {
   readonly name = 'SIGHTLINE_TILES_PLUGIN';
   /** Whether it masks; without it tiles are as the renderer has them. */
@@ -52,7 +60,7 @@ export class SightlineTilesPlugin {
   readonly stats = { occluders: 0, triangles: 0, tested: 0, hidden: 0 };
 
   readonly #mostTriangles: number;
-  readonly #meshes = new Map<BufferGeometry, { mesh: OccluderMesh | null; forget: () => void }>();
+  readonly #meshes = new Map<BufferGeometry, Made>();
   readonly #buffers: OcclusionBuffer[] = [];
   readonly #box = new Box3();
   readonly #numbers = new Float64Array(6);
@@ -80,8 +88,7 @@ export class SightlineTilesPlugin {
   dispose(): void {
     this.#tiles?.removeEventListener('update-before', this.#update);
     this.#tiles = undefined, (this.#sights = []);
-    for (const { mesh, forget } of [...this.#meshes.values()]) forget(), release(mesh);
-    this.#meshes.clear();
+    for (const { forget } of [...this.#meshes.values()]) forget();
     release(...this.#buffers.splice(0), this.#seen), (this.#seen = undefined);
   }
 
@@ -134,9 +141,10 @@ export class SightlineTilesPlugin {
       .map((tile) => ({ scene: tile.engineData.scene!, distance: tile.engineData.boundingVolume.distanceToPoint(place) }))
       .sort((a, b) => a.distance - b.distance);
     let left = this.#mostTriangles;
+    setFrustum(camera);
     for (const { scene } of near) {
       scene.traverseVisible((object) => {
-        if (left > 0 && (object as Mesh).isMesh) left -= this.#drawMesh(buffer, eye, object as Mesh);
+        if (left > 0 && (object as Mesh).isMesh) left -= this.#drawMesh(buffer, eye, object as Mesh, camera);
       });
       if (left <= 0) break;
     }
@@ -145,10 +153,11 @@ export class SightlineTilesPlugin {
   }
 
   // Returns its triangles, where it was drawn.
-  #drawMesh(buffer: OcclusionBuffer, eye: Eye, object: Mesh): number {
-    const { geometry, material } = object, m = object.matrixWorld.elements;
-    if (Array.isArray(material) || !isSolid(material) || determinantOf(m) <= 0) return 0;
-    const mesh = this.#meshOf(geometry, material);
+  #drawMesh(buffer: OcclusionBuffer, eye: Eye, object: Mesh, camera: Camera): number {
+    const m = object.matrixWorld.elements;
+    if (!isPlain(object) || !mayOcclude(object, null, camera) || !isInFrustum(object) || determinantOf(m) <= 0) return 0;
+    const mark = markOf(object), isOther = typeof mark === 'object';
+    const mesh = this.#meshOf(isOther ? mark : object.geometry, !isOther && [object.material].flat().every(({ side }) => side === 2));
     if (!mesh) return 0;
     const transform = Array.from(m);
     for (let axis = 0; axis < 3; ++axis) transform[12 + axis]! -= eye.origin[axis]!;
@@ -157,31 +166,36 @@ export class SightlineTilesPlugin {
     return mesh.triangles;
   }
 
-  // Made when a geometry is seen first, and given back with it.
-  #meshOf(geometry: BufferGeometry, material: Material): OccluderMesh | null {
-    const known = this.#meshes.get(geometry);
-    if (known) return known.mesh;
-    const forget = (): void => {
+  // Made when a geometry is seen first or anew when it has changed, and given back with it. Drawn from the front for some meshes
+  // it is for all: that hides no more.
+  #meshOf(geometry: BufferGeometry, both: boolean): OccluderMesh | null {
+    const { drawRange, index, attributes: { position } } = geometry, corners = index?.count ?? position!.count;
+    if (drawRange.start !== 0 || drawRange.count < corners) return null;
+    const points = pointsOf(geometry), versions = points.version + (index?.version ?? 0), known = this.#meshes.get(geometry);
+    if (known && known.points === points && known.index === index && known.versions === versions && (both || !known.both)) return known.mesh;
+    known?.forget();
+    const mesh = this.#make(geometry, corners, both), forget = (): void => {
       geometry.removeEventListener('dispose', forget);
-      release(this.#meshes.get(geometry)?.mesh);
-      this.#meshes.delete(geometry);
+      release(mesh), this.#meshes.delete(geometry);
     };
     geometry.addEventListener('dispose', forget);
-    let mesh: OccluderMesh | null = null;
-    const { position } = geometry.attributes, corners = geometry.index?.count ?? position?.count ?? 0;
-    const whole = geometry.drawRange.start === 0 && geometry.drawRange.count >= corners;
-    if (position && whole && corners >= 3 && corners % 3 === 0 && corners <= 3 * this.#mostTriangles && !geometry.morphAttributes.position) {
-      const points = new Float32Array(3 * position.count);
-      for (let i = 0; i < position.count; ++i) points.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
-      const indices = Uint32Array.from({ length: corners }, (_, i) => (geometry.index ? geometry.index.getX(i) : i));
-      try {
-        mesh = new OccluderMesh(points, indices, material.side === 2 ? 'both' : 'front');
-      } catch {
-        mesh = null; // not sound: it hides nothing
-      }
-    }
-    this.#meshes.set(geometry, { mesh, forget });
+    this.#meshes.set(geometry, { mesh, both, points, index, versions, forget });
     return mesh;
+  }
+
+  #make({ attributes, index, morphAttributes }: BufferGeometry, corners: number, both: boolean): OccluderMesh | null {
+    const position = attributes.position!;
+    // What lies on the GPU alone cannot be read.
+    if (!('getX' in position) || (index && !('getX' in index)) || morphAttributes.position) return null;
+    if (corners < 3 || corners % 3 !== 0 || corners > 3 * this.#mostTriangles) return null;
+    const points = new Float32Array(3 * position.count);
+    for (let i = 0; i < position.count; ++i) points.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
+    const indices = Uint32Array.from({ length: corners }, (_, i) => (index ? index.getX(i) : i));
+    try {
+      return new OccluderMesh(points, indices, both ? 'both' : 'front');
+    } catch {
+      return null; // not sound: it hides nothing
+    }
   }
 
   // The box grows by a pixel at its depth and a little, so that a surface does not hide the tile that it belongs to.

@@ -5,6 +5,13 @@ import type { BatchedMesh, BufferAttribute, BufferGeometry, InstancedMesh, Mesh 
 /** What has a version of a geometry's points. */
 export interface Points { version: number }
 
+/** Whether what is drawn of a mesh are its geometry's points as they stand: nothing bends them. */
+export const isStill = (mesh: Mesh): boolean => !(mesh as { isSkinnedMesh?: boolean }).isSkinnedMesh &&
+  !mesh.morphTargetInfluences?.length && mesh.geometry?.attributes.position !== undefined;
+/** Whether its geometry brings instances of its own. */
+export const isInstancedGeometry = ({ geometry }: Mesh): boolean =>
+  Boolean((geometry as { isInstancedBufferGeometry?: boolean }).isInstancedBufferGeometry);
+
 /** The points of a geometry: another object, or another version of it, where they are others. */
 export function pointsOf(geometry: BufferGeometry): Points {
   const position = geometry.attributes.position as BufferAttribute & { data?: Points };

@@ -28,7 +28,7 @@ function isWhole(material: Material): boolean {
 
 // The same, and surely. What a shader of one's own does is not known; a mark says it: userData.occluder = true, or another
 // geometry that lies inside.
-export function isSolid(material: Material): boolean {
+function isSolid(material: Material): boolean {
   const m = material as Material & { displacementMap?: unknown; isShaderMaterial?: boolean; isNodeMaterial?: boolean };
   return isWhole(m) && !m.displacementMap && !m.isShaderMaterial && !m.isNodeMaterial && !isPatched(m);
 }
@@ -63,7 +63,7 @@ export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
 const wrong = new WeakSet<Mesh>();
 
 /** What a mesh's userData.occluder says: that it may, must not, or by which geometry; what says none of that forbids, too. */
-function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
+export function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
   const mark = (mesh.userData?.occluder ?? undefined) as boolean | BufferGeometry | undefined;
   if (mark === undefined || typeof mark === 'boolean' || (mark.isBufferGeometry && mark.attributes.position)) return mark;
   if (!wrong.has(mesh)) console.warn(`Sightline lets ${mesh.type} "${mesh.name}" hide nothing: its userData.occluder is ` +
@@ -71,7 +71,8 @@ function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
   return wrong.add(mesh), false;
 }
 
-function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
+/** Whether a mesh hides what lies behind it, where it is drawn as its geometry stands. */
+export function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
   const mark = markOf(mesh), { material } = mesh;
   if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalled(mesh)) return false;
   // Of several materials nobody says that they are all there are faces for.
@@ -84,11 +85,14 @@ function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): bool
 const frustum = new Frustum(), toClip = new Matrix4();
 
 // As three culls: by spheres, which may be older than the points or given, so that it does not draw all that is in view.
-function setFrustum(camera: Camera): void {
+export function setFrustum(camera: Camera): void {
   const { coordinateSystem, reversedDepth } = camera as Camera & { reversedDepth?: boolean };
   toClip.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   frustum.setFromProjectionMatrix(toClip, coordinateSystem, reversedDepth);
 }
+
+/** Whether three draws a mesh for the camera of the last setFrustum(). */
+export const isInFrustum = (mesh: Mesh): boolean => !mesh.frustumCulled || frustum.intersectsObject(mesh);
 
 /** The shape that a thing which may occludes with; null where it has none. */
 function shapeOf({ mesh, kind }: Thing, instance: number): Convex | null {
@@ -149,7 +153,7 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
     const slot = found.slots[found.order[i]!]!;
     const thing = inventory.thingOf[slot]!;
     const shape = mayOcclude(thing.mesh, override, camera) ? shapeOf(thing, slot - thing.first) : null;
-    if (!shape || !frustum.intersectsObject(thing.mesh)) continue;
+    if (!shape || !isInFrustum(thing.mesh)) continue;
     if (draw(buffer, inventory, eye, slot, flat, shape)) ++drawn;
     if (++tried === most) break;
   }

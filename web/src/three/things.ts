@@ -2,7 +2,7 @@
 import type { BufferGeometry, InstancedMesh, Mesh } from 'three';
 import { BatchedMesh, Box3, Object3D } from 'three';
 import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
-import { boxOf, boxOfMesh, ownSphereOf, pointsOf, reachOf, SeenSphere, type Points } from './bounds.js';
+import { boxOf, boxOfMesh, isInstancedGeometry, isStill, ownSphereOf, pointsOf, reachOf, SeenSphere, type Points } from './bounds.js';
 import { widen, writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
@@ -43,10 +43,8 @@ export interface Known { boxes: Float64Array; matrices: Float64Array; moved: num
 
 // Lines as wide as one likes are meshes of instanced geometries, and displaced points are where no box says.
 const isPlain = (mesh: Mesh): boolean =>
-  mesh.children.length === 0 && mesh.frustumCulled && !(mesh as { isSkinnedMesh?: boolean }).isSkinnedMesh &&
-  !mesh.morphTargetInfluences?.length && mesh.userData?.sightline !== false &&
-  mesh.geometry?.attributes.position !== undefined && !isDisplaced(mesh.material) &&
-  ((mesh as { isInstancedMesh?: boolean }).isInstancedMesh || !(mesh.geometry as { isInstancedBufferGeometry?: boolean }).isInstancedBufferGeometry);
+  mesh.children.length === 0 && mesh.frustumCulled && mesh.userData?.sightline !== false && isStill(mesh) && !isDisplaced(mesh.material) &&
+  ((mesh as { isInstancedMesh?: boolean }).isInstancedMesh || !isInstancedGeometry(mesh));
 
 export const isDisplaced = (material: Mesh['material'] | null | undefined): boolean =>
   Array.isArray(material) ? material.some(isDisplaced) : Boolean((material as { displacementMap?: unknown } | undefined)?.displacementMap);
