@@ -1,6 +1,6 @@
 // Boxes as calls take them.
 import { refuse, said } from './errors.js';
-import { Block, expectNames, fields, lengthOf, readOrigin, type Call, type Input } from './memory.js';
+import { Block, expectNames, fields, lengthOf, readOrigin, type Call, type Input, type Sized } from './memory.js';
 
 /** Boxes in an array, in metres. Single precision may be about an `origin`. */
 export interface BoxArray {
@@ -21,7 +21,7 @@ const layouts = ['min-max', 'centre-half', 'columns'];
 
 /** How many there are, where they are to be placed, and the flat arguments a call takes. */
 export function readBoxes(what: string, boxes: Boxes): {
-  data: Input<Float32Array> | Input<Float64Array>;
+  data: Sized;
   count: number;
   args: (pointer: number) => [number, number, number, number, number, number, number];
 } {
@@ -44,7 +44,7 @@ export function readBoxes(what: string, boxes: Boxes): {
   const length = lengthOf(data), count = length && (length + step - 6) / step;
   if (!Number.isInteger(count)) refuse(`${what}: ${length} numbers, expected a multiple of ${step}`);
   return {
-    data,
+    data: [data, length],
     count,
     args: (pointer) =>
       [2 * form + (double ? 1 : 0), pointer, step * (double ? 8 : 4), count, origin[0]!, origin[1]!, origin[2]!],

@@ -6,9 +6,9 @@ export type Numbers = Float32Array | Float64Array | Uint32Array | Uint8Array;
 const kinds: readonly unknown[] = [Float32Array, Float64Array, Uint32Array, Uint8Array];
 type Kind<T extends Numbers> = { new (buffer: ArrayBufferLike, offset: number, length: number): T; BYTES_PER_ELEMENT: number };
 
-// What typed arrays are, whatever stands on one under the same name.
-const typedArray = Object.getPrototypeOf(Uint8Array.prototype) as object;
-const truly = <K extends 'buffer' | 'byteOffset' | 'byteLength' | 'length'>(array: Numbers, name: K): Numbers[K] =>
+const typedArray = Object.getPrototypeOf(Uint8Array.prototype) as Uint8Array;
+/** What typed arrays are, whatever stands on one under the same name. */
+export const truly = <K extends 'buffer' | 'byteOffset' | 'byteLength' | 'length'>(array: Numbers, name: K): Numbers[K] =>
   Reflect.get(typedArray, name, array) as Numbers[K];
 
 // 0 where there is no room; the module itself would take the size modulo 2^32.
@@ -68,28 +68,34 @@ export const bytes = (length: number): Block<Uint8Array> => new Block(Uint8Array
 /** An array of numbers: a Block, or any typed array, which is copied unless it lies in the module's memory. */
 export type Input<T extends Numbers> = T | Block<T>;
 
-/** How many numbers there are. */
-export const lengthOf = (input: Input<Numbers>): number => (Block.is(input) ? input.length : truly(input, 'length'));
+/** An array for a call, and how many of its numbers the call reads. */
+export type Sized = [input: Input<Numbers> | undefined, length: number];
 
-/** Whether an array's buffer is gone, as after the module's memory has grown or it was transferred. */
-export function detached(array: Numbers): boolean {
-  const own = truly(array, 'buffer');
-  if (own.byteLength > 0) return false;
+function refuseGone(): never {
+  return refuse('sightline: an array is detached: shrunk, transferred, or from before the memory grew; fetch it from its Block anew', 'detached');
+}
+
+/** How many numbers there are; refuses an array that has none because its buffer is gone, or no longer reaches to it. */
+export function lengthOf(input: Input<Numbers>): number {
+  if (Block.is(input)) return input.length;
+  const length = truly(input, 'length');
+  if (length > 0) return length;
   try {
-    return new Uint8Array(own) === undefined;
+    Reflect.apply(typedArray.keys, input, []);
   } catch {
-    return true; // only of such a buffer nothing can be made
+    refuseGone(); // no such array has keys
   }
+  return 0;
 }
 
 /** The arrays of one call: placed in the module's memory for as long as it runs. */
 export class Call {
   readonly #borrowed: number[] = [];
 
-  /** Pointers to the arrays, in order; 0 for none. */
-  place(...inputs: (Input<Numbers> | undefined)[]): number[] {
-    const found = inputs.map((input) => (input === undefined ? 0 : where(input)));
-    return found.map((pointer, i) => (pointer === undefined ? this.#copy(inputs[i] as Numbers) : pointer));
+  /** Pointers to the arrays, in order; 0 for none. Refuses what is shorter now than when it was counted. */
+  place(...inputs: Sized[]): number[] {
+    const found = inputs.map(([input, length]) => (input === undefined ? 0 : where(input, length)));
+    return found.map((pointer, i) => (pointer === undefined ? this.#copy(inputs[i]![0] as Numbers) : pointer));
   }
   /** Room of its own. */
   room(byteLength: number): number {
@@ -110,12 +116,10 @@ export class Call {
 }
 
 // Undefined where it has to be copied.
-function where(input: Input<Numbers>): number | undefined {
+function where(input: Input<Numbers>, length: number): number | undefined {
   if (Block.is(input)) return input.pointer;
-  if (truly(input, 'buffer') === buffer()) return truly(input, 'byteOffset');
-  if (detached(input))
-    refuse('sightline: an array is detached: transferred, or from before the memory grew; fetch it from its Block anew', 'detached');
-  return undefined;
+  if (lengthOf(input) < length) refuseGone();
+  return truly(input, 'buffer') === buffer() ? truly(input, 'byteOffset') : undefined;
 }
 
 /** Runs a call with arrays of its own. */
@@ -209,7 +213,5 @@ export function expectColumn<T extends Numbers>(what: string, input: Input<T>, k
 /** Throws unless it has so many elements. */
 export function expectLength(what: string, input: Input<Numbers>, length: number): void {
   const own = lengthOf(input);
-  if (own === length) return;
-  if (!Block.is(input) && length > 0 && detached(input)) where(input);
-  refuse(`${what}: ${own} elements, expected ${length}`);
+  if (own !== length) refuse(`${what}: ${own} elements, expected ${length}`);
 }

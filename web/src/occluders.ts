@@ -44,10 +44,12 @@ export class World extends CoreWorld {
         refuse('addOccluder: expected positions with indices, boxes or spheres');
       if (!Number.isInteger(solidTriangles) || solidTriangles < 0 || solidTriangles > 2 ** 31)
         refuse(`addOccluder: ${said(solidTriangles)} solid triangles, expected as many as there are triangles or fewer`);
-      const counts = [countIn('positions', positions, Float32Array, 3), countIn('indices', indices, Uint32Array, 1),
-        countIn('sides', sides, Uint8Array, 1), countIn('boxes', boxes, Float32Array, 6), countIn('spheres', spheres, Float32Array, 4)];
+      const points = countIn('positions', positions, Float32Array, 3), corners = countIn('indices', indices, Uint32Array, 1);
+      const faces = countIn('sides', sides, Uint8Array, 1), cubes = countIn('boxes', boxes, Float32Array, 6);
+      const balls = countIn('spheres', spheres, Float32Array, 4), counts = [points, corners, faces, cubes, balls];
       // All at once: placing one may have the memory grow, which takes the next away.
-      const columns = call.place(positions, indices, sides, boxes, spheres).flatMap((at, i) => [at, counts[i]!]);
+      const columns = call.place([positions, 3 * points], [indices, corners], [sides, faces], [boxes, 6 * cubes], [spheres, 4 * balls])
+        .flatMap((at, i) => [at, counts[i]!]);
       const out = call.room(8);
       check(need('world_add_occluder')(pointerOf('World', this), ...columns.slice(0, 6), solidTriangles, ...columns.slice(6), out));
       return new Float64Array(buffer(), out, 1)[0]!;
@@ -69,7 +71,7 @@ export class World extends CoreWorld {
       expectColumn('setOccluders: occluders', names, Uint32Array, count);
       if (transforms !== undefined) expectColumn('setOccluders: transforms', transforms, Float32Array, 16 * count);
       const from = origins === undefined ? undefined : placeOrigins(origins, count);
-      const [numbers, name, matrix, origin] = call.place(all, names, transforms, from);
+      const [numbers, name, matrix, origin] = call.place([all, count], [names, count], [transforms, 16 * count], [from, 3 * count]);
       check(need('world_set_occluders')(pointerOf('World', this), numbers!, name!, matrix!, origin!, count));
     });
   }
@@ -79,7 +81,7 @@ export class World extends CoreWorld {
       const all = handleList(handles), count = lengthOf(all);
       const switches = typeof on === 'boolean' ? new Uint8Array(count).fill(on ? 1 : 0) : on;
       expectColumn('setOccluding', switches, Uint8Array, count);
-      const [numbers, at] = call.place(all, switches);
+      const [numbers, at] = call.place([all, count], [switches, count]);
       check(need('world_set_occluding')(pointerOf('World', this), numbers!, at!, count));
     });
   }
@@ -91,7 +93,7 @@ export class World extends CoreWorld {
     calling((call) => {
       expectObject(this, 'setTriangles', handle);
       const [x, y, z] = readOrigin('setTriangles', origin);
-      const count = countOf('setTriangles', 'corners', corners, Float32Array, 3), [at] = call.place(corners);
+      const count = countOf('setTriangles', 'corners', corners, Float32Array, 3), [at] = call.place([corners, 3 * count]);
       check(need('world_set_triangles')(pointerOf('World', this), handle, at!, count, x!, y!, z!, sidesNumber('setTriangles', sides)));
     });
   }

@@ -21,7 +21,7 @@ export class OccluderMesh extends Owned {
       const points = countOf('OccluderMesh', 'positions', positions, Float32Array, 3, 'bad_mesh');
       const corners = countOf('OccluderMesh', 'indices', indices, Uint32Array, 1);
       const drawn = sidesNumber('OccluderMesh', sides);
-      const [at, index] = call.place(positions, indices);
+      const [at, index] = call.place([positions, 3 * points], [indices, corners]);
       const made = need('mesh_create')(at!, points, index!, corners, drawn);
       if (made === 0) check(wasm().last_code!());
       return made;
@@ -74,7 +74,7 @@ export class OcclusionBuffer extends Owned {
   drawSpheres(spheres: Input<Float32Array>): void {
     calling((call) => {
       const count = countOf('drawSpheres', 'spheres', spheres, Float32Array, 4);
-      const [at] = call.place(spheres);
+      const [at] = call.place([spheres, 4 * count]);
       check(wasm().occlusion_draw_spheres!(pointerOf('OcclusionBuffer', this), at!, count));
     });
   }

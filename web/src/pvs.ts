@@ -1,7 +1,7 @@
 // Visible sets that were baked for the cells of a grid, as arrays. (The library's files are packed with zstd, which
 // browsers do not unpack; whoever bakes writes the arrays, see docs/web.md.)
 import { refuse, refuseProxy, said } from './errors.js';
-import { detached, fields, readNumbers } from './memory.js';
+import { fields, lengthOf, readNumbers, truly } from './memory.js';
 
 /** As CellPvs of <sightline/pvs.hpp>. Cells run x first, then y, then z. */
 export interface PvsArrays {
@@ -22,6 +22,7 @@ export interface PvsArrays {
 /** Sets to ask. */
 export class CellPvs {
   readonly #arrays: PvsArrays;
+  readonly #lengths: number[]; // of open, first and visible
 
   constructor(arrays: PvsArrays) {
     const [box, along, objects, open, first, visible] =
@@ -37,9 +38,10 @@ export class CellPvs {
       if (!(extent > 0 && extent < Infinity) || !Number.isInteger(counts[axis]) || counts[axis]! < 1)
         refuse('CellPvs: bounds without extent in single precision or a count below 1, expected minimum < maximum and whole cells');
     }
-    if (open.length !== cells || first.length !== cells + 1)
-      refuse(`CellPvs: ${open.length} open and ${first.length} first for ${cells} cells, expected one each and one more`);
-    if (first[0] !== 0 || first[cells] !== visible.length)
+    const lengths = [open, first, visible].map(lengthOf);
+    if (lengths[0] !== cells || lengths[1] !== cells + 1)
+      refuse(`CellPvs: ${lengths[0]} open and ${lengths[1]} first for ${cells} cells, expected one each and one more`);
+    if (first[0] !== 0 || first[cells] !== lengths[2])
       refuse('CellPvs: first does not run from 0 to the length of visible');
     for (let c = 0; c < cells; ++c) {
       if (first[c]! > first[c + 1]!) refuse(`CellPvs: first falls at cell ${c}, expected it to rise`);
@@ -48,13 +50,14 @@ export class CellPvs {
           refuse(`CellPvs: the set of cell ${c} does not ascend below ${objects}`);
       }
     }
-    this.#arrays = { bounds, counts, objects: objects!, open, first, visible };
+    this.#arrays = { bounds, counts, objects: objects!, open, first, visible }, (this.#lengths = lengths);
   }
 
   static #of(set: CellPvs): PvsArrays {
     if (!(#arrays in Object(set))) refuseProxy('CellPvs');
     const { open, first, visible } = set.#arrays;
-    if ([open, first, visible].some(detached)) refuse('CellPvs: an array was transferred, expected it to stay', 'detached');
+    if ([open, first, visible].some((array, i) => truly(array, 'length') < set.#lengths[i]!))
+      refuse('CellPvs: an array was transferred or shrunk, expected it to stay', 'detached');
     return set.#arrays;
   }
 

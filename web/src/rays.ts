@@ -34,7 +34,7 @@ export class BoxBvh extends Owned {
       expectBlock('cast: distances', distances, Float32Array);
       expectLength('cast: objects', objects, count);
       expectLength('cast: distances', distances, count);
-      const [at] = call.place(rays);
+      const [at] = call.place([rays, 7 * count]);
       check(wasm().bvh_cast!(pointerOf('BoxBvh', this), at!, count, objects.pointer, distances.pointer));
     });
   }

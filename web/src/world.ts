@@ -3,7 +3,7 @@ import { placeBoxes, readBoxes, type Boxes } from './boxes.js';
 import { refuse, said } from './errors.js';
 import {
   bytes, calling, countOf, doubles, expectBlock, expectColumn, expectKind, expectLength, fields, integers, isA, lengthOf, reading, readOptions, type Block,
-  type Call, type Input } from './memory.js';
+  type Call, type Input, type Sized } from './memory.js';
 import { buffer, check, Owned, pointerOf, wasm } from './runtime.js';
 import { cullViewBytes, readView, writeView, type ReadView, type View } from './views.js';
 
@@ -45,7 +45,7 @@ export class World extends Owned {
       const { data, count, args } = readBoxes('insert', boxes), names = ['layers', 'values'] as const;
       const given = readOptions('insert', columns, [...names]);
       given.forEach((column, i) => column !== undefined && expectColumn(`insert: ${names[i]}`, column, Uint32Array, count));
-      const [at, layers, values] = call.place(data, ...given);
+      const [at, layers, values] = call.place(data, ...given.map((column): Sized => [column, count]));
       const out = call.room(8 * count);
       check(wasm().world_insert!(pointerOf('World', this), ...args(at!), layers!, values!, out));
       return new Float64Array(buffer(), out, count).slice();
@@ -57,16 +57,16 @@ export class World extends Owned {
       const { data, count, args } = readBoxes('move', boxes);
       const named = handleList(handles);
       expectLength('move: handles', named, count);
-      const [at, numbers] = call.place(data, named);
+      const [at, numbers] = call.place(data, [named, count]);
       check(wasm().world_move!(pointerOf('World', this), numbers!, ...args(at!)));
     });
   }
   /** Takes objects out; their handles are stale from then on. */
   remove(handles: Handles): void {
     calling((call) => {
-      const named = handleList(handles);
-      const [numbers] = call.place(named);
-      check(wasm().world_remove!(pointerOf('World', this), numbers!, lengthOf(named)));
+      const named = handleList(handles), count = lengthOf(named);
+      const [numbers] = call.place([named, count]);
+      check(wasm().world_remove!(pointerOf('World', this), numbers!, count));
     });
   }
   /** Gives each object new layers. */
@@ -124,10 +124,10 @@ export function expectObject(world: World, what: string, handle: Handle): void {
 
 function setColumn(world: World, name: string, what: string, handles: Handles, column: Input<Uint32Array>): void {
   calling((call) => {
-    const named = handleList(handles);
-    expectColumn(what, column, Uint32Array, lengthOf(named));
-    const [numbers, at] = call.place(named, column);
-    check(wasm()[name]!(pointerOf('World', world), numbers!, at!, lengthOf(named)));
+    const named = handleList(handles), count = lengthOf(named);
+    expectColumn(what, column, Uint32Array, count);
+    const [numbers, at] = call.place([named, count], [column, count]);
+    check(wasm()[name]!(pointerOf('World', world), numbers!, at!, count));
   });
 }
 
@@ -299,7 +299,7 @@ export function cullBoxes(view: View, boxes: Boxes, out: Block<Uint32Array>): nu
 /** The same for spheres about the view's origin: four columns, centre x, y, z and radius. */
 export function cullSpheres(view: View, spheres: Input<Float32Array>, out: Block<Uint32Array>): number {
   return flat('flat_spheres', view, out, (call) => {
-    const count = countOf('cullSpheres', 'spheres', spheres, Float32Array, 4), [at] = call.place(spheres);
+    const count = countOf('cullSpheres', 'spheres', spheres, Float32Array, 4), [at] = call.place([spheres, 4 * count]);
     return [at!, count];
   });
 }

@@ -197,6 +197,54 @@ test('a stride beyond memory and an array that was transferred are refused for w
   assert.throws(() => world.insert(gone), (error) => error.code === 'detached' && /transferred, or from before the memory grew/.test(error.message));
 });
 
+test('a view of a buffer that was shrunk is refused as what was transferred, where a getter of the same call shrinks it, too', () => {
+  const shrinking = (numbers, whole = false) => {
+    const { byteLength, length, constructor: Kind } = numbers, own = new ArrayBuffer(byteLength, { maxByteLength: byteLength });
+    const array = whole ? new Kind(own) : new Kind(own, 0, length);
+    return array.set(numbers), { array, shrink: (to = 0) => own.resize(to) };
+  };
+  const gone = (call) => assert.throws(call, (error) => error instanceof SightlineError && error.code === 'detached', String(call));
+  const other = new World(), two = Float32Array.of(...box, ...box), made = other.insert(two), occluder = other.addOccluder({ boxes: box });
+  const later = (shrink) => Object.defineProperty([0, 0, 0], 1, { get: () => (shrink(), 0) }); // an origin
+  const calls = [
+    [two, (x) => other.insert(x)], [two, (x) => other.insert({ data: x })], [two, (x) => other.move(made, x)], [made, (x) => other.move(x, two)],
+    [made, (x) => other.remove(x)], [made, (x) => other.setLayers(x, Uint32Array.of(1, 1))], [Uint32Array.of(1, 1), (x) => other.setLayers(made, x)],
+    [Uint32Array.of(1, 1), (x) => other.insert(two, { layers: x })], [two, (x) => other.addOccluder({ boxes: x })], [made, (x) => other.setOccluders(x, occluder)],
+    [made, (x) => other.setOccluding(x, true)], [new Float32Array(9), (x) => other.setTriangles(made[0], x)], [two, (x) => buffer.drawBoxes(x)],
+    [new Float32Array(4), (x) => buffer.drawSpheres(x)], [two, (x) => bvh.build(x)], [two, (x) => rays.update(x)], [two, (x) => cullBoxes(view, x, integers(66))],
+    [new Float32Array(9), (x) => new OccluderMesh(x, triangle[1])], [triangle[1], (x) => new OccluderMesh(triangle[0], x)]];
+  for (const [numbers, call] of calls) {
+    const { array, shrink } = shrinking(numbers);
+    gone(() => (shrink(), call(array)));
+  }
+  // By a getter, after it was counted.
+  const among = (numbers, call) => {
+    for (const [whole, to] of [[false, 0], [true, 0], [true, 8]]) {
+      const { array, shrink } = shrinking(numbers, whole);
+      gone(() => call(array, () => shrink(to)));
+    }
+  };
+  among(two, (x, shrink) => other.insert(x, { get layers() { return shrink(); } }));
+  among(made, (x, shrink) => other.setOccluders(x, occluder, undefined, later(shrink)));
+  among(new Float32Array(32), (x, shrink) => other.setOccluders(made, occluder, x, later(shrink)));
+  const { array, shrink } = shrinking(new Float32Array(9));
+  gone(() => other.setTriangles(made[0], array, later(shrink)));
+  assert.deepEqual([other.size, world.size], [2, 1]);
+  // One that follows its buffer is shorter, and good.
+  const follows = shrinking(Float32Array.of(...two, ...two), true);
+  follows.shrink(48);
+  assert.equal(other.insert(follows.array).length, 2);
+  follows.shrink();
+  assert.equal(other.insert(follows.array).length, 0);
+  for (const whole of [false, true]) {
+    const first = shrinking(Uint32Array.of(0, 1), whole), set = new CellPvs({ ...cells, objects: 5, first: first.array, visible: Uint32Array.of(2) });
+    assert.deepEqual([...set.seenFrom(0)], [2]);
+    first.shrink();
+    gone(() => set.seenFrom(0));
+  }
+  bvh.build(box), rays.update(box);
+});
+
 test('what is started is not made by new', () => {
   for (const make of [() => new WorkerWorld(), () => new GpuRays()])
     assert.throws(make, (error) => isRefusal(error) && /made by `new`, expected `await/.test(error.message));

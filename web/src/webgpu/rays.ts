@@ -37,7 +37,7 @@ export class RaySet extends Owned {
   /** Takes other boxes, and builds the tree anew. */
   update(boxes: Input<Float32Array>): void {
     const count = countOf('RaySet', 'boxes', boxes, Float32Array, 6);
-    calling((call) => check(wasm().rays_build!(pointerOf('RaySet', this), call.place(boxes)[0]!, count)));
+    calling((call) => check(wasm().rays_build!(pointerOf('RaySet', this), call.place([boxes, 6 * count])[0]!, count)));
     ++this.version;
   }
   /** Changes whenever the boxes do. */
