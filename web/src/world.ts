@@ -205,7 +205,7 @@ export class Culler extends Owned {
    * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
   cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
     void pointerOf('Culler', this); // a Proxy of it could call nothing that is private
-    const count = this.#run(world, reading('cull', () => [views].flat() as CullView[]), options);
+    const count = this.#run(world, viewList(views), options);
     const [, tested, nodesVisited, culledOcclusion, cost, frustumCost] = this.#result.array;
     return {
       ids: this.#ids!.array.subarray(0, count),
@@ -236,7 +236,6 @@ export class Culler extends Owned {
 
   #run(world: World, views: readonly CullView[], options?: CullOptions): number {
     if (!isA(world, World)) refuse('cull: expected a World');
-    if (views.length < 1 || views.length > 8) refuse(`cull: ${views.length} views, expected 1 to 8`);
     const read = views.map(readCullView);
     const [valuesForIds = false, occlusion, costs] = readOptions('cull', options, ['valuesForIds', 'occlusion', 'costs']);
     if (typeof valuesForIds !== 'boolean') refuse(`cull: valuesForIds of ${said(valuesForIds)}, expected true or false`);
@@ -254,6 +253,14 @@ export class Culler extends Owned {
     return this.#result.array[0]!;
   }
 }
+
+// Asked how many there are before they are walked.
+const viewList = (views: CullView | readonly CullView[]): CullView[] => reading('cull', () => {
+  if (!Array.isArray(views)) return [views as CullView];
+  const { length } = views;
+  if (!Number.isInteger(length) || length < 1 || length > 8) refuse(`cull: ${said(length)} views, expected 1 to 8`);
+  return Array.from({ length }, (_, v) => views[v] as CullView);
+});
 
 // Undefined where occlusion is not automatic.
 function readCosts(occlusion: CullOptions['occlusion'] = 'none', costs?: CullCosts): number[] | undefined {

@@ -212,7 +212,7 @@ test('a view of a buffer that was shrunk is refused as what was transferred, whe
     [Uint32Array.of(1, 1), (x) => other.insert(two, { layers: x })], [two, (x) => other.addOccluder({ boxes: x })], [made, (x) => other.setOccluders(x, occluder)],
     [made, (x) => other.setOccluding(x, true)], [new Float32Array(9), (x) => other.setTriangles(made[0], x)], [two, (x) => buffer.drawBoxes(x)],
     [new Float32Array(4), (x) => buffer.drawSpheres(x)], [two, (x) => bvh.build(x)], [two, (x) => rays.update(x)], [two, (x) => cullBoxes(view, x, integers(66))],
-    [new Float32Array(9), (x) => new OccluderMesh(x, triangle[1])], [triangle[1], (x) => new OccluderMesh(triangle[0], x)]];
+    [Uint32Array.of(0, 0), (x) => visibleSet({ objects: x }, 1)], [new Float32Array(9), (x) => new OccluderMesh(x, triangle[1])], [triangle[1], (x) => new OccluderMesh(triangle[0], x)]];
   for (const [numbers, call] of calls) {
     const { array, shrink } = shrinking(numbers);
     gone(() => (shrink(), call(array)));
@@ -243,6 +243,25 @@ test('a view of a buffer that was shrunk is refused as what was transferred, whe
     gone(() => set.seenFrom(0));
   }
   bvh.build(box), rays.update(box);
+});
+
+test('lengths and numbers of objects that have no end cost no time', () => {
+  const endless = [];
+  endless.length = 3e7;
+  let read = 0;
+  const claiming = (length) => new Proxy([view], { get: (it, name) => (++read, name === 'length' ? length : it[name]) });
+  for (const [views, words] of [[endless, /30000000 views, expected 1 to 8/], [claiming(4e9), /4000000000 views/], [claiming(0.5), /0.5 views/],
+    [claiming({ valueOf: () => 1 }), /\(object\) views/], [[], /0 views/], [Array(9).fill(view), /9 views/], [[[view]], /worldToEye of undefined numbers/],
+    [new Array(1), /worldToEye of undefined numbers/]])
+    assert.throws(() => culler.cull(world, views), (error) => isRefusal(error) && words.test(error.message));
+  assert.equal(read, 3); // their lengths
+  assert.deepEqual([...culler.cull(world, claiming(1)).ids], [0]);
+  const start = performance.now();
+  for (const [objects, seen] of [[[], []], [[70, 0xffffffff, 5, 70, 31, 32], [5, 31, 32, 70]], [[0xffffffff], []]])
+    assert.deepEqual([...visibleSet({ objects: Uint32Array.from(objects) }, 2 ** 31)], seen);
+  const taken = performance.now() - start;
+  assert.ok(taken < 5000, `${taken} ms`);
+  assert.throws(() => visibleSet({ objects: Uint32Array.of(2 ** 31) }, 2 ** 31), isRefusal);
 });
 
 test('what is started is not made by new', () => {

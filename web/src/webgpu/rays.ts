@@ -1,6 +1,6 @@
 // Boxes and the rays of a view, and what of Ye et al. 2023 runs on the CPU.
 import { refuse, said } from '../errors.js';
-import { calling, countOf, expectLength, fields, type Input } from '../memory.js';
+import { calling, countOf, expectLength, fields, lengthOf, type Input } from '../memory.js';
 import { buffer, check, Owned, pointerOf, wasm } from '../runtime.js';
 import { noObject } from '../rays.js';
 import { readView, viewBytes, writeView, type View } from '../views.js';
@@ -126,14 +126,20 @@ export function visibleSet(hits: RayHits, objects: number): Uint32Array {
   if (!(ArrayBuffer.isView(met) && met instanceof Uint32Array)) refuse('visibleSet: hits, expected those of cast()');
   if (!Number.isInteger(objects) || objects < 0 || objects > 2 ** 31)
     refuse(`visibleSet: ${said(objects)} objects, expected an integer from 0 to 2^31`);
-  const seen = new Uint8Array(objects);
-  for (const object of met) {
-    if (object === noObject) continue;
-    if (object >= objects) refuse(`visibleSet: hits of object ${object}, expected those of ${objects} objects`);
-    seen[object] = 1;
-  }
-  const visible = new Uint32Array(seen.reduce((sum, one) => sum + one, 0));
+  const rays = lengthOf(met);
+  let most = -1;
+  for (let i = 0; i < rays; ++i) if (met[i] !== noObject && met[i]! > most) most = met[i]!;
+  if (most >= objects) refuse(`visibleSet: hits of object ${most}, expected those of ${objects} objects`);
+  // A bit an object, up to the last that was met: `objects` may be any number.
+  const marks = new Uint32Array(Math.ceil((most + 1) / 32));
   let count = 0;
-  for (let object = 0; object < objects; ++object) if (seen[object]) visible[count++] = object;
+  for (let i = 0; i < rays; ++i) {
+    const id = met[i]!, word = id >>> 5, bit = 1 << (id & 31);
+    if (id !== noObject && (marks[word]! & bit) === 0) marks[word]! |= bit, ++count;
+  }
+  const visible = new Uint32Array(count);
+  let at = 0;
+  for (let word = 0; word < marks.length; ++word)
+    for (let bits = marks[word]!; bits !== 0; bits &= bits - 1) visible[at++] = 32 * word + 31 - Math.clz32(bits & -bits);
   return visible;
 }
