@@ -157,7 +157,7 @@ export function reading<R>(what: string, read: () => R, code?: Code): R {
   try {
     return read();
   } catch (error) {
-    if (!(error instanceof TypeError)) throw error;
+    if (!(error instanceof TypeError || error instanceof RangeError)) throw error;
     return refuse(`${what}: cannot be read (${error.message}), expected plain objects and arrays`, code);
   }
 }

@@ -264,6 +264,14 @@ test('lengths and numbers of objects that have no end cost no time', () => {
   assert.throws(() => visibleSet({ objects: Uint32Array.of(2 ** 31) }, 2 ** 31), isRefusal);
 });
 
+test('what a getter throws while it is read is told as one refusal, whatever kind of error it is', () => {
+  for (const Kind of [TypeError, RangeError]) {
+    const given = doing(view, 'width', () => { throw new Kind('mine'); });
+    assert.throws(() => culler.cull(world, given), (error) => isRefusal(error) && /cannot be read \(mine\)/.test(error.message));
+  }
+  assert.throws(() => culler.cull(world, doing(view, 'width', () => { throw new Error('mine'); })), /^Error: mine$/); // the caller's own
+});
+
 test('what is started is not made by new', () => {
   for (const make of [() => new WorkerWorld(), () => new GpuRays()])
     assert.throws(make, (error) => isRefusal(error) && /made by `new`, expected `await/.test(error.message));
