@@ -30,18 +30,20 @@ public:
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) first_shared_[t + 1] += first_shared_[t];
   }
 
-  // The places in edges() of those around triangle t, in order.
+  // The places in edges() of those around triangle t, in order; of too many, some more than kMostAround.
   const std::vector<std::uint32_t>& around(std::uint32_t t) {
     found_.clear();
-    for (const std::uint32_t vertex : mesh_.triangles[t]) add(vertex);
+    vertices_.assign(mesh_.triangles[t].begin(), mesh_.triangles[t].end());
     for (const auto& shared : shared_of(t)) {
       for (std::uint32_t i = shared.first; i < shared.end; ++i) {
         const std::uint32_t other = mesh_.others[i] / 4, k = edge_along(other, t, shared.edge);
-        add(mesh_.triangles[other][k]), add(mesh_.triangles[other][(k + 1) % 3]);
+        vertices_.push_back(mesh_.triangles[other][k]);
+        vertices_.push_back(mesh_.triangles[other][(k + 1) % 3]);
       }
     }
-    std::ranges::sort(found_);
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    keep_once(vertices_);  // triangles that lie upon each other share them
+    for (const std::uint32_t vertex : vertices_) add(vertex);
+    keep_once(found_);
     std::erase_if(found_, [&](std::uint32_t e) { return edges_[e].triangle == t || edges_[e].other == t; });
     return found_;
   }
@@ -92,13 +94,22 @@ private:
     return best;
   }
 
+  static void keep_once(std::vector<std::uint32_t>& some) {
+    std::ranges::sort(some);
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+  }
+
+  // No more than are surely too many: each is found at both its ends, and three may be the triangle's own.
   void add(std::uint32_t vertex) {
-    found_.insert(found_.end(), at_vertex_.begin() + first_[vertex], at_vertex_.begin() + first_[vertex + 1]);
+    constexpr std::size_t kTooMany = 2 * (OccluderTopology::kMostAround + 4);
+    const auto all = std::span(at_vertex_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+    const auto some = all.first(std::min(all.size(), kTooMany - found_.size()));
+    found_.insert(found_.end(), some.begin(), some.end());
   }
 
   const OccluderTopology& mesh_;
   std::vector<CornerEdge> edges_;
-  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, found_;
+  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_;
 };
 
 // What of a group's triangles are named, each with the bits of those that name it, in order.

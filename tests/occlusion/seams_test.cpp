@@ -4,6 +4,9 @@
 
 #include <sightline/occlusion.hpp>
 
+#include <algorithm>
+#include <chrono>
+
 #include "support/exact_rays.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -183,6 +186,36 @@ TEST(Seams, AFoldOfTrianglesWoundAlikeIsAnOutline) {
     }
     EXPECT_EQ(count(shape, *make_view({}, 160, 100)).beyond, 0u) << "round " << round;
   }
+}
+
+// As what was exported twice does: time in proportion to it, where each edge has all the others beside it.
+TEST(Seams, BoxesThatLieUponEachOtherAreOneInLittleTime) {
+  const auto pile = [](int boxes) {
+    Shape out;
+    for (int i = 0; i < boxes; ++i) {
+      for (const float s : {-1.0f, 1.0f}) {
+        out.add_quad({s, -1, -6}, {s, 1, -6}, {s, 1, -4}, {s, -1, -4}, s < 0);
+        out.add_quad({-1, s, -6}, {-1, s, -4}, {1, s, -4}, {1, s, -6}, s < 0);
+        out.add_quad({-1, -1, s - 5}, {1, -1, s - 5}, {1, 1, s - 5}, {-1, 1, s - 5}, s < 0);
+      }
+    }
+    return out;
+  };
+  const auto drawn = [](const Shape& shape) {
+    const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
+    OcclusionBuffer buffer;
+    EXPECT_TRUE(buffer.begin({*make_view({}, 160, 100), {}}));
+    EXPECT_TRUE(buffer.draw_mesh(mesh));
+    std::vector<float> nearness(160 * 100);
+    EXPECT_TRUE(buffer.read_nearness(nearness));
+    return std::ranges::count_if(nearness, [](float at) { return at > ExactRays::kMiss; });
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const auto many = drawn(pile(150));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_EQ(many, drawn(pile(1)));
+  EXPECT_GT(many, 500);
+  EXPECT_EQ(count(pile(3), *make_view({}, 160, 100)).beyond, 0u);
 }
 
 }  // namespace
