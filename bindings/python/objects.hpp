@@ -74,3 +74,17 @@ void add_rays(pybind11::module_& m);
 void add_pvs(pybind11::module_& m);
 
 }  // namespace sightline::python
+
+/// Objects that others hold, too. Python may have reserved one and never constructed it: refused here as it
+/// is wherever one is borrowed, before pybind11 looks for what holds it.
+template <class T>
+class pybind11::detail::type_caster<std::shared_ptr<sightline::python::Guarded<T>>>
+    : public copyable_holder_caster<sightline::python::Guarded<T>,
+                                    std::shared_ptr<sightline::python::Guarded<T>>> {
+public:
+  bool load(handle from, bool convert) {
+    if (!type_caster_base<sightline::python::Guarded<T>>().load(from, convert)) return false;
+    return copyable_holder_caster<sightline::python::Guarded<T>,
+                                  std::shared_ptr<sightline::python::Guarded<T>>>::load(from, convert);
+  }
+};

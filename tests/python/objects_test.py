@@ -43,7 +43,16 @@ class Unconstructed(Case):
         }
         for cls, call in calls.items():
             with self.subTest(cls=cls.__name__):
-                self.assertRaises((TypeError, ValueError, RuntimeError), call, reserved[cls])
+                self.assertRaises((TypeError, ValueError), call, reserved[cls])
+
+    def test_nor_does_a_call_that_keeps_it(self):
+        view = sightline.camera()
+        occlusion = sightline.Occlusion.__new__(sightline.Occlusion)
+        casters = sightline.ShadowCasters.__new__(sightline.ShadowCasters)
+        for call in (lambda: sightline.CullView(view, occlusion=occlusion),
+                     lambda: sightline.CullView(view, casters=casters),
+                     lambda: sightline.ShadowCasters().receive(sightline.World(), [], occlusion)):
+            self.assertRaisesRegex(TypeError, "this object was never constructed", call)
 
     def test_what_is_constructed_by_hand_can_be_used(self):
         world = sightline.World.__new__(sightline.World)
