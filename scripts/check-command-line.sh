@@ -190,6 +190,13 @@ for file in singular.json infinite.json none.json text.json more.json; do
   refused "$file" "$sightline" compare "$world" --methods none --path $file
 done
 
+# Nor do rays reach so far.
+for members in '"orthographic_height":1e20' '"near":1e19,"far":"infinite"' '"near":1e30,"far":1e31' '"shift":[1e20,0]' \
+    '"orthographic_height":10,"near":-1e30,"far":1e30' '"near":1e13,"far":"infinite","fov_degrees":179.99'; do
+  echo '{"views":[{"eye":[1,2,3],'"$members"'}]}' >huge.json
+  refused "huge.json: view 0: " "$sightline" compare "$world" --no-draw --size 32x32 --methods none --path huge.json
+done
+
 # What is written goes where a link leads, and behind what an open file holds already.
 ln -s led-to.json led.json
 "$sightline" methods --json led.json >/dev/null && [ -L led.json ] && [ -s led-to.json ] || fail "a link was not followed"

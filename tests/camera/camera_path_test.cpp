@@ -88,6 +88,25 @@ TEST(PathFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal_of(R"({"views": [{"eye": [0,0,0], "reversed": 1}]})"), HasSubstr("true or false"));
 }
 
+TEST(PathFile, RefusesWhatRaysDoNotReach) {
+  const auto refusal_with = [](const std::string& members) {
+    return refusal_of(R"({"views": [{"eye": [0,0,0]}, {"eye": [1,2,3], )" + members + "}]}");
+  };
+  EXPECT_EQ(refusal_with(R"("orthographic_height": 1e20)"),
+            "views.json: view 1: \"orthographic_height\": expected a number from -1e+13 to 1e+13");
+  EXPECT_THAT(refusal_with(R"("near": 1e19, "far": "infinite")"), HasSubstr("view 1: \"near\": expected"));
+  EXPECT_THAT(refusal_with(R"("near": 1e30, "far": 1e31)"), HasSubstr("\"near\": expected a number"));
+  EXPECT_THAT(refusal_with(R"("near": 1, "far": 1e31)"), HasSubstr("\"far\": expected a number"));
+  EXPECT_THAT(refusal_with(R"("shift": [0, -1e20])"), HasSubstr("\"shift\": expected a number from -1e+06"));
+  EXPECT_THAT(refusal_with(R"("orthographic_height": 10, "near": -1e30, "far": 1e30)"),
+              HasSubstr("\"near\""));
+  // Each alone is in range.
+  EXPECT_THAT(refusal_with(R"("orthographic_height": 1e13, "shift": [1e6, 0])"), HasSubstr("with its shift"));
+  EXPECT_THAT(refusal_with(R"("near": 1e12, "far": 1e13, "fov_degrees": 179.99)"), HasSubstr("\"near\""));
+  EXPECT_EQ(refusal_with(R"("near": 1e12, "far": 1e13)"), "accepted");
+  EXPECT_EQ(refusal_with(R"("orthographic_height": 1e12, "near": -1e12, "far": 1e12)"), "accepted");
+}
+
 TEST(PathFile, MissingFileAndUnknownNameAreRefused) {
   const Scene scene = generate_world("regular?columns=2&rows=2");
   EXPECT_THROW(load_path("/nowhere/at/all.json"), Error);

@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxViews = 100'000;
 constexpr std::size_t kMaxBytes = 64 << 20;
 constexpr double kDegrees = 180 / std::numbers::pi;
+// No view of a scene, which lies within 1e11 m, needs more; rays do their sums in single precision.
+constexpr double kMostMetres = 1e13, kMostShift = 1e6;
 
 /// The double that prints as shortly as the float does and rounds back to it.
 double shortest(float value) {
@@ -63,8 +65,9 @@ public:
 
   [[nodiscard]] bool has(const char* name) const { return view_.contains(name); }
 
-  void number(const char* name, float& out) const {
-    if (has(name)) out = as_number(view_[name], name);
+  /// A number from -most to most.
+  void number(const char* name, float& out, double most) const {
+    if (has(name)) out = as_number(view_[name], name, most);
   }
   void flag(const char* name, bool& out) const {
     if (!has(name)) return;
@@ -83,17 +86,17 @@ public:
     out = scene::to_scene(origin, {v[0], v[1], v[2]});
   }
   template <std::size_t N>
-  void numbers(const char* name, const std::array<float*, N>& out) const {
+  void numbers(const char* name, const std::array<float*, N>& out, double most = kAny) const {
     if (!has(name)) return;
     const Json& list = view_[name];
     if (!list.is_array() || list.size() != N) wrong(name, fmt::format("an array of {} numbers", N));
-    for (std::size_t i = 0; i < N; ++i) *out[i] = as_number(list[i], name);
+    for (std::size_t i = 0; i < N; ++i) *out[i] = as_number(list[i], name, most);
   }
   void far_plane(float& out) const {
     if (has("far") && view_["far"] == "infinite") {
       out = std::numeric_limits<float>::infinity();
     } else {
-      number("far", out);
+      number("far", out, kMostMetres);
     }
   }
   [[noreturn]] void wrong(const char* name, const std::string& expected) const {
@@ -101,14 +104,28 @@ public:
   }
 
 private:
-  [[nodiscard]] float as_number(const Json& value, const char* name) const {
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] float as_number(const Json& value, const char* name, double most) const {
     if (!value.is_number()) wrong(name, "a number");
-    return static_cast<float>(value.get<double>());
+    const auto number = value.get<double>();
+    if (std::fabs(number) > most) wrong(name, fmt::format("a number from -{0:g} to {0:g}", most));
+    return static_cast<float>(number);
   }
 
   const std::string& where_;
   const Json& view_;
 };
+
+/// Refuses an image that starts out of the reach of rays: as wide as its field of view and shift make it.
+void expect_in_reach(const ViewReader& read, const Camera& c) {
+  const bool flat = c.orthographic_height > 0;
+  const double half = flat ? c.orthographic_height / 2 : c.near_plane * std::tan(c.vertical_fov / 2.0);
+  const double shift = std::fmax(std::fabs(c.shift_x), std::fabs(c.shift_y));
+  if (half * (1 + shift) > kMostMetres)
+    read.wrong(flat ? "orthographic_height" : "near",
+               fmt::format("an image that, with its shift, reaches at most {:g} m to a side", kMostMetres));
+}
 
 Camera read_camera(const std::string& where, const Json& view, const WorldPoint& origin) {
   const ViewReader read(where, view);
@@ -117,18 +134,19 @@ Camera read_camera(const std::string& where, const Json& view, const WorldPoint&
   read.point("eye", origin, camera.eye);
   read.numbers<3>("forward", {&camera.forward.x, &camera.forward.y, &camera.forward.z});
   read.numbers<3>("up", {&camera.up.x, &camera.up.y, &camera.up.z});
-  read.numbers<2>("shift", {&camera.shift_x, &camera.shift_y});
+  read.numbers<2>("shift", {&camera.shift_x, &camera.shift_y}, kMostShift);
+  read.number("orthographic_height", camera.orthographic_height, kMostMetres);
   if (read.has("fov_degrees")) {
     if (!view["fov_degrees"].is_number()) read.wrong("fov_degrees", "a number");
     camera.vertical_fov = static_cast<float>(view["fov_degrees"].get<double>() / kDegrees);
   }
-  read.number("near", camera.near_plane);
+  read.number("near", camera.near_plane, kMostMetres);
   read.far_plane(camera.far_plane);
-  read.number("orthographic_height", camera.orthographic_height);
   bool reversed = false;
   read.flag("reversed", reversed);
   camera.depth = reversed ? Depth::reversed : Depth::standard;
   if (const auto made = make_view(camera, 64, 64); !made) throw Error(where + ": " + to_string(made.error()));
+  expect_in_reach(read, camera);
   return camera;
 }
 

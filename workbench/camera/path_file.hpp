@@ -1,6 +1,7 @@
 // Camera paths as JSON files: {"views": [{"eye": [x,y,z], "forward": […], "up": […], "fov_degrees": 60,
 // "near": 0.1, "far": 1000 or "infinite", "orthographic_height": 0, "shift": [0,0], "reversed": false}, …]}.
 // Only "eye" is required; the rest has Camera's defaults. What verification reports can be replayed from one.
+// Planes and heights are within 1e13 m, shifts within 1e6; so is, in metres, where the image starts.
 // Eyes are points of the world, in doubles; cameras count from the scene's origin (Scene::origin), which each
 // function takes.
 #pragma once
@@ -19,7 +20,7 @@ namespace sightline::camera {
 nlohmann::ordered_json camera_json(const Camera& camera, const WorldPoint& origin = {});
 
 /// Reads views; `source` names the text in errors. Throws Error for text that is no JSON, unknown or wrong
-/// members, no views, more than 100,000, and cameras that make no view.
+/// members, no views, more than 100,000, numbers out of range, and cameras that make no view.
 std::vector<Camera> parse_path(const std::string& source, const std::string& text,
                                const WorldPoint& origin = {});
 
