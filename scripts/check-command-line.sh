@@ -197,6 +197,20 @@ for members in '"orthographic_height":1e20' '"near":1e19,"far":"infinite"' '"nea
   refused "huge.json: view 0: " "$sightline" compare "$world" --no-draw --size 32x32 --methods none --path huge.json
 done
 
+# Names may hold anything, and a sentence is one line all the same; none steers a terminal.
+refused "a??b.glb" "$sightline" info $'a\n\tb.glb'
+refused "'none?'" "$sightline" compare "$world" --methods $'none\n'
+refused "'1?x'" "$sightline" compare "$world" --size $'1\nx'
+refused "'no?such': no such command" "$sightline" $'no\nsuch'
+refused "'a?b'" "$sightline" compare "$world" --frames $'a\nb'
+esc=$'e\x1b[31m\n'.glb
+expect 0 "e?[31m?.glb: 3 objects" "$sightline" generate 'forest?trees=3' -o "$esc"
+expect 0 "scene       e?[31m?.glb" "$sightline" info "$esc"
+echo '{"views":[{"eye":[0,0,9]}]}' >$'p\x1b.json'
+expect 0 "e?[31m?.glb: 3 objects" "$sightline" compare "$esc" --no-draw --size 16x12 --methods none --path $'p\x1b.json'
+expect 0 "path 'p?.json'" "$sightline" compare "$esc" --no-draw --size 16x12 --methods none --path $'p\x1b.json'
+expect 0 "e?[31m?.glb: 2 random views" "$sightline" verify "$esc" --views 2 --size 16x12
+
 # What is written goes where a link leads, and behind what an open file holds already.
 ln -s led-to.json led.json
 "$sightline" methods --json led.json >/dev/null && [ -L led.json ] && [ -s led-to.json ] || fail "a link was not followed"

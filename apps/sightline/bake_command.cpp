@@ -98,8 +98,8 @@ int run_bake(const BakeOptions& options) {
   const auto open = static_cast<std::uint64_t>(std::count(cells.open.begin(), cells.open.end(), 1));
   const double bytes = static_cast<double>(std::filesystem::file_size(options.file));
   const double raw = static_cast<double>(open) * static_cast<double>((scene.size() + 7) / 8);
-  fmt::print("{}: {} of {} cells open, {} objects; {} rays here, {} cells resumed\n", options.file, open,
-             cells.size(), scene.size(), result.rays, result.resumed);
+  fmt::print("{}: {} of {} cells open, {} objects; {} rays here, {} cells resumed\n", printable(options.file),
+             open, cells.size(), scene.size(), result.rays, result.resumed);
   fmt::print("{:.0f} bytes, {:.3f} times the open cells' raw bit matrix ({:.0f} bytes)\n", bytes, bytes / raw,
              raw);
   if (const WorldPoint& o = scene.origin; o != WorldPoint{}) {

@@ -46,8 +46,8 @@ int run_casters(CastersCall& call) {
   fmt::print(
       "{}: {} random views of {}x{} up to {:g} m, seed {}, each with a {} light of its own and a map "
       "of {}x{};\neach point asks {}x{} texels, {:g} m off; on {}\n\n",
-      scene.name, found.views, o.width, o.height, o.distance, o.seed, call.light, o.map, o.map, texels,
-      texels, o.lookup.metres, device->info().name);
+      printable(scene.name), found.views, o.width, o.height, o.distance, o.seed, call.light, o.map, o.map,
+      texels, texels, o.lookup.metres, device->info().name);
   fmt::print("casters in the lights' frustums   {:>12}\n", found.in_light);
   fmt::print("towards what the cameras see      {:>12}  {:.3f}\n", found.towards_it,
              share(found.towards_it, found.in_light));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
 #include "command.hpp"
@@ -53,8 +54,8 @@ int run_compare(const CompareOptions& options) {
   const camera::CameraPath path = camera::make_path(scene, path_name, options.frames.value_or(0));
   const measure::Comparison comparison = measure::compare(bench, path, measure, progress("compare"));
   expect_silence(device.get());
-  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}; {}\n\n", scene.name, scene.size(),
-             triangle_count(scene), path.name, path.cameras.size(), options.size,
+  fmt::print("{}: {} objects, {} triangles; path '{}', {} views of {}{}; {}\n\n", printable(scene.name),
+             scene.size(), triangle_count(scene), printable(path.name), path.cameras.size(), options.size,
              device ? " on " + comparison.device : "", report::sides_drawn(scene.raster_state));
   fmt::print("{}\n{}\n", report::render(report::summary_table(comparison)), report::verdict(comparison));
   if (const report::Table ratios = report::ratio_table(comparison); !ratios.rows.empty())

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 #include <sightline/workbench/worlds.hpp>
 
@@ -39,7 +40,7 @@ void add_generate(CLI::App& app, int& exit) {
     const std::string name = world->starts_with("world:") ? world->substr(6) : *world;
     const Scene scene = generate_world(name);
     write_glb(scene, *file);
-    fmt::print("{}: {} objects, {} triangles\n", *file, scene.size(), triangle_count(scene));
+    fmt::print("{}: {} objects, {} triangles\n", printable(*file), scene.size(), triangle_count(scene));
     return Exit::done;
   });
 }

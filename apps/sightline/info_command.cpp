@@ -69,7 +69,7 @@ void print_level(const LevelPvs& level) {
 void print(const Scene& scene) {
   std::uint64_t stored = 0;
   for (const Mesh& mesh : scene.meshes) stored += mesh.index_count / 3;
-  fmt::print("scene       {}\n", scene.name);
+  fmt::print("scene       {}\n", printable(scene.name));
   fmt::print("objects     {} ({})\n", scene.size(), surfaces_of(scene));
   print_materials(scene);
   fmt::print("meshes      {}\n", scene.meshes.size());
@@ -77,7 +77,7 @@ void print(const Scene& scene) {
   print_place(scene);
   fmt::print("viewpoints  {}\n", scene.viewpoints.size());
   if (scene.level) print_level(*scene.level);
-  for (const std::string& ignored : scene.ignored) fmt::print("ignored     {}\n", ignored);
+  for (const std::string& ignored : scene.ignored) fmt::print("ignored     {}\n", printable(ignored));
 }
 
 // All opaque triangles in world space, as occlusion takes a level.

@@ -114,10 +114,11 @@ int main(int argc, char** argv) {
     // A reader that has seen enough is no mistake: end as programs do then, now that all is tidied up.
     if (printing && error.code() == std::errc::broken_pipe)
       std::signal(SIGPIPE, SIG_DFL), std::raise(SIGPIPE);
-    std::fprintf(stderr, "sightline: %s\n",
-                 printing ? "standard output: cannot be written to" : error.what());
+    std::fprintf(
+        stderr, "sightline: %s\n",
+        printing ? "standard output: cannot be written to" : sightline::printable(error.what()).c_str());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "sightline: %s\n", error.what());
+    std::fprintf(stderr, "sightline: %s\n", sightline::printable(error.what()).c_str());
   }
   return sightline::app::Exit::wrong_call;
 }

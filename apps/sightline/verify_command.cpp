@@ -54,7 +54,7 @@ void write_replays(const measure::Verification& result, const VerifyOptions& opt
     try {
       measure::save_replay(file, {options.scene, options.pvs, m.method, options.device, options.faces,
                                   options.moving, options.samples, m.examples.front()});
-      fmt::print("\nThis view again: sightline verify --replay {}\n", file);
+      fmt::print("\nThis view again: sightline verify --replay {}\n", printable(file));
     } catch (const Error& error) {
       fmt::print(stderr, "sightline: {}\n", error.what());  // what was found counts all the same
     }
@@ -105,7 +105,8 @@ int run_verify(const VerifyOptions& options) {
       measure::verify(bench, cameras, width, height, options.moving, progress("verify"));
   expect_silence(device.get());
 
-  fmt::print("{}: {} random views of {}x{}, seed {}", scene.name, result.views, width, height, options.seed);
+  fmt::print("{}: {} random views of {}x{}, seed {}", printable(scene.name), result.views, width, height,
+             options.seed);
   if (device) fmt::print(", each as a camera cut and once more");
   if (options.moving > 0) fmt::print(", {:g} of the objects moving", options.moving);
   if (options.samples > 0) fmt::print(", {} random places of each pixel", options.samples);

@@ -10,18 +10,17 @@
 
 namespace sightline {
 
+/// Names may hold anything: what would cut a line short or steer a terminal becomes '?'.
+inline std::string printable(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return (c >= 0 && c < ' ') || c == 127; }, '?');
+  return text;
+}
+
 /// Bad input or a machine that lacks something; what() is one sentence: what, where, what was expected.
 class Error : public std::runtime_error {
 public:
-  /// Names from files may hold anything: what would cut the sentence short or steer a terminal becomes '?'.
-  explicit Error(std::string sentence) : std::runtime_error(readable(std::move(sentence))) {}
-
-private:
-  static std::string readable(std::string sentence) {
-    const auto is_control = [](char c) { return (c >= 0 && c < ' ' && c != '\n' && c != '\t') || c == 127; };
-    std::ranges::replace_if(sentence, is_control, '?');
-    return sentence;
-  }
+  explicit Error(std::string sentence) : std::runtime_error(printable(std::move(sentence))) {}
 };
 
 /// What the library refused and why, with the element's number, or a file's byte, where one is to blame.
