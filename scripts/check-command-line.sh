@@ -160,6 +160,14 @@ mkdir ended
 # A reader that has gone ends it like other programs.
 (cd ended && "$sightline" compare "$world" --size 32x24 --no-draw --json r.json | true
   [ "${PIPESTATUS[0]}" = 141 ]) || fail "a closed pipe does not end compare by SIGPIPE"
+mkfifo unread
+exec 4<>unread 5>unread 4>&-
+for call in --version --help "generate --help" "verify --help" methods; do
+  "$sightline" $call >&5 2>err
+  rc=$?
+  [ $rc = 141 ] || fail "$call to a closed pipe: exit $rc, expected 141: $(cat err)"
+done
+exec 5>&-
 [ -z "$(ls -A ended | grep -v '^r[.]json$')" ] || fail "a closed pipe leaves: $(ls -A ended)"
 
 # One that the caller has it ignore does not end it.

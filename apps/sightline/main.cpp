@@ -1,11 +1,13 @@
 // The command line: a thin face on the workbench. Results go to stdout, complaints to stderr.
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <new>
 #include <span>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -44,8 +46,7 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error, std::sp
 
 void expect_written() {
   errno = 0;
-  std::cout.flush();
-  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
@@ -94,7 +95,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0)
       throw Error(complaint(app, error, std::span(argv, argv + argc).subspan(argc > 0)));
-    app.exit(error);  // prints help or version
+    // Help or version. Not to std::cout, which keeps from us why it cannot be written to.
+    std::ostringstream text;
+    app.exit(error, text, text);
+    fmt::print("{}", text.str());
   }
   expect_written();
   return exit;
