@@ -56,6 +56,7 @@ TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
   EXPECT_TRUE(picture == expected);
   renderer.frame(view, [&](device::Recorder& frame) { renderer.draw(frame, list, draws, true); });
   EXPECT_TRUE(renderer.picture() == expected) << "a call a draw";
+  EXPECT_TRUE(std::ranges::all_of(picture.pixels, [](auto p) { return p >> 24 == 255; })) << "see-through";
   EXPECT_GT(std::ranges::count_if(picture.pixels, [&](auto p) { return p != picture.pixels[0]; }), 1000);
   if (const char* folder = std::getenv("SIGHTLINE_TEST_PICTURES"))
     device::save_png(picture, std::string(folder) + "/forest.png");

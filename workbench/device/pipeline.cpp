@@ -117,7 +117,7 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, const GraphicsState& st
       Factor::eSrcAlpha,
       Factor::eOneMinusSrcAlpha,
       vk::BlendOp::eAdd,
-      Factor::eZero,
+      Factor::eOne,  // what is opaque stays so
       Factor::eOneMinusSrcAlpha,
       vk::BlendOp::eAdd,
       Component::eR | Component::eG | Component::eB | Component::eA};
