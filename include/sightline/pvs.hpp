@@ -49,9 +49,9 @@ struct CellPvs {
 Result<CellPvs> read_pvs(std::span<const std::byte> bytes);
 
 /// The bytes of a file: the same for the same sets, in whichever layout is shortest.
-/// Errors: bad_argument for cells that are not as CellPvs says; too_many for sets that are larger than
-/// read_pvs would read. Cost: compresses, seconds for large ones. Threads: any. Allocates: several times the
-/// sets.
+/// Errors: bad_argument for cells that are not as CellPvs says; too_many for more than 2^30 objects, and for
+/// sets that are larger than read_pvs would read. Cost: compresses, seconds for large ones. Threads: any.
+/// Allocates: several times the sets.
 Result<std::vector<std::byte>> write_pvs(const CellPvs& cells);
 
 }  // namespace sightline

@@ -64,7 +64,7 @@ bool sound(const CellPvs& cells) {
     count *= along;
     if (count > kMostCells) return false;
   }
-  if (cells.objects == 0 || cells.objects > kMostObjects) return false;
+  if (cells.objects == 0) return false;
   if (cells.size() != count || cells.first.size() != count + 1 || cells.first[0] != 0) return false;
   for (std::uint32_t cell = 0; cell < count; ++cell) {
     const std::uint64_t first = cells.first[cell], end = cells.first[cell + 1];
@@ -134,6 +134,8 @@ Status read_header(Bytes file, CellPvs& cells, Header& header) {
 }  // namespace
 
 Result<std::vector<std::byte>> write_pvs(const CellPvs& cells) {
+  if (cells.objects > kMostObjects)
+    return Status{StatusCode::too_many, "pvs: there are too many objects, expected at most 1073741824"};
   if (!sound(cells)) {
     return Status{StatusCode::bad_argument,
                   "pvs: the cells are not sound, expected a flag and a set for each, in ascending order of "

@@ -96,6 +96,9 @@ TEST(PvsFile, SaysWhatIsWrong) {
   older[8] = std::byte{0};
   EXPECT_THAT(refusal(older), HasSubstr("another version than 2"));
   EXPECT_THAT(refusal({std::byte{'P'}, std::byte{'K'}}), HasSubstr("no file of baked visibility"));
+  CellPvs many = random_cells(6);
+  many.objects = 1u << 31;
+  EXPECT_THAT(write_pvs(many).error().message(), HasSubstr("at most 1073741824"));
 }
 
 // Damage that whoever made it hid by a right checksum.

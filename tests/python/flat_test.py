@@ -108,6 +108,7 @@ class Pvs(Case):
 
     def test_refusals(self):
         written = self.bytes_of()
+        self.refused("too_many", "too many objects, expected at most 1073741824", self.bytes_of, objects=2**31)
         damaged = written[:-1] + bytes([written[-1] ^ 1])
         for data in (damaged, written[:50], b"", b"no such file"):
             with self.assertRaises(sightline.Refused) as caught:
