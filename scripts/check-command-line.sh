@@ -84,7 +84,7 @@ refused "cpu" "$sightline" casters "$world" --device cpu
 refused "nowhere" "$sightline" casters "$world" --picture nowhere/x.png
 refused "--triangles" "$sightline" occluders "$world" --triangles 5000
 refused "nowhere" "$sightline" occluders "$world" -o nowhere/x.glb
-refused "room for some triangles or boxes" "$sightline" occluders 'world:forest?trees=3' --triangles 0 --boxes 0 -o nothing.glb
+refused "--triangles and --boxes are 0" "$sightline" occluders 'world:forest?trees=3' --triangles 0 --boxes 0 -o nothing.glb
 [ ! -e nothing.glb ] || fail "occluders left nothing.glb behind"
 refused "no parameter" "$sightline" verify "$world" --methods none?x=1
 refused "--size" "$sightline" compare "$world" --size 0x0

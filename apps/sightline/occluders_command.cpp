@@ -64,6 +64,8 @@ bool examine_all(const Scene& scene, const std::vector<measure::MadeOccluder>& o
 }
 
 int run_occluders(const OccludersCall& call) {
+  if (call.options.most_triangles == 0 && call.options.most_boxes == 0)
+    throw Error("--triangles and --boxes are 0, expected room for some triangles or boxes");
   expect_apart({{"SCENE", call.scene}}, {{"--output", call.output}});
   Scene scene = load_scene(call.scene);
   set_raster_state(scene, call.faces);
