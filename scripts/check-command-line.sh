@@ -225,6 +225,17 @@ ln -s led-to.json led.json
 "$sightline" methods --json /dev/fd/1 >both.txt && grep -q '"masked"' both.txt && grep -q '^masked ' both.txt ||
   fail "of --json /dev/fd/1 a file holds a part"
 
+# What may not be looked at is not missing.
+chmod 755 . && mkdir closed && chmod 700 closed
+if [ "$(id -u)" -eq 0 ]; then bounded=(setpriv --reuid=65534 --regid=65534 --clear-groups); else bounded=() && chmod 0 closed; fi
+if "${bounded[@]}" "$sightline" --version >/dev/null 2>&1; then
+  for call in "info closed/forest.glb" "info closed/a.pk3:maps/b.bsp" "verify --replay closed/r.json" \
+      "compare $world --no-draw --path closed/p.json"; do
+    refused "cannot be read: Permission denied" "${bounded[@]}" "$sightline" $call
+  done
+fi
+chmod 700 closed
+
 # Disks that are full, folders that are not there: no file, whole or half, stays behind.
 refused "/dev/full" "$sightline" methods --json /dev/full
 refused "nowhere" "$sightline" generate forest?trees=10 -o nowhere/forest.glb

@@ -134,7 +134,7 @@ void add_verify(CLI::App& app, int& exit) {
       .add_option("--replay", options->replay,
                   "look at one view again, which a verify that lost wrote to FILE")
       ->excludes(scene)
-      ->check(CLI::ExistingFile)
+      ->check(not_empty())
       ->type_name("FILE");
   command
       .add_option("--replays", options->replays,

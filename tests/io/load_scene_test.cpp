@@ -71,6 +71,8 @@ TEST(LoadScene, OneSentenceForEachMistake) {
   write(folder / "empty.pk3", {});
   EXPECT_THAT(refusal_to_load((folder / "empty.pk3").string() + ":maps/a.bsp"),
               HasSubstr("not a readable zip archive"));
+  std::filesystem::create_symlink("round.pk3", folder / "round.pk3");
+  EXPECT_THAT(refusal_to_load((folder / "round.pk3").string() + ":maps/a.bsp"), HasSubstr("cannot be read"));
   EXPECT_THAT(refusal_to_load(""), HasSubstr("no scene given"));
   EXPECT_THAT(refusal_to_load("scene.obj"), HasSubstr("not a kind of scene"));
   EXPECT_THAT(refusal_to_load("a.pk3"), HasSubstr("expected archive.pk3:maps/name.bsp"));

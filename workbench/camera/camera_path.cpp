@@ -216,7 +216,7 @@ CameraPath make_path(const Scene& scene, const std::string& name_or_file, std::s
     path.cameras = scene.level ? walk(scene, count) : circle(scene, count);
   } else {
     std::error_code ignored;
-    if (!std::filesystem::exists(name_or_file, ignored)) {
+    if (std::filesystem::status(name_or_file, ignored).type() == std::filesystem::file_type::not_found) {
       throw Error("path '" + name_or_file + "': expected near, far, rising, walk or the name of a path file");
     }
     path.cameras = load_path(name_or_file, scene.origin);

@@ -71,14 +71,19 @@ Target target_of(const std::filesystem::path& named) {
 
 }  // namespace
 
-std::vector<std::byte> read_file(const std::filesystem::path& path) {
+void expect_file(const std::filesystem::path& path, const char* kind) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::none || error == std::errc::too_many_symbolic_link_levels)
     throw Error(path.string() + ": cannot be read: " + error.message());
   if (!std::filesystem::exists(status)) throw Error(path.string() + ": no such file");
   if (!std::filesystem::is_regular_file(status))
-    throw Error(path.string() + ": not a regular file, expected one");
+    throw Error(path.string() + ": not a regular file, expected " + kind);
+}
+
+std::vector<std::byte> read_file(const std::filesystem::path& path) {
+  expect_file(path);
+  std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw Error(path.string() + ": cannot be read: " + error.message());
   if (size > std::uintmax_t{1} << 32)

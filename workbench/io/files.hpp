@@ -8,6 +8,9 @@
 
 namespace sightline::io {
 
+/// Throws Error for a file that is missing, out of reach or not a regular one, which is `kind`.
+void expect_file(const std::filesystem::path& path, const char* kind = "one");
+
 /// The bytes of a regular file. Throws Error for a missing or unreadable one, a folder, or anything over 4
 /// GiB.
 std::vector<std::byte> read_file(const std::filesystem::path& path);

@@ -17,7 +17,8 @@ constexpr std::string_view kOpenArenaData = "/usr/share/games/openarena/baseoa";
 /// The archive itself, or the first of that name in the data folders.
 std::filesystem::path find_archive(const std::filesystem::path& archive) {
   std::error_code ignored;
-  if (archive.is_absolute() || std::filesystem::exists(archive, ignored)) return archive;
+  const auto here = std::filesystem::status(archive, ignored).type();  // none of what may not be looked at
+  if (archive.is_absolute() || here != std::filesystem::file_type::not_found) return archive;
   const char* variable = std::getenv("SIGHTLINE_DATA");
   std::string folders = variable != nullptr ? variable : "";
   folders.append(":").append(kOpenArenaData);

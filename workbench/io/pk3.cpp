@@ -116,10 +116,7 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
 namespace {
 
 Archive open_archive(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw Error(path.string() + ": no such file");
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw Error(path.string() + ": not a regular file, expected a zip archive");
+  expect_file(path, "a zip archive");
   int code = 0;
   Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
   if (!archive) throw Error(path.string() + ": not a readable zip archive: " + zip_reason(code));
