@@ -225,10 +225,12 @@ ln -s led-to.json led.json
 "$sightline" methods --json /dev/fd/1 >both.txt && grep -q '"masked"' both.txt && grep -q '^masked ' both.txt ||
   fail "of --json /dev/fd/1 a file holds a part"
 
-# What may not be looked at is not missing.
+# What may not be looked at is not missing; a folder that may not be written to is found out first.
+refused "'nowhere' cannot be written to" "$sightline" verify "$world" --views 2 --replays nowhere
 chmod 755 . && mkdir closed && chmod 700 closed
 if [ "$(id -u)" -eq 0 ]; then bounded=(setpriv --reuid=65534 --regid=65534 --clear-groups); else bounded=() && chmod 0 closed; fi
 if "${bounded[@]}" "$sightline" --version >/dev/null 2>&1; then
+  refused "'closed' cannot be written to" "${bounded[@]}" "$sightline" verify "$world" --views 2 --replays closed
   for call in "info closed/forest.glb" "info closed/a.pk3:maps/b.bsp" "verify --replay closed/r.json" \
       "compare $world --no-draw --path closed/p.json"; do
     refused "cannot be read: Permission denied" "${bounded[@]}" "$sightline" $call

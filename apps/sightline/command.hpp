@@ -55,9 +55,10 @@ CLI::Validator whole(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
 inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::uint64_t>::max();
 
-/// A folder for a page, made, and a file's folder, both tried before any work is done; a name that is not
-/// empty.
+/// A folder for a page, made, one that is there already, and a file's folder, all tried before any work is
+/// done; a name that is not empty.
 CLI::Validator page_folder();
+CLI::Validator output_folder();
 CLI::Validator output_file();
 CLI::Validator not_empty();
 

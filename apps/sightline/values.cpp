@@ -55,6 +55,15 @@ CLI::Validator page_folder() {
   return {refuse, ""};
 }
 
+CLI::Validator output_folder() {
+  const auto refuse = [](const std::string& folder) -> std::string {
+    std::error_code ignored;
+    if (fs::is_directory(folder, ignored) && access(folder.c_str(), W_OK | X_OK) == 0) return "";
+    return "'" + folder + "' cannot be written to, expected a folder that is there and open to writing";
+  };
+  return {refuse, ""};
+}
+
 CLI::Validator output_file() {
   const auto refuse = [](const std::string& file) -> std::string {
     const fs::path folder = fs::path(file).parent_path();

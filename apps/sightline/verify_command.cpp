@@ -139,7 +139,7 @@ void add_verify(CLI::App& app, int& exit) {
   command
       .add_option("--replays", options->replays,
                   "where views in which a guarantee broke are written for --replay")
-      ->check(CLI::ExistingDirectory)
+      ->check(output_folder())
       ->type_name("DIR")
       ->capture_default_str();
   command.add_option("--pvs", options->pvs, "visible sets that bake wrote, for the method baked")
