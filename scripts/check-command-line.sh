@@ -153,6 +153,13 @@ if ! "$sightline" methods | grep -q 'Vulkan devices: none'; then
   [ -c /dev/full ] || fail "casters --picture put a file in a device's place"
 fi
 
+# A file is what its name says.
+for name in x.obj x.gltf x.glb.png; do refused "expected a name that ends in .glb" "$sightline" generate cards -o $name; done
+refused "expected a name that ends in .glb" "$sightline" occluders "$world" -o x.ply
+refused "expected a name that ends in .png" "$sightline" casters "$world" --picture x.jpg
+expect 0 "3 objects" "$sightline" generate 'forest?trees=3' -o upper.GLB
+expect 0 "objects     3 " "$sightline" info upper.GLB
+
 # What a signal ends leaves nothing unfinished behind.
 mkdir ended
 (cd ended && exec timeout --signal=INT 3 "$sightline" reproduce object-frustum --quick --json o.json --report o >/dev/null 2>&1)

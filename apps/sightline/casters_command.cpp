@@ -95,7 +95,7 @@ void add_casters(CLI::App& app, int& exit) {
       ->check(number(0, 1000))
       ->capture_default_str();
   command.add_option("--picture", call->picture, "write the last view's lit picture there")
-      ->check(output_file())
+      ->check(output_file(".png"))
       ->type_name("FILE.png");
   command.add_option("--device", call->device, "a Vulkan device by index or part of its name, or any")
       ->type_name("NAME")

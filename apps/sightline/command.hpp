@@ -56,10 +56,10 @@ CLI::Validator number(double low, double high);
 inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::uint64_t>::max();
 
 /// A folder for a page, made, one that is there already, and a file's folder, all tried before any work is
-/// done; a name that is not empty.
+/// done; a name that is not empty. A file's name may end otherwise than in `ending` only by having none.
 CLI::Validator page_folder();
 CLI::Validator output_folder();
-CLI::Validator output_file();
+CLI::Validator output_file(const std::string& ending = "");
 CLI::Validator not_empty();
 
 /// A file or folder and the option that names it; nothing where the path is empty.

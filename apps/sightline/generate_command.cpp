@@ -34,7 +34,7 @@ void add_generate(CLI::App& app, int& exit) {
       ->required();
   command.add_option("-o,--output", *file, "the file to write")
       ->required()
-      ->check(output_file())
+      ->check(output_file(".glb"))
       ->type_name("FILE.glb");
   on_run(command, exit, [world, file] {
     const std::string name = world->starts_with("world:") ? world->substr(6) : *world;

@@ -93,7 +93,7 @@ void add_occluders(CLI::App& app, int& exit) {
       .add_option(
           "-o,--output", call->output,
           "write the scene's occluders in its objects' places: triangles, or boxes where there is none")
-      ->check(output_file())
+      ->check(output_file(".glb"))
       ->type_name("FILE.glb");
   command.add_option("--triangles", call->options.most_triangles, "at most so many a mesh")
       ->transform(whole(0, 4096))

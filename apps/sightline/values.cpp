@@ -64,8 +64,11 @@ CLI::Validator output_folder() {
   return {refuse, ""};
 }
 
-CLI::Validator output_file() {
-  const auto refuse = [](const std::string& file) -> std::string {
+CLI::Validator output_file(const std::string& ending) {
+  const auto refuse = [ending](const std::string& file) -> std::string {
+    const std::string own = CLI::detail::to_lower(fs::path(file).extension().string());
+    if (!ending.empty() && !own.empty() && own != ending)
+      return "'" + file + "': expected a name that ends in " + ending;
     const fs::path folder = fs::path(file).parent_path();
     const bool open = access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0;
     std::error_code error;
