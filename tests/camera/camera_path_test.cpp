@@ -107,6 +107,21 @@ TEST(PathFile, RefusesWhatRaysDoNotReach) {
   EXPECT_EQ(refusal_with(R"("orthographic_height": 1e12, "near": -1e12, "far": 1e12)"), "accepted");
 }
 
+TEST(PathFile, RefusesImagesOfNoWidth) {
+  const auto refusal_with = [](const std::string& members) {
+    return refusal_of(R"({"views": [{"eye": [-14.2, 23.5, -28.5], )" + members + "}]}");
+  };
+  EXPECT_EQ(refusal_with(R"("forward": [1, -0.0, 0.2], "fov_degrees": 1e-20)"),
+            "views.json: view 0: \"fov_degrees\": expected a field of view of at least 0.001 degrees");
+  EXPECT_THAT(refusal_with(R"("fov_degrees": -60)"), HasSubstr("\"fov_degrees\": expected"));
+  EXPECT_EQ(refusal_with(R"("fov_degrees": 0.001)"), "accepted");
+  EXPECT_THAT(refusal_with(R"("orthographic_height": 9e-6)"), HasSubstr("at least 1e-05 m"));
+  EXPECT_THAT(refusal_with(R"("orthographic_height": -1)"), HasSubstr("at least 1e-05 m"));
+  EXPECT_EQ(refusal_with(R"("orthographic_height": 1e-5)"), "accepted");
+  EXPECT_EQ(refusal_with(R"("orthographic_height": 10, "fov_degrees": 0)"), "accepted") << "it is ignored";
+  EXPECT_EQ(refusal_with(R"("orthographic_height": 0)"), "accepted");
+}
+
 TEST(PathFile, MissingFileAndUnknownNameAreRefused) {
   const Scene scene = generate_world("regular?columns=2&rows=2");
   EXPECT_THROW(load_path("/nowhere/at/all.json"), Error);

@@ -23,6 +23,8 @@ constexpr std::size_t kMaxBytes = 64 << 20;
 constexpr double kDegrees = 180 / std::numbers::pi;
 // No view of a scene, which lies within 1e11 m, needs more; rays do their sums in single precision.
 constexpr double kMostMetres = 1e13, kMostShift = 1e6;
+// Narrower images are a single ray in single precision, which culling and rays round each in its own way.
+constexpr double kLeastDegrees = 0.001, kLeastHeight = 1e-5;
 
 /// The double that prints as shortly as the float does and rounds back to it.
 double shortest(float value) {
@@ -136,9 +138,16 @@ Camera read_camera(const std::string& where, const Json& view, const WorldPoint&
   read.numbers<3>("up", {&camera.up.x, &camera.up.y, &camera.up.z});
   read.numbers<2>("shift", {&camera.shift_x, &camera.shift_y}, kMostShift);
   read.number("orthographic_height", camera.orthographic_height, kMostMetres);
+  const bool flat = camera.orthographic_height != 0;
+  if (flat && camera.orthographic_height < static_cast<float>(kLeastHeight))
+    read.wrong("orthographic_height",
+               fmt::format("0, for a perspective view, or at least {:g} m", kLeastHeight));
   if (read.has("fov_degrees")) {
     if (!view["fov_degrees"].is_number()) read.wrong("fov_degrees", "a number");
-    camera.vertical_fov = static_cast<float>(view["fov_degrees"].get<double>() / kDegrees);
+    const auto degrees = view["fov_degrees"].get<double>();
+    if (!flat && degrees < kLeastDegrees)
+      read.wrong("fov_degrees", fmt::format("a field of view of at least {:g} degrees", kLeastDegrees));
+    camera.vertical_fov = static_cast<float>(degrees / kDegrees);
   }
   read.number("near", camera.near_plane, kMostMetres);
   read.far_plane(camera.far_plane);

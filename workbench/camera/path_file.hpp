@@ -1,6 +1,7 @@
 // Camera paths as JSON files: {"views": [{"eye": [x,y,z], "forward": […], "up": […], "fov_degrees": 60,
 // "near": 0.1, "far": 1000 or "infinite", "orthographic_height": 0, "shift": [0,0], "reversed": false}, …]}.
 // Only "eye" is required; the rest has Camera's defaults. What verification reports can be replayed from one.
+// A field of view has at least 0.001 degrees, an orthographic view is at least 1e-5 m high, 0 is none at all.
 // Planes and heights are within 1e13 m, shifts within 1e6; so is, in metres, where the image starts.
 // Eyes are points of the world, in doubles; cameras count from the scene's origin (Scene::origin), which each
 // function takes.
