@@ -18,7 +18,7 @@ import { forgetConvex } from './convex.js';
 import { eyeOf, isRigid } from './eye.js';
 import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
-import { fill, narrow, type Narrowing, type Range } from './instances.js';
+import { carrierOf, fill, narrow, type Narrowing, type Range } from './instances.js';
 import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { release } from './release.js';
 import { restore } from './restore.js';
@@ -165,11 +165,22 @@ export class SightlineCuller {
     if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
     if (!this.#tried && isLoaded()) this.#try(() => this.#make());
     this.#inside?.inventory.takeNote();
-    if (!this.enabled || !this.#inside || !renderer.sortObjects) return;
-    if (isDisplaced(this.#scene.overrideMaterial as Material | null)) return; // then all of it may be elsewhere
-    this.#layers = camera.layers;
-    this.#try(() => this.#cull(renderer, this.#cameraOr(camera), frame, outer !== undefined));
+    // By a material that displaces, all may be elsewhere.
+    if (this.enabled && this.#inside && renderer.sortObjects && !isDisplaced(this.#scene.overrideMaterial as Material | null)) {
+      this.#layers = camera.layers;
+      this.#try(() => this.#cull(renderer, this.#cameraOr(camera), frame, outer !== undefined));
+    }
+    this.#shadowed ||= shadowsOf(renderer);
+    if (frame.list === children) frame.list = this.#carried(renderer, children, this.#inside?.inventory.many ?? []);
     this.#scene.children = frame.list;
+  }
+  #shadowed = false; // ever
+
+  // With what has three send the instances of things.
+  #carried(renderer: Renderer, list: Object3D[], things: Iterable<Thing>): Object3D[] {
+    if (!this.#shadowed || !renderer.isWebGLRenderer) return list;
+    const carriers = Array.from(things, ({ mesh, kind }) => kind === 'instanced' && carrierOf(mesh as InstancedMesh)).filter(Boolean);
+    return carriers.length > 0 ? [...list, ...carriers as InstancedMesh[]] : list;
   }
 
   // The one that is set, or the one that draws.
@@ -217,10 +228,10 @@ export class SightlineCuller {
     this.#whole.look(inventory, eyes[0]!, this.occlusion, [seen, ...inLights]);
     const main = this.#pass(seen);
     const shadows = lights.map(({ light, viewport }, i): Shadow => ({ light, viewport, pass: this.#pass(inLights[i]!) }));
-    frame.list = main.list;
     this.#swapForShadows(shadows, frame);
     for (const thing of new Set([main, ...shadows.map(({ pass }) => pass)].flatMap(({ ranges }) => [...ranges.keys()])))
       this.#narrow(thing, main, shadows, renderer, frame, nested);
+    frame.list = this.#carried(renderer, main.list, main.ranges.keys());
     Object.assign(this.stats, { objects: inventory.size, drawn: seen.length });
   }
   #count(drawn: number): void {

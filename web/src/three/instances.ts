@@ -1,10 +1,10 @@
 // How instances that nobody sees are left out: of an InstancedMesh by drawing a shorter copy of its matrices, of a
 // BatchedMesh by listing those that are seen. What the user set stays as it is.
-import { InstancedBufferAttribute, Matrix4, Object3D, Sphere, Vector3 } from 'three';
-import type { BufferGeometry, Camera, InstancedMesh, Material } from 'three';
+import { InstancedBufferAttribute, InstancedMesh, Matrix4, Object3D, Sphere, Vector3 } from 'three';
+import type { BufferGeometry, Camera, Material } from 'three';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
-import { withhold } from './ranges.js';
+import { isUnsent, withhold } from './ranges.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
 import type { Thing } from './things.js';
@@ -108,6 +108,22 @@ function put(mesh: InstancedMesh, name: (typeof callbacks)[number],
   const before = Object.getOwnPropertyDescriptor(mesh, name), call = mesh[name] as Callback;
   const ours = (mesh[name] = (...all: unknown[]) => over(call, all));
   return () => mesh[name] === ours && restore(mesh, name, before);
+}
+
+const carriers = new WeakMap<InstancedMesh, InstancedMesh>();
+
+/** What to draw with a mesh that shows a shorter copy, or what was withheld, so that three sends it: an object's instances it sends
+ * once a frame, and up to 0.186 it takes what a light looked at in one frame for sent in the next. No light looks at this one, and
+ * nothing of it is drawn. */
+export function carrierOf(mesh: InstancedMesh): InstancedMesh | undefined {
+  const { geometry, instanceMatrix, instanceColor } = mesh;
+  if (copies.get(mesh)?.matrix !== instanceMatrix && !isUnsent(instanceMatrix) && !isUnsent(instanceColor)) return undefined;
+  let carrier = carriers.get(mesh);
+  if (!carrier) {
+    carriers.set(mesh, (carrier = new InstancedMesh(geometry, [], 0)));
+    carrier.frustumCulled = false, (carrier.boundingSphere = new Sphere()), carrier.layers.enableAll();
+  }
+  return Object.assign(carrier, { geometry, instanceMatrix, instanceColor });
 }
 
 const matrix = new Matrix4(), eye = new Vector3(), forward = new Vector3();

@@ -49,11 +49,12 @@ export function withhold(attribute: Attribute): void {
     onUploadCallback.call(attribute);
   };
 }
+export const isUnsent = (attribute: Attribute | null): boolean => attribute !== null && unsent.has(attribute);
 /** To be called before three draws it after all. */
 export function remind(attribute: Attribute | null): void {
-  if (attribute && unsent.has(attribute)) attribute.clearUpdateRanges();
+  if (isUnsent(attribute)) attribute!.clearUpdateRanges();
 }
 /** The same for when nobody will do that any more. */
 export function letGo(attribute: Attribute | null): void {
-  if (attribute && unsent.has(attribute)) attribute.addUpdateRange(0, attribute.array.length);
+  if (isUnsent(attribute)) attribute!.addUpdateRange(0, attribute!.array.length);
 }

@@ -55,6 +55,26 @@ const cases = {
     frame(), frame();
     camera.rotation.y += 1, frame();
   },
+  'instances that no shadow is drawn of any longer'({ scene, camera, renderer, frame }) {
+    const { shadowMap } = renderer, { shadow, position, target } = light(scene, renderer), mesh = instances(100);
+    mesh.castShadow = true, scene.add(mesh), scene.add(target);
+    // Just before fewer are shown than the light sees, and before all are.
+    const stops = [[() => (shadowMap.autoUpdate = false), () => (shadowMap.autoUpdate = true)],
+      [() => (shadowMap.enabled = false), () => (shadowMap.enabled = true)],
+      [() => (shadow.autoUpdate = false), () => (shadow.autoUpdate = true)],
+      [() => (mesh.castShadow = false), () => (mesh.castShadow = true)],
+      [() => (position.x += 500, target.position.x += 500), () => (position.x -= 500, target.position.x -= 500)]];
+    for (const [i, [stop, start]] of stops.entries()) {
+      for (const above of [0, 60]) {
+        const reach = above ? 10 : 60;
+        Object.assign(shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach }).updateProjectionMatrix();
+        mesh.instanceMatrix = mesh.instanceMatrix.clone();
+        camera.position.set(0, 0, 0), camera.rotation.set(0, i, 0), frame();
+        stop(), camera.position.set(0, above, 0), above ? camera.lookAt(0, 0, 0) : camera.rotation.set(0, i + 2, 0);
+        frame(), frame(), start();
+      }
+    }
+  },
   'children that come and go while the scene is drawn': changesWhileDrawn,
   'children that come and go while shadows are drawn, too'(given) {
     light(given.scene, given.renderer);
