@@ -5,9 +5,8 @@
 // While a scene is rendered its `children` are a shorter list, of what the camera may see; before and after they are what
 // they were. What the culler does not know (sprites, lines, skinned meshes, LODs, meshes with children, frustumCulled =
 // false) stands in the list as before.
-import { BatchedMesh, Layers } from 'three';
-import type { ArrayCamera, BufferGeometry, Camera, InstancedMesh, Light, LightShadow, Material, Object3D, Scene } from 'three';
-import type { PerspectiveCamera } from 'three';
+import { BatchedMesh } from 'three';
+import type { ArrayCamera, BufferGeometry, Camera, Frustum, InstancedMesh, Material, Object3D, Scene } from 'three';
 import { refuse, said } from '../errors.js';
 import '../index.js';
 import { floats, reading, readOptions } from '../memory.js';
@@ -23,6 +22,7 @@ import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.j
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
+import { isSameView, viewOf, viewsOf, type ShadowLight } from './shadows.js';
 import { isCalled, isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
 
@@ -54,7 +54,7 @@ interface Renderer {
 
 /** What three walks, and which of instances it draws. */
 interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
-interface Shadow { light: Light & { shadow: LightShadow }; viewport: number; pass: Pass }
+interface Shadow { light: ShadowLight; view: Eye; pass: Pass }
 interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[] }
 
 const mostViews = 8;
@@ -82,7 +82,7 @@ export class SightlineCuller {
   #inside: { inventory: Inventory; culler: Culler; buffer: OcclusionBuffer } | undefined;
   #tried = false;
   #drawn: Eye | undefined;
-  #layers = new Layers(); // of the camera that draws
+  #drawing: Camera | undefined;
   readonly #whole = new Whole();
   #rest = 0;
   #left = new Uint32Array(0);
@@ -167,7 +167,7 @@ export class SightlineCuller {
     this.#inside?.inventory.takeNote();
     // By a material that displaces, all may be elsewhere.
     if (this.enabled && this.#inside && renderer.sortObjects && !isDisplaced(this.#scene.overrideMaterial as Material | null)) {
-      this.#layers = camera.layers;
+      this.#drawing = camera;
       this.#try(() => this.#cull(renderer, this.#cameraOr(camera), frame, outer !== undefined));
     }
     this.#shadowed ||= shadowsOf(renderer);
@@ -220,14 +220,14 @@ export class SightlineCuller {
     const eyes = cameras.map((each) => eyeOf(each, this.#bufferWidth));
     if (this.#whole.stands(() => allViews(eyes, this.#shadowViews(renderer)), this.occlusion)) return this.#count(inventory.size);
     inventory.update();
-    inventory.measure(this.#layers);
+    inventory.measure(this.#drawing!.layers);
     if (inventory.size === 0) return this.#count(0);
     const lights = this.#shadowViews(renderer);
     const seen = this.#seen(eyes, camera, !renderer.clippingPlanes?.length);
     const inLights = lights.map(({ view }) => this.#inView(view));
     this.#whole.look(inventory, eyes[0]!, this.occlusion, [seen, ...inLights]);
     const main = this.#pass(seen);
-    const shadows = lights.map(({ light, viewport }, i): Shadow => ({ light, viewport, pass: this.#pass(inLights[i]!) }));
+    const shadows = lights.map((each, i): Shadow => ({ ...each, pass: this.#pass(inLights[i]!) }));
     this.#swapForShadows(shadows, frame);
     for (const thing of new Set([main, ...shadows.map(({ pass }) => pass)].flatMap(({ ranges }) => [...ranges.keys()])))
       this.#narrow(thing, main, shadows, renderer, frame, nested);
@@ -303,36 +303,29 @@ export class SightlineCuller {
   }
 
   // Every light's views of this frame.
-  #shadowViews(renderer: Renderer): { light: Shadow['light']; viewport: number; view: Eye }[] {
+  #shadowViews(renderer: Renderer): { light: ShadowLight; view: Eye }[] {
     if (!renderer.isWebGLRenderer || !shadowsOf(renderer)) return [];
-    const views: { light: Shadow['light']; viewport: number; view: Eye }[] = [];
+    const views: { light: ShadowLight; view: Eye }[] = [];
     for (const { object } of this.#inside!.inventory.left) {
       object.traverseVisible((each) => {
-        const light = each as Shadow['light'];
-        const { shadow } = light;
+        const light = each as ShadowLight, { shadow } = light;
         if (!light.isLight || !light.castShadow || !shadow || !(shadow.autoUpdate || shadow.needsUpdate)) return;
-        // As three does where it has yet to make the map.
-        if (!shadow.map) (shadow.camera as PerspectiveCamera).updateProjectionMatrix();
-        for (let viewport = 0; viewport < shadow.getViewportCount(); ++viewport) {
-          (shadow.updateMatrices as (light: Light, viewport: number) => void)(light, viewport);
-          views.push({ light, viewport, view: eyeOf(shadow.camera, shadow.mapSize.x) });
-        }
+        for (const view of viewsOf(light, this.#drawing!)) views.push({ light, view });
       });
     }
     return views;
   }
 
-  // three asks a light for its matrices just before it walks the scene for it.
+  // three asks a light for its frustum just before it walks the scene for it. A view that nobody has foreseen is of the whole.
   #swapForShadows(shadows: Shadow[], frame: Frame): void {
-    for (const { shadow } of new Set(shadows.map(({ light }) => light))) {
-      const own = Object.getOwnPropertyDescriptor(shadow, 'updateMatrices');
-      const { updateMatrices } = shadow;
-      shadow.updateMatrices = ((light: Light, viewport = 0) => {
-        (updateMatrices as (light: Light, viewport: number) => void).call(shadow, light, viewport);
-        const now = shadows.find((each) => each.light.shadow === shadow && each.viewport === viewport);
-        if (now) (this.#scene.children = now.pass.list), (this.#shadow = now.pass);
+    for (const light of new Set(shadows.map(({ light }) => light))) {
+      const { shadow } = light, own = Object.getOwnPropertyDescriptor(shadow, 'getFrustum'), { getFrustum } = shadow;
+      shadow.getFrustum = ((viewport?: number) => {
+        const view = viewOf(light, viewport), now = shadows.find((each) => each.light === light && isSameView(each.view, view));
+        this.#scene.children = now?.pass.list ?? frame.children, (this.#shadow = now?.pass);
+        return (getFrustum as (viewport?: number) => Frustum).call(shadow, viewport);
       }) as never;
-      frame.restore.push(() => restore(shadow, 'updateMatrices', own));
+      frame.restore.push(() => restore(shadow, 'getFrustum', own));
     }
   }
   #shadow: Pass | undefined;
@@ -343,7 +336,7 @@ export class SightlineCuller {
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
     // Where three does not look at it either, it has no sphere yet, and must not get that of a few of its instances.
-    if (!instanced.visible || !instanced.layers.test(this.#layers)) return;
+    if (!instanced.visible || !instanced.layers.test(this.#drawing!.layers)) return;
     const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn
     const list = instancesOf(thing, main, shadows, most);
     if (list.length === 0 || list.length > most) return;
@@ -356,10 +349,11 @@ export class SightlineCuller {
     const mesh = thing.mesh as BatchedMesh, own = Object.getOwnPropertyDescriptor(mesh, 'onBeforeRender');
     if (own ? !this.#fills.has(own.value as object) : mesh.onBeforeRender !== listing) return;
     const fills: BatchedMesh['onBeforeRender'] = (by, scene, camera, geometry, material, group) => {
-      // A render within this one that culls nothing.
-      if (this.#frames.at(-1) !== frame) return void listing.call(mesh, by, scene, camera, geometry, material, group);
       const pass = scene === null ? this.#shadow : main;
-      fill(thing, pass?.ranges.get(thing), by as Sender, camera, geometry, material);
+      // Not of a render within this one that culls nothing, nor of a light's view that nobody has foreseen.
+      if (this.#frames.at(-1) === frame && pass)
+        return fill(thing, pass.ranges.get(thing), by as Sender, camera, geometry, material);
+      thing.sending!.end(), listing.call(mesh, by, scene, camera, geometry, material, group);
     };
     this.#fills.add(fills), (mesh.onBeforeRender = fills);
     frame.restore.push(() => (thing.sending!.end(), restore(mesh, 'onBeforeRender', own)));
