@@ -89,6 +89,11 @@ test('instances of a batch are drawn in the order that three draws them in', asy
       assert.ok(both.size > 0.5 * theirs.length && both.size > 0.95 * ours.length, `${both.size} of ${ours.length}, ${theirs.length}`);
     }
   }
+  // What a wireframe takes of them only three knows: it lists them as without the culler.
+  material.wireframe = true, draw();
+  const theirs = listed(batch);
+  scene.onBeforeRender(renderer, scene, camera, null), draw(), scene.onAfterRender(renderer, scene, camera, null);
+  assert.deepEqual(listed(batch), theirs);
   culler.dispose();
   assert.deepEqual(Object.keys(batch).filter((name) => /^(set|add|delete|optimize)/.test(name)), []);
 });
