@@ -22,6 +22,7 @@ import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.j
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
+import { callsBack } from './shaders.js';
 import { isSameView, viewOf, viewsOf, type ShadowLight } from './shadows.js';
 import { isCalled, isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
@@ -165,8 +166,9 @@ export class SightlineCuller {
     if (!outer) queueMicrotask(() => { while (this.#frames.includes(frame)) this.#end(); });
     if (!this.#tried && isLoaded()) this.#try(() => this.#make());
     this.#inside?.inventory.takeNote();
-    // By a material that displaces, all may be elsewhere.
-    if (this.enabled && this.#inside && renderer.sortObjects && !isDisplaced(this.#scene.overrideMaterial as Material | null)) {
+    const override = this.#scene.overrideMaterial as Material | null;
+    // By a material that displaces, all may be elsewhere, and one with a callback counts what is drawn.
+    if (this.enabled && this.#inside && renderer.sortObjects && !isDisplaced(override) && !callsBack(override)) {
       this.#drawing = camera;
       this.#try(() => this.#cull(renderer, this.#cameraOr(camera), frame, outer !== undefined));
     }

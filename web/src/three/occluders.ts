@@ -1,6 +1,6 @@
 // Which things occlude, frame by frame: those that look largest. Whatever picks better takes this file's place.
-import { Frustum, Matrix4, Object3D } from 'three';
-import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh } from 'three';
+import { Frustum, Matrix4 } from 'three';
+import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh, Object3D } from 'three';
 import { said } from '../errors.js';
 import type { OcclusionBuffer } from '../occlusion.js';
 import { convexOf, convexOfInstance, type Convex } from './convex.js';
@@ -9,7 +9,7 @@ import type { Inventory } from './inventory.js';
 import type { Batch } from './batches.js';
 import { orderOf } from './order.js';
 import { isPatched, writesDepth } from './shaders.js';
-import type { Thing } from './things.js';
+import { isCalledWhenDrawn, type Thing } from './things.js';
 
 /** Occluders a frame. */
 const most = 96;
@@ -39,15 +39,10 @@ const materialsOf = (object: Object3D, override: Material | null): Material[] =>
   return own.filter(Boolean).map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
 
-// What is called when an object is drawn may move it, or empty the depth buffer before it.
-const { onBeforeRender, onAfterRender } = Object3D.prototype;
-const isCalled = (object: Object3D): boolean => object.onAfterRender !== onAfterRender ||
-  ((object as { isBatchedMesh?: boolean }).isBatchedMesh ? Object.hasOwn(object, 'onBeforeRender') : object.onBeforeRender !== onBeforeRender);
-
 /** Whether an object, or one below it, writes depth behind what is there, or may empty the depth buffer before others are drawn,
  * so that these may show through occluders. */
 export function breaksDepth(object: Object3D, override: Material | null): boolean {
-  return object.visible && ((object.renderOrder < 0 && isCalled(object)) ||
+  return object.visible && ((object.renderOrder < 0 && isCalledWhenDrawn(object)) ||
     object.children.some((child) => breaksDepth(child, override)) ||
     materialsOf(object, override).some((m) => m.depthWrite && (!m.depthTest || m.depthFunc === 1 || m.depthFunc > 4)));
 }
@@ -55,7 +50,7 @@ export function breaksDepth(object: Object3D, override: Material | null): boolea
 /** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not; nor what is drawn late on
  * purpose, as it is drawn over the others where somebody has emptied the depth buffer first. */
 export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
-  return mesh.renderOrder <= 0 && !isCalled(mesh) && materialsOf(mesh, override).every((m) =>
+  return mesh.renderOrder <= 0 && !isCalledWhenDrawn(mesh) && materialsOf(mesh, override).every((m) =>
     m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
     !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap && !writesDepth(m));
 }
@@ -74,8 +69,8 @@ export function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
 /** Whether a mesh hides what lies behind it, where it is drawn as its geometry stands. */
 export function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
   const mark = markOf(mesh), { material } = mesh;
-  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalled(mesh)) return false;
-  // Of several materials nobody says that they are all there are faces for.
+  if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalledWhenDrawn(mesh)) return false;
+  // (What is called when it is drawn may move it.) Of several materials nobody says that they are all there are faces for.
   if (Array.isArray(material) ? !mark : !material?.visible) return false;
   const materials = materialsOf(mesh, override);
   if (Array.isArray(material) && materials.length < material.length) return false; // three draws holes there

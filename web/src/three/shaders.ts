@@ -22,6 +22,10 @@ export const writesDepth = has('fragmentShader', 'gl_FragDepth');
 /** Whether three's shader for it is changed by somebody before it is compiled. */
 export const isPatched = (material: Material): boolean => material.onBeforeCompile !== Material.prototype.onBeforeCompile;
 
+/** Whether it has a callback of its own or of its class, which three calls whenever it draws something with it. */
+export const callsBack = (material: Material | Material[] | null | undefined): boolean => Array.isArray(material)
+  ? material.some(callsBack) : material?.onBeforeRender !== undefined && material.onBeforeRender !== Material.prototype.onBeforeRender;
+
 /** Whether it may draw another instance where other instances are left out. */
 export const countsInstances = (material: Material | null | undefined): boolean =>
   material != null && (numbersInstances(material) || isPatched(material));

@@ -8,7 +8,7 @@ import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
 import { release } from './release.js';
 import { Sending } from './sending.js';
-import { countsInstances } from './shaders.js';
+import { callsBack, countsInstances } from './shaders.js';
 
 export interface Thing {
   readonly mesh: Mesh;
@@ -50,17 +50,22 @@ export const isDisplaced = (material: Mesh['material'] | null | undefined): bool
   Array.isArray(material) ? material.some(isDisplaced) : Boolean((material as { displacementMap?: unknown } | undefined)?.displacementMap);
 
 const own = Object3D.prototype, { onBeforeRender: listing } = BatchedMesh.prototype;
-/** Whether it has callbacks of its own or of its class. What they do besides, such as drawing a picture that others show, has to
- * be done as often as without a culler. */
-export const isCalled = (mesh: Mesh): boolean => mesh.onAfterRender !== own.onAfterRender ||
-  mesh.onBeforeRender !== ((mesh as { isBatchedMesh?: boolean }).isBatchedMesh ? listing : own.onBeforeRender) ||
+/** Whether it or its material has callbacks of its own or of its class for when it is drawn. */
+export const isCalledWhenDrawn = (object: Object3D): boolean => object.onAfterRender !== own.onAfterRender ||
+  object.onBeforeRender !== ((object as { isBatchedMesh?: boolean }).isBatchedMesh ? listing : own.onBeforeRender) ||
+  callsBack((object as Mesh).material);
+/** The same, and for shadows. What they do besides, such as drawing a picture that others show, has to be done as often as without
+ * a culler. */
+export const isCalled = (mesh: Mesh): boolean => isCalledWhenDrawn(mesh) ||
   mesh.onBeforeShadow !== own.onBeforeShadow || mesh.onAfterShadow !== own.onAfterShadow;
 
-// Instances without attributes of their own, and which no shader counts: shorter copies of their matrices and colours are all that is made.
+// Instances without attributes of their own, and which no shader counts, nor any material's callback: shorter copies of their
+// matrices and colours are all that is made.
 function isSimple(mesh: InstancedMesh): boolean {
   if (mesh.morphTexture || mesh.instanceMatrix.count === 0) return false;
   const { material, customDepthMaterial, customDistanceMaterial, userData } = mesh;
-  if (userData?.sightline !== true && [material, customDepthMaterial, customDistanceMaterial].flat().some(countsInstances)) return false;
+  if (userData?.sightline !== true && [material, customDepthMaterial, customDistanceMaterial].flat()
+    .some((one) => countsInstances(one) || callsBack(one))) return false;
   return Object.values(mesh.geometry.attributes).every((attribute) => {
     const { isInstancedBufferAttribute, data } = attribute as unknown as {
       isInstancedBufferAttribute?: boolean; data?: { isInstancedInterleavedBuffer?: boolean } };

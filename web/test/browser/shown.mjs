@@ -87,6 +87,20 @@ const cases = {
     scatter(scene), (wall.onBeforeRender = () => wall.matrixWorld.makeTranslation(0, 30, -10));
     frame(), frame();
   },
+  'callbacks of materials'({ scene, camera, frame }) {
+    // One moves a wall, one colours what is in view, as often as it is called for what is hidden, one by what it empties, too.
+    const wall = walled(scene), shown = box(0, 0, -8, 0xff0000, 3), hidden = box(0, 0, -20, 0xff0000, 3), calls = [];
+    const moves = (r, s, c, g, object) => object.modelViewMatrix.makeTranslation(0, 30, -10);
+    hidden.material.onBeforeRender = () => (calls.push(1), shown.material.color.offsetHSL(0.11, 0, 0));
+    hidden.renderOrder = -3, scatter(scene), scene.add(shown, hidden), frame(), frame();
+    wall.material.onBeforeRender = moves, frame(), frame();
+    delete wall.material.onBeforeRender, (wall.renderOrder = -2), frame();
+    const empties = box(0, 4, -9, 0x00ff00, 0.1);
+    empties.renderOrder = -1, (empties.material.onBeforeRender = (renderer) => renderer.clearDepth());
+    scene.remove(hidden), scene.add(empties), frame(), frame();
+    scene.overrideMaterial = basic(0x00ffff), (scene.overrideMaterial.onBeforeRender = () => calls.push(2)), frame();
+    return calls;
+  },
   'a wall whose material is invisible, and an override': unwalled((wall, scene) => {
     wall.material.visible = false, (scene.overrideMaterial = basic(0x00ffff));
   }),
