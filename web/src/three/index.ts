@@ -18,13 +18,13 @@ import { eyeOf, isRigid } from './eye.js';
 import { Hooks } from './hooks.js';
 import { Inventory } from './inventory.js';
 import { carrierOf, fill, narrow, type Narrowing, type Range } from './instances.js';
-import { breaksDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
+import { breaksDepth, breaksLateDepth, canBeHidden, drawOccluders, type Eye } from './occluders.js';
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
 import { callsBack } from './shaders.js';
 import { isSameView, viewOf, viewsOf, type ShadowLight } from './shadows.js';
-import { isCalled, isDisplaced, type Thing } from './things.js';
+import { isCalled, isCalledWhenDrawn, isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
 
 export { ready, supported };
@@ -267,12 +267,15 @@ export class SightlineCuller {
     const { inventory, culler, buffer } = this.#inside!, override = this.#scene.overrideMaterial as Material | null;
     const { count, ids, masks } = culler.cullSorted(inventory.world, [eye, { ...eye, occlusion: buffer }], inventory.slots);
     const inView = new Uint32Array(memory(), ids, count), maskOf = new Uint8Array(memory(), masks, count);
-    if (inventory.left.some(({ object }) => breaksDepth(object, override))) return inView.slice();
+    const many = Array.from(inventory.many, ({ mesh }) => mesh).filter(isCalledWhenDrawn);
+    const called = [...inventory.left.map(({ object }) => object), ...many];
+    if (called.some((each) => breaksDepth(each, override))) return inView.slice();
+    const isLateBroken = called.some(breaksLateDepth);
     if (this.#left.length < count) this.#left = new Uint32Array(2 * count);
     const left = this.#left;
     let kept = 0, sound = true;
     inventory.forEachShown(inView, ({ mesh }, from, to) => {
-      const all = !canBeHidden(mesh, override);
+      const all = !canBeHidden(mesh, override, isLateBroken);
       if (all && breaksDepth(mesh, override)) sound = false;
       for (let i = from; i < to; ++i) if (all || maskOf[i]! & 2) left[kept++] = inView[i]!;
     });

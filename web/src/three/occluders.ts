@@ -39,6 +39,9 @@ const materialsOf = (object: Object3D, override: Material | null): Material[] =>
   return own.filter(Boolean).map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
 
+// What three draws after all that is opaque.
+const isLate = (m: Material): boolean => m.transparent || ((m as { transmission?: number }).transmission ?? 0) > 0;
+
 /** Whether an object, or one below it, writes depth behind what is there, or may empty the depth buffer before others are drawn,
  * so that these may show through occluders. */
 export function breaksDepth(object: Object3D, override: Material | null): boolean {
@@ -47,11 +50,17 @@ export function breaksDepth(object: Object3D, override: Material | null): boolea
     materialsOf(object, override).some((m) => m.depthWrite && (!m.depthTest || m.depthFunc === 1 || m.depthFunc > 4)));
 }
 
+/** Whether an object, or one below it, may empty the depth buffer before what is transparent is drawn, or some of it. (Of what is
+ * opaque and has the same renderOrder, nobody knows which three draws first.) */
+export function breaksLateDepth(object: Object3D): boolean {
+  return object.visible && (isCalledWhenDrawn(object) || object.children.some(breaksLateDepth));
+}
+
 /** Whether what lies behind others cannot be seen: not what is drawn through them, or where it is not; nor what is drawn late on
- * purpose, as it is drawn over the others where somebody has emptied the depth buffer first. */
-export function canBeHidden(mesh: Mesh, override: Material | null): boolean {
+ * purpose, or transparent where `isLateBroken`, as it is drawn over the others where somebody has emptied the depth buffer first. */
+export function canBeHidden(mesh: Mesh, override: Material | null, isLateBroken: boolean): boolean {
   return mesh.renderOrder <= 0 && !isCalledWhenDrawn(mesh) && materialsOf(mesh, override).every((m) =>
-    m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
+    !(isLateBroken && isLate(m)) && m.depthTest && (m.depthFunc === 2 || m.depthFunc === 3 || m.depthFunc === 4) &&
     !m.polygonOffset && !m.stencilWrite && !(m as { displacementMap?: unknown }).displacementMap && !writesDepth(m));
 }
 

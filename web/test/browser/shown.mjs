@@ -82,6 +82,20 @@ const cases = {
     later.renderOrder = 1000, scene.add(ball, later);
     frame(), frame();
   },
+  'transparent things after the depth buffer was emptied'({ scene, frame, hides }) {
+    const wall = walled(scene), glass = basic(0xff0000, { transparent: true, opacity: 0.5 }), behind = box(0, 0, -20, 0, 3, glass);
+    const empties = (renderer) => renderer.clearDepth(), gizmo = box(3, 3, -9, 0x00ff00, 0.3), far = box(0, 4, -60, 0x00ff00, 1);
+    far.material.transparent = true, scatter(scene), scene.add(behind), frame(), hides(101);
+    gizmo.renderOrder = 999, (gizmo.onBeforeRender = empties), scene.add(gizmo), frame(), hides(100);
+    gizmo.onBeforeRender = THREE.Mesh.prototype.onBeforeRender, (gizmo.material.onBeforeRender = empties), frame(), hides(100);
+    scene.remove(gizmo), (far.onAfterRender = empties), scene.add(far), frame(), hides(100);
+    scene.remove(far);
+    const many = new THREE.InstancedMesh(gizmo.geometry, basic(0x00ff00), 1);
+    many.setMatrixAt(0, new THREE.Matrix4()), many.position.set(3, 3, -9), (many.renderOrder = 1), (many.onBeforeRender = empties);
+    scene.add(many), frame(), hides(100);
+    glass.transmission = 1, (glass.transparent = false), frame();
+    return wall.visible;
+  },
   'a wall that moves as it is drawn'({ scene, frame }) {
     const wall = walled(scene);
     scatter(scene), (wall.onBeforeRender = () => wall.matrixWorld.makeTranslation(0, 30, -10));
