@@ -65,6 +65,26 @@ test('the list of children is whole from the next microtask on after a callback 
   culler.dispose();
 });
 
+test('what is added keeps the matrix that the user has given it, and is culled by that', async () => {
+  await ready;
+  const scene = new THREE.Scene(), group = new THREE.Group(), culler = new SightlineCuller(scene, { occlusion: false });
+  const meshes = [0, 1].map(() => new THREE.Mesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial()));
+  for (const each of [scene, group, ...meshes]) each.matrixAutoUpdate = false;
+  scene.add(group, new THREE.Mesh(new THREE.BoxGeometry()).translateZ(50));
+  const draw = () => {
+    scene.updateMatrixWorld(), camera.updateMatrixWorld(), scene.onBeforeRender(renderer, scene, camera, null);
+    const { children } = scene;
+    return scene.onAfterRender(), meshes.map((mesh) => children.includes(mesh));
+  };
+  draw();
+  const places = () => [group, ...meshes].map(({ matrixWorld }) => matrixWorld.elements[14]);
+  group.matrixWorld.makeTranslation(0, 0, 7), meshes.forEach(({ matrixWorld }, i) => matrixWorld.makeTranslation(0, 0, [-6, 50][i]));
+  group.add(...meshes);
+  assert.deepEqual(places(), [7, -6, 50]);
+  assert.deepEqual([draw(), places()], [[true, false], [7, -6, 50]]);
+  culler.dispose();
+});
+
 test('a scene has one culler', async () => {
   const scene = new THREE.Scene(), culler = new SightlineCuller(scene);
   assert.throws(() => new SightlineCuller(scene), (error) => error instanceof SightlineError && /has one already/.test(error.message));

@@ -239,7 +239,6 @@ export class Inventory {
     const index = taken ? this.nodes.findIndex((node) => node.object === parent) : -1;
     if (this.#changed || index < 0 || !taken) return void (this.#changed = true);
     this.nodes[index]!.count += more;
-    child.updateWorldMatrix(true, false);
     this.#enter([this.#thing(child as Mesh, index, taken.kind, taken.count)]);
   }
   #remove(child: Object3D): void {
