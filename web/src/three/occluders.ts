@@ -75,12 +75,20 @@ export function markOf(mesh: Mesh): boolean | BufferGeometry | undefined {
   return wrong.add(mesh), false;
 }
 
+// Whether three, which draws of a mesh with several materials its groups alone, draws all of it, in the order in which it stands.
+function drawsAll({ geometry: { groups, index, attributes } }: Mesh, materials: readonly Material[]): boolean {
+  let end = 0;
+  for (const { start, count, materialIndex = 0 } of groups)
+    if (start <= end && materials[materialIndex]?.visible) end = Math.max(end, start + count);
+  return end >= (index ?? attributes.position!).count;
+}
+
 /** Whether a mesh hides what lies behind it, where it is drawn as its geometry stands. */
 export function mayOcclude(mesh: Mesh, override: Material | null, camera: Camera): boolean {
   const mark = markOf(mesh), { material } = mesh;
   if (mark === false || !mesh.visible || !mesh.layers.test(camera.layers) || isCalledWhenDrawn(mesh)) return false;
   // (What is called when it is drawn may move it.) Of several materials nobody says that they are all there are faces for.
-  if (Array.isArray(material) ? !mark : !material?.visible) return false;
+  if (Array.isArray(material) ? !mark || !drawsAll(mesh, material) : !material?.visible) return false;
   const materials = materialsOf(mesh, override);
   if (Array.isArray(material) && materials.length < material.length) return false; // three draws holes there
   return materials.every(mark ? isWhole : isSolid);

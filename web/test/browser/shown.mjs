@@ -134,6 +134,16 @@ const cases = {
     map.needsUpdate = true, (wall.userData.occluder = new THREE.BoxGeometry(19, 9, 0.5));
     Object.assign(wall.material, { map, alphaTest: 0.5, needsUpdate: true });
   }),
+  'a marked wall of several materials'({ scene, frame, hides }) {
+    const wall = walled(scene), { geometry } = wall, { groups } = geometry, gray = basic(0x808080);
+    const of = (count) => new Array(count).fill(gray);
+    scatter(scene), (wall.userData.occluder = true), (wall.material = of(6)), frame(), hides(50);
+    geometry.groups = [{ start: 0, count: Infinity, materialIndex: 5 }], frame(), hides(50);
+    geometry.groups = groups, (wall.material = of(4)), frame(); // which leaves the front out
+    wall.material = of(6), (geometry.groups = groups.filter(({ start }) => start !== 24)), frame();
+    wall.userData.occluder = new THREE.BoxGeometry(19, 9, 0.5), frame();
+    wall.userData.occluder = true, geometry.clearGroups(), frame();
+  },
   'a marked wall that is not drawn': unwalled((wall) => (wall.userData.occluder = true, wall.material.visible = false)),
   'instances that gain an attribute'({ scene, camera, frame }) {
     const count = 60, mesh = new THREE.InstancedMesh(new THREE.BoxGeometry(), shader(), count), matrix = new THREE.Matrix4();
