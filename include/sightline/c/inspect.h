@@ -68,7 +68,7 @@ SIGHTLINE_API sightline_inspector* sightline_inspector_create(void);
 SIGHTLINE_API void sightline_inspector_destroy(sightline_inspector* inspector);
 
 /** What sightline_cull() does for these views, in the same order whenever it is called. `culler` may be NULL;
- * what one that has culled these views with automatic occlusion drew for them the last time hides, too.
+ * what one drew for them in its last cull with automatic occlusion hides, too.
  * Errors: as of sightline_cull(). Cost: some times a cull's. Threads: only reads the world, the occlusions
  * and the culler. Allocates: nothing once it has seen its largest view. */
 SIGHTLINE_API sightline_status sightline_inspect(sightline_inspector* inspector, const sightline_world* world,
