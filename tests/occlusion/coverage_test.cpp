@@ -311,6 +311,18 @@ TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   }
 }
 
+// The same of a mesh that stands where `to` places it, drawn alone.
+void hold_placed(Random& random, const View& view, const scene::Shape& shape, const OccluderMesh& mesh,
+                 const Mat4& to, Held& counted) {
+  const ExactRays rays(view);
+  const geometry::ExactAffine there = geometry::exact_affine(to);
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin({view, {}}));
+  ASSERT_TRUE(buffer.draw_mesh(mesh, to));
+  hold_pixels(
+      random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape, there); }, counted);
+}
+
 // A small box far from the origin, close before the eye: corners that were moved there in single precision
 // would bend its walls, and lie nearer than these.
 TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
@@ -328,13 +340,7 @@ TEST(Coverage, OfMeshesThatAreMovedFarAwayIsNoNearerThanTheyAre) {
     const Vec3 before = random.inside({{-0.04f, -0.04f, 0.053f}, {0.04f, 0.04f, 0.08f}});
     camera.eye = geometry::to_vec3(there.linear * geometry::to_double(before) + there.translation);
     camera.forward = {at.x - camera.eye.x, at.y - camera.eye.y, at.z - camera.eye.z};
-    const View view = *make_view(camera, 32, 24);
-    const ExactRays rays(view);
-    OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
-    ASSERT_TRUE(buffer.draw_mesh(mesh, to));
-    hold_pixels(
-        random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape, there); }, held);
+    hold_placed(random, *make_view(camera, 32, 24), shape, mesh, to, held);
   }
   EXPECT_GT(static_cast<double>(held.drawn), 0.8 * static_cast<double>(held.whole));
 }
@@ -364,15 +370,7 @@ TEST(Coverage, OfMeshesThatAreSkewedIsNoNearerThanTheyAre) {
       const Camera camera{.eye = {at.x + away * from.x, at.y + away * from.y, at.z + away * from.z},
                           .forward = {-from.x, -from.y, -from.z},
                           .near_plane = 0.001f};
-      const View view = *make_view(camera, 48, 36);
-      const ExactRays rays(view);
-      OcclusionBuffer buffer;
-      ASSERT_TRUE(buffer.begin({view, {}}));
-      ASSERT_TRUE(buffer.draw_mesh(mesh, to));
-      hold_pixels(
-          random, buffer,
-          [&](double x, double y) { return nearest_of(rays, x, y, shape, geometry::exact_affine(to)); },
-          held);
+      hold_placed(random, *make_view(camera, 48, 36), shape, mesh, to, held);
     }
     const double share =
         static_cast<double>(held.drawn) / static_cast<double>(std::max<std::size_t>(held.whole, 1));
