@@ -6,7 +6,7 @@
 //
 // What the last update left on the screen is drawn into a depth buffer of the screen's own pixels; a tile whose bounds nobody
 // can see through it is masked, as a region of the renderer's own LoadRegionPlugin would mask it.
-import type { BufferAttribute, BufferGeometry, Camera, Mesh, Object3D } from 'three';
+import type { BufferAttribute, BufferGeometry, Camera, Material, Mesh, Object3D, Scene } from 'three';
 import { Box3, Matrix4, Vector3 } from 'three';
 import { refuse, said } from './errors.js';
 import './index.js';
@@ -15,7 +15,9 @@ import { OccluderMesh, OcclusionBuffer } from './occlusion.js';
 import { isLoaded, ready, supported } from './runtime.js';
 import { isInstancedGeometry, isStill, pointsOf, type Points } from './three/bounds.js';
 import { eyeOf, isRigid } from './three/eye.js';
-import { determinantOf, isInFrustum, markOf, mayOcclude, setFrustum, type Eye } from './three/occluders.js';
+import {
+  breaksDepth, breaksLateDepth, canBeHidden, determinantOf, isInFrustum, isSkewed, markOf, mayOcclude, setFrustum, type Eye,
+} from './three/occluders.js';
 import { release } from './three/release.js';
 
 export { ready, supported };
@@ -52,6 +54,9 @@ interface Made { mesh: OccluderMesh | null; both: boolean; points: Points; index
 const isPlain = (mesh: Mesh): boolean => isStill(mesh) && !isInstancedGeometry(mesh) &&
   !(mesh as { isInstancedMesh?: boolean }).isInstancedMesh && !(mesh as { isBatchedMesh?: boolean }).isBatchedMesh;
 
+// three cuts off what is below it.
+const isClipping = (object: Object3D): boolean => (object as { isClippingGroup?: boolean }).isClippingGroup === true;
+
 export class SightlineTilesPlugin {
   readonly name = 'SIGHTLINE_TILES_PLUGIN';
   /** Whether it masks; without it tiles are as the renderer has them. */
@@ -67,6 +72,8 @@ export class SightlineTilesPlugin {
   #seen: Block<Uint8Array> | undefined;
   #tiles: Tiles | undefined;
   #sights: Sight[] = [];
+  #override: Material | null = null;
+  #isLateBroken = false;
   #told = false;
 
   constructor(options?: SightlineTilesOptions) {
@@ -99,7 +106,7 @@ export class SightlineTilesPlugin {
     const { group } = this.#tiles!;
     (tile as Tile).engineData.boundingVolume.getAABB(this.#box);
     this.#box.applyMatrix4(group.matrixWorld);
-    if (this.#box.isEmpty() || this.#sights.some((sight) => this.#maySee(sight))) return false;
+    if (this.#box.isEmpty() || this.#sights.some((sight) => this.#maySee(sight)) || !this.#isOrdinary(tile as Tile)) return false;
     ++this.stats.hidden;
     target.inView = false;
     return true;
@@ -118,6 +125,7 @@ export class SightlineTilesPlugin {
     if (!tiles || !this.enabled || !isLoaded()) return;
     const sights: Sight[] = [];
     try {
+      if (!this.#isSound(tiles)) return;
       for (const camera of tiles.cameras) {
         const sight = this.#draw(camera, sights.length);
         if (!sight) return; // it may see everything
@@ -129,11 +137,30 @@ export class SightlineTilesPlugin {
     }
   };
 
+  // Whether what lies behind others cannot be seen, as far as is known of what is in the scene now.
+  #isSound({ group, visibleTiles }: Tiles): boolean {
+    let root: Object3D = group;
+    for (let above: Object3D | null = group; above; above = above.parent) {
+      if (isClipping(above) || above.renderOrder > 0) return false;
+      root = above;
+    }
+    this.#override = (root as Scene).overrideMaterial ?? null, (this.#isLateBroken = breaksLateDepth(root));
+    return !breaksDepth(root, this.#override) && [...visibleTiles].every((tile) => this.#isOrdinary(tile));
+  }
+  // Whether all that a tile holds, if it is loaded, can be hidden.
+  #isOrdinary({ engineData: { scene } }: Tile): boolean {
+    let is = true;
+    scene?.traverseVisible((object) => {
+      is &&= !isClipping(object) && canBeHidden(object as Mesh, this.#override, this.#isLateBroken);
+    });
+    return is;
+  }
+
   #draw(camera: Camera, index: number): Sight | undefined {
     const { cameraMap, visibleTiles, group } = this.#tiles!, width = cameraMap.get(camera)?.width ?? 0;
     if (!(width >= 1)) return undefined;
     const eye = eyeOf(camera, Math.min(Math.round(width), 8192), 8192);
-    if (!isRigid(eye)) return undefined;
+    if (!isRigid(eye) || isSkewed(eye)) return undefined;
     const buffer = (this.#buffers[index] ??= new OcclusionBuffer());
     buffer.begin(eye, { coverage: 'area' }); // for antialiasing, and canvases of another size
     const place = new Vector3(...(eye.origin as [number, number, number])).applyMatrix4(group.matrixWorldInverse);
@@ -155,7 +182,7 @@ export class SightlineTilesPlugin {
   // Returns its triangles, where it was drawn.
   #drawMesh(buffer: OcclusionBuffer, eye: Eye, object: Mesh, camera: Camera): number {
     const m = object.matrixWorld.elements;
-    if (!isPlain(object) || !mayOcclude(object, null, camera) || !isInFrustum(object) || determinantOf(m) <= 0) return 0;
+    if (!isPlain(object) || !mayOcclude(object, this.#override, camera) || !isInFrustum(object) || determinantOf(m) <= 0) return 0;
     const mark = markOf(object), isOther = typeof mark === 'object';
     const mesh = this.#meshOf(isOther ? mark : object.geometry, !isOther && [object.material].flat().every(({ side }) => side === 2));
     if (!mesh) return 0;

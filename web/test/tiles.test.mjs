@@ -26,9 +26,10 @@ test('tiles behind a wall are neither refined nor loaded, and the picture is the
 // What of three-tiles' interface the plug-in asks: a camera at 0 that looks down -z, and one tile that is drawn.
 function masks(change, again = () => {}) {
   const mesh = new THREE.Mesh(new THREE.BoxGeometry(20, 20, 1), new THREE.MeshBasicMaterial()), scene = new THREE.Group();
+  const world = new THREE.Scene(), group = new THREE.Group();
   mesh.position.set(0, 0, -10.5);
-  const changed = change(mesh), drawn = changed?.isObject3D ? changed : mesh, camera = new THREE.PerspectiveCamera(60, 2, 0.1, 1000), group = new THREE.Group();
-  scene.add(drawn), camera.updateMatrixWorld(), scene.updateMatrixWorld(), (group.matrixWorldInverse = new THREE.Matrix4());
+  const changed = change(mesh), drawn = changed?.isObject3D ? changed : mesh, camera = new THREE.PerspectiveCamera(60, 2, 0.1, 1000);
+  world.add(group.add(scene.add(drawn))), camera.updateMatrixWorld(), world.updateMatrixWorld(), (group.matrixWorldInverse = new THREE.Matrix4());
   const volume = (min, max) => ({ getAABB: (box) => box.set(min, max), distanceToPoint: () => 10 });
   const front = { engineData: { scene, boundingVolume: volume(new THREE.Vector3(-30, -30, -11), new THREE.Vector3(30, 30, -10)) } };
   const back = { engineData: { scene: null, boundingVolume: volume(new THREE.Vector3(-5, -5, -40), new THREE.Vector3(5, 5, -30)) } };
@@ -36,7 +37,7 @@ function masks(change, again = () => {}) {
   plugin.init(Object.assign(tiles, { group, cameras: [camera], cameraMap: new Map([[camera, { width: 320, height: 160 }]]), visibleTiles: new Set([front]) }));
   const isMasked = () => (tiles.dispatchEvent({ type: 'update-before' }), plugin.calculateTileViewError(back, {}));
   const first = isMasked();
-  again(drawn, camera), scene.updateMatrixWorld();
+  again(drawn, { world, group, camera, back }), world.updateMatrixWorld();
   const then = isMasked();
   plugin.dispose();
   return [first, then];
@@ -83,13 +84,30 @@ test('a tile is masked by what is drawn as its geometry stands, and by nothing e
     'marked by a geometry within': (mesh) => { mesh.material.displacementMap = null, (mesh.userData.occluder = new THREE.BoxGeometry(19, 19, 1)); },
     'of several materials, all of which it vouches for': (mesh) => { mesh.material = Array(6).fill(mesh.material), (mesh.userData.occluder = true); },
   })) assert.deepEqual(masks(change), [true, true], name);
+  const drawnThrough = (geometry, depthWrite = false) => new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ depthTest: false, depthWrite }));
+  const late = (geometry, back) => {
+    back.engineData.scene = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false }));
+  };
   // What has changed since the last update.
   const inside = (mesh) => mesh.geometry.translate(0, 0, 10.5); // about the eye, which sees the backs of its faces
   for (const [name, change, again] of [
     ['its points', () => {}, (mesh) => mesh.geometry.translate(60, 0, 0)], ['its index', () => {}, (mesh) => mesh.geometry.setIndex([0, 0, 0])],
     ['its range', () => {}, (mesh) => mesh.geometry.setDrawRange(0, 3)],
     ['its side', (mesh) => { inside(mesh), mesh.material.side = THREE.DoubleSide; }, (mesh) => { mesh.material.side = THREE.FrontSide; }],
-    ['the camera', () => {}, (mesh, camera) => camera.layers.set(3)],
+    ['the camera', () => {}, (_, { camera }) => camera.layers.set(3)],
+    // A mirror's, in front of which nothing is drawn.
+    ['the near plane', () => {}, (_, { camera }) => { camera.projectionMatrix.elements[6] += 0.1; }],
+    ['what clips', () => {}, (_, { world, group }) => world.add(Object.assign(new THREE.Group(), { isClippingGroup: true }).add(group))],
+    ['the order', () => {}, (_, { group }) => { group.renderOrder = 1; }],
+    ['what the scene overrides', () => {}, (_, { world }) => { world.overrideMaterial = new THREE.MeshBasicMaterial({ transparent: true }); }],
+    ['what writes depth over others', () => {}, ({ geometry }, { world }) => world.add(drawnThrough(geometry, true))],
+    ['what the tiles draw through others', () => {}, (mesh) => mesh.parent.add(drawnThrough(mesh.geometry))],
+    ['what the tile draws through others', () => {}, ({ geometry }, { back }) => { back.engineData.scene = drawnThrough(geometry); }],
+    ['what the tile draws late, where somebody may have emptied the depth buffer', () => {}, ({ geometry }, { world, back }) => {
+      world.add(Object.assign(new THREE.Object3D(), { onBeforeRender: (renderer) => renderer.clearDepth() }));
+      late(geometry, back);
+    }],
   ]) assert.deepEqual(masks(change, again), [true, false], name);
+  assert.deepEqual(masks(() => {}, ({ geometry }, { back }) => late(geometry, back)), [true, true]);
   assert.deepEqual(words, []);
 });

@@ -46,6 +46,7 @@ export class Inventory {
   readonly many = new Set<Thing>();
   readonly left: Left[] = [];
   readonly nodes: Node[] = [];
+  readonly #indexOf = new Map<Object3D, number>(); // in nodes
   /** Nobody's; kept so that compilers do not leave out what it sums. */
   sum = 0;
 
@@ -155,13 +156,11 @@ export class Inventory {
     for (const { object } of this.nodes) this.#listen(object, false);
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
-    for (const all of [this.things, this.many, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
+    for (const all of [this.things, this.many, this.#indexOf, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
     this.slots = this.size = this.#freed = 0;
     release(this.world), (this.world = new World());
-    this.nodes.push(nodeOf(this.#scene, -1));
-    this.#listen(this.#scene, true);
     const found: Thing[] = [];
-    for (const child of this.#scene.children) this.#walk(child, 0, found);
+    this.#walkBelow(this.#scene, -1, found);
     this.#enter(found);
     this.#changed = false;
   }
@@ -170,7 +169,11 @@ export class Inventory {
     const taken = classify(object);
     if (taken) return void found.push(this.#thing(object as Mesh, parent, taken.kind, taken.count));
     if (!isThrough(object)) return void this.left.push({ object, parent });
+    this.#walkBelow(object, parent, found);
+  }
+  #walkBelow(object: Object3D, parent: number, found: Thing[]): void {
     const index = this.nodes.push(nodeOf(object, parent)) - 1;
+    this.#indexOf.set(object, index);
     this.#listen(object, true);
     for (const child of object.children) this.#walk(child, index, found);
   }
@@ -235,9 +238,8 @@ export class Inventory {
 
   // Meshes come and go one by one; for all else the scene is walked anew.
   #add(child: Object3D, parent: Object3D, more: number): void {
-    const taken = classify(child);
-    const index = taken ? this.nodes.findIndex((node) => node.object === parent) : -1;
-    if (this.#changed || index < 0 || !taken) return void (this.#changed = true);
+    const taken = classify(child), index = this.#indexOf.get(parent);
+    if (this.#changed || index === undefined || !taken) return void (this.#changed = true);
     this.nodes[index]!.count += more;
     this.#enter([this.#thing(child as Mesh, index, taken.kind, taken.count)]);
   }

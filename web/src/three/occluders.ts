@@ -144,14 +144,16 @@ export interface Eye {
   near: number;
 }
 
+/** Whether the near plane stands askew, as mirrors have it: it opens occluders wherever it likes. */
+export const isSkewed = ({ eyeToClip }: Eye): boolean => eyeToClip[2] !== 0 || eyeToClip[6] !== 0;
+
 // What looks large, ascending; arrays that are kept, as they are filled in every frame.
 const found = { slots: new Uint32Array(0), sizes: new Float64Array(0), order: new Uint32Array(0), count: 0 };
 
 /** Draws this frame's occluders among the slots in view, ascending; returns how many. */
 export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye: Eye, camera: Camera,
   override: Material | null, slots: Uint32Array): number {
-  // A near plane that stands askew, as mirrors have it, opens occluders wherever it likes.
-  if (eye.eyeToClip[2] !== 0 || eye.eyeToClip[6] !== 0) return 0;
+  if (isSkewed(eye)) return 0;
   const flat = eye.eyeToClip[15] === 1;
   if (found.slots.length < slots.length) {
     const room = 2 * slots.length;
