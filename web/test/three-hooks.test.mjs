@@ -85,6 +85,17 @@ test('what is added keeps the matrix that the user has given it, and is culled b
   culler.dispose();
 });
 
+test('stats are of the frame, not of what was rendered within it', async () => {
+  await ready;
+  const scene = new THREE.Scene(), culler = new SightlineCuller(scene, { occlusion: false }), away = camera.clone();
+  away.rotateY(Math.PI), away.updateMatrixWorld(), camera.updateMatrixWorld();
+  scene.add(...[-6, -8, 50].map((z) => new THREE.Mesh(new THREE.BoxGeometry()).translateZ(z))), scene.updateMatrixWorld();
+  const within = (eye, then = () => {}) => (scene.onBeforeRender(renderer, scene, eye, null), then(), scene.onAfterRender());
+  within(camera, () => within(away, () => assert.equal(culler.stats.drawn, 1)));
+  assert.deepEqual(culler.stats, { objects: 3, drawn: 2, hidden: 0, occluders: 0 });
+  culler.dispose();
+});
+
 test('a scene has one culler', async () => {
   const scene = new THREE.Scene(), culler = new SightlineCuller(scene);
   assert.throws(() => new SightlineCuller(scene), (error) => error instanceof SightlineError && /has one already/.test(error.message));

@@ -56,7 +56,7 @@ interface Renderer {
 /** What three walks, and which of instances it draws. */
 interface Pass { ranges: Map<Thing, Range>; list: Object3D[] }
 interface Shadow { light: ShadowLight; view: Eye; pass: Pass }
-interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[] }
+interface Frame { children: Object3D[]; restore: (() => void)[]; narrowed: Narrowing[]; list: Object3D[]; stats?: SightlineStats }
 
 const mostViews = 8;
 const restFrames = 16;
@@ -204,13 +204,13 @@ export class SightlineCuller {
   }
   // What the render around one takes away of its own, and has back after it.
   #leave(outer: Frame): void {
-    this.#scene.children = outer.children;
+    this.#scene.children = outer.children, (outer.stats = { ...this.stats });
     for (const each of outer.narrowed) each.undo();
   }
   #outer(): void {
     const outer = this.#frames.at(-1);
     if (!outer) return;
-    this.#scene.children = outer.list;
+    this.#scene.children = outer.list, Object.assign(this.stats, outer.stats);
     for (const each of outer.narrowed) each.apply();
   }
   #cull(renderer: Renderer, camera: Camera, frame: Frame, nested: boolean): void {
