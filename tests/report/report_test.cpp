@@ -9,6 +9,7 @@
 
 #include "support/exact_methods.hpp"
 #include "support/full_disk.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/canvas.hpp"
@@ -114,7 +115,8 @@ TEST(Report, FullDiskOrAFileInTheWayIsAnError) {
   const TemporaryFolder folder;
   {
     const test::FullDisk full(2000);
-    EXPECT_THROW(write_report(folder / "full", m.comparison, m.scene, m.snapshot), Error);
+    EXPECT_THAT(test::refusal([&] { write_report(folder / "full", m.comparison, m.scene, m.snapshot); }),
+                testing::StartsWith((folder / "full/item-buffer.png: cannot be written").string()));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "full"));
   io::write_file(folder / "file", "in the way");
@@ -207,6 +209,35 @@ TEST(Pictures, TopViewShowsALostObjectInItsColour) {
   method.outcomes[0] = Outcome::lost;
   EXPECT_THAT(drawn(), HasSubstr(lost));
   EXPECT_THAT(drawn(), testing::MatchesRegex("<svg .* width=\"[0-9]+\" .*</svg>\n"));
+}
+
+// What lies beneath is hidden by the page's own colour first: blue on amber would be some grey, as what is
+// culled.
+TEST(Pictures, TopViewBlendsNoTwoOutcomes) {
+  Scene scene = generate_world("regular?columns=30&rows=30&spacing=10");
+  Snapshot snapshot;
+  snapshot.view = or_throw(make_view({}, 64, 36));
+  Snapshot::Method method{"m", std::vector<Outcome>(scene.size(), Outcome::culled), {}};
+  for (std::size_t i = 0; i < kOutcomes; ++i) method.outcomes[i] = static_cast<Outcome>(i);
+  const std::string svg = report::draw_top_view(scene, snapshot, method, 300);
+  std::size_t at = 0;
+  for (const char* colour : {"#949ca8", "#e29e26", "#2084d0", "#de265c"}) {
+    const std::size_t cleared = svg.find("<g fill=\"Canvas\">", at);
+    at = svg.find(std::string("fill=\"") + colour, at);
+    ASSERT_NE(at, std::string::npos) << colour << ", or in another order";
+    EXPECT_LT(cleared, at) << colour;
+  }
+  EXPECT_THAT(svg, HasSubstr("color-scheme:light dark")) << "the page's colour is its reader's";
+}
+
+// On a narrow page they are the ones that are seen.
+TEST(Report, TableBeginsWithPromisesAndLosses) {
+  const Material m;
+  const std::string page = report::make_page({m.comparison, m.scene, m.snapshot, "i.png",
+                                              std::vector<std::string>(m.snapshot.methods.size(), "t.png")});
+  EXPECT_THAT(page, HasSubstr("<tr><th>method<th>guarantee<th>lost objects<th>lost pixels<th>kept<th>"));
+  EXPECT_THAT(page, HasSubstr("<tr><td>none<td>exact<td class=\"good\">0<td class=\"good\">0<td>144<td>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"hint\" hidden>"));
 }
 
 TEST(Pictures, TopViewOfManyObjectsStaysSmall) {

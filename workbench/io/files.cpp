@@ -33,7 +33,10 @@ std::string reason(int error) {
 
 void write_pieces(File file, const std::filesystem::path& named,
                   std::span<const std::span<const std::byte>> pieces) {
-  const auto fail = [&] { throw Error(named.string() + ": cannot be written: " + reason(errno)); };
+  const auto fail = [&] {
+    const std::string why = reason(errno);
+    throw Error(name_asked_for(named).string() + ": cannot be written: " + why);
+  };
   if (!file) fail();
   for (const std::span<const std::byte> piece : pieces) {
     if (!piece.empty() && std::fwrite(piece.data(), 1, piece.size(), file.get()) != piece.size()) fail();
@@ -113,11 +116,12 @@ void write_file(const std::filesystem::path& path, std::span<const std::span<con
   if (device) return write_pieces(File(std::fopen(path.c_str(), "wb")), path, pieces);
   // A short name: with some letters more, one as long as a name may be could not be made.
   static std::atomic<unsigned> count = 0;
-  const Unfinished temporary(to.path.parent_path() / fmt::format("sightline-{}-{}.tmp", ::getpid(), count++));
+  const Unfinished temporary(to.path.parent_path() / fmt::format("sightline-{}-{}.tmp", ::getpid(), count++),
+                             path);
   write_pieces(File(std::fopen(temporary.path().c_str(), "wbx")), path, pieces);
   std::error_code failed;
   std::filesystem::rename(temporary.path(), to.path, failed);
-  if (failed) throw Error(path.string() + ": cannot be written: " + failed.message());
+  if (failed) throw Error(name_asked_for(path).string() + ": cannot be written: " + failed.message());
 }
 
 }  // namespace sightline::io

@@ -27,7 +27,8 @@ void take_away(const std::filesystem::path& path) noexcept {
 
 }  // namespace
 
-Unfinished::Unfinished(std::filesystem::path path) : path_(std::move(path)) {
+Unfinished::Unfinished(std::filesystem::path path, std::filesystem::path asked_for)
+    : path_(std::move(path)), asked_for_(std::move(asked_for)) {
   const std::lock_guard lock(known().mutex);
   known().all.push_back(this);
 }
@@ -41,6 +42,15 @@ Unfinished::~Unfinished() {
 void Unfinished::keep() noexcept {
   const std::lock_guard lock(known().mutex);
   path_.clear();
+}
+
+std::filesystem::path name_asked_for(const std::filesystem::path& path) {
+  const std::lock_guard lock(known().mutex);
+  for (const Unfinished* one : known().all) {
+    const std::filesystem::path& folder = one->path();
+    if (!folder.empty() && path.parent_path() == folder) return one->asked_for() / path.filename();
+  }
+  return path;
 }
 
 void remove_unfinished() noexcept {

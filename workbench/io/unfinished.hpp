@@ -9,8 +9,8 @@ namespace sightline::io {
 /// Threads: any may have some at once.
 class Unfinished {
 public:
-  /// Nothing needs to stand there yet.
-  explicit Unfinished(std::filesystem::path path);
+  /// Nothing needs to stand there yet. `asked_for` is what it will be, by the name that the user gave.
+  Unfinished(std::filesystem::path path, std::filesystem::path asked_for);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
@@ -18,10 +18,14 @@ public:
   /// It is finished, and stays.
   void keep() noexcept;
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::filesystem::path& asked_for() const noexcept { return asked_for_; }
 
 private:
-  std::filesystem::path path_;
+  std::filesystem::path path_, asked_for_;
 };
+
+/// The name to tell the user of a path: of a file in an unfinished folder, the one that it will have.
+std::filesystem::path name_asked_for(const std::filesystem::path& path);
 
 /// Takes away all that there is, for a program that ends at once: nobody can begin anything afterwards.
 void remove_unfinished() noexcept;

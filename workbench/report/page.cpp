@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include <sightline/version.hpp>
 
@@ -64,14 +66,30 @@ std::string cell_html(const std::string& column, const std::string& cell) {
   return fmt::format("<td>{} <span class=\"range\">{}</span>", cell.substr(0, range), cell.substr(range + 1));
 }
 
+/// The table's columns from left to right: on a narrow page the first ones are those that are seen, and what
+/// was lost stands beside what was promised.
+std::vector<std::size_t> columns_by_weight(const Table& table) {
+  std::vector<std::size_t> columns(table.header.size());
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  const auto place = [&](std::size_t c) {
+    return table.header[c].starts_with("lost ") ? 0 : table.header[c] == "fps" ? 1 : 2;
+  };
+  std::ranges::stable_sort(columns.begin() + static_cast<std::ptrdiff_t>(table.text_columns), columns.end(),
+                           {}, place);
+  return columns;
+}
+
 std::string table_html(const measure::Comparison& comparison) {
   const Table table = summary_table(comparison);
-  std::string out = "<div class=\"wide\"><table><thead><tr>";
-  for (const std::string& column : table.header) out += "<th>" + escape(column);
+  const std::vector<std::size_t> columns = columns_by_weight(table);
+  std::string out =
+      "<p class=\"hint\" hidden>The table goes on to the right: scroll it sideways.</p>\n"
+      "<div class=\"wide\" tabindex=\"0\"><table><thead><tr>";
+  for (const std::size_t c : columns) out += "<th>" + escape(table.header[c]);
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c) out += cell_html(table.header[c], row[c]);
+    for (const std::size_t c : columns) out += cell_html(table.header[c], row[c]);
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";

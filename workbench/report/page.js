@@ -99,5 +99,13 @@
     ];
   }
   draw();
+
+  // A table that does not fit looks whole: it says so.
+  function hint() {
+    const table = document.querySelector(".wide");
+    document.querySelector(".hint").hidden = table.scrollWidth <= table.clientWidth;
+  }
+  hint();
+  addEventListener("resize", hint);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 })();

@@ -37,11 +37,11 @@ PageFolder::PageFolder(const fs::path& target) {
       refuse("an empty folder, a new one, or an earlier page of ours to replace");
     if (failed || access(target_.c_str(), W_OK | X_OK) != 0) refuse("a folder open to writing");
   } else {
-    if (fs::create_directories(target_, failed)) made_target_.emplace(target_);
+    if (fs::create_directories(target_, failed)) made_target_.emplace(target_, target);
     if (failed) refuse("a folder or a place for one");
   }
   static std::atomic<unsigned> count = 0;
-  partial_.emplace(target_.parent_path() / fmt::format(".sightline-{}-{}.tmp", getpid(), count++));
+  partial_.emplace(target_.parent_path() / fmt::format(".sightline-{}-{}.tmp", getpid(), count++), target);
   fs::create_directory(path(), failed);
   if (failed) refuse("a place beside it for what is not finished");
 }

@@ -119,17 +119,22 @@ std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<O
     (covers ? wide : boxes).push_back(box);
   }
   const Colour c = outcome_colour(outcome);
-  const double fill = outcome == Outcome::culled ? 0.1 : outcome == Outcome::excess ? 0.28 : 0.47;
-  const double edge = outcome == Outcome::culled ? 0.35 : outcome == Outcome::excess ? 0.67 : 1;
-  const auto path = [&](std::vector<FlatBox> some, double opacity) {
-    if (some.empty()) return std::string();
-    return fmt::format(
-        R"(<path fill="#{0:02x}{1:02x}{2:02x}" stroke="#{0:02x}{1:02x}{2:02x}" fill-opacity="{3}" )"
-        R"(stroke-opacity="{4}" stroke-width="{5}" d="{6}"/>)",
-        c.r, c.g, c.b, opacity, edge, kUnits * (outcome == Outcome::lost ? 2 : 1),
-        path_of(std::move(some), kMostBoxes));
+  const double fill = outcome == Outcome::culled ? 0.1 : 0.55, edge = outcome == Outcome::culled ? 0.35 : 1;
+  const std::string name = fmt::format("outcome-{}", static_cast<unsigned>(outcome));
+  const auto colours = [&](double opacity) {
+    return fmt::format(R"(fill="#{0:02x}{1:02x}{2:02x}" stroke="#{0:02x}{1:02x}{2:02x}" fill-opacity="{3}" )"
+                       R"(stroke-opacity="{4}" stroke-width="{5}")",
+                       c.r, c.g, c.b, opacity, edge, kUnits * (outcome == Outcome::lost ? 2 : 1));
   };
-  return path(std::move(boxes), fill) + path(std::move(wide), 0);
+  std::string svg;
+  // On the page's own colour, which hides what was drawn before: no two outcomes blend into a third colour.
+  if (!boxes.empty()) {
+    svg += fmt::format(R"(<g fill="Canvas"><path id="{0}" d="{1}"/></g><use href="#{0}" {2}/>)", name,
+                       path_of(std::move(boxes), kMostBoxes), colours(fill));
+  }
+  if (!wide.empty())
+    svg += fmt::format(R"(<path {} d="{}"/>)", colours(0), path_of(std::move(wide), kMostBoxes));
+  return svg;
 }
 
 }  // namespace
@@ -176,7 +181,8 @@ std::string draw_top_view(const Scene& scene, const Snapshot& snapshot, const Sn
                           std::uint32_t width) {
   const Map map(extent(scene), eye_position(snapshot.view), kUnits * width);
   std::string svg =
-      fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="{}" viewBox="0 0 {} {}">)",
+      fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="{}" viewBox="0 0 {} {}" )"
+                  R"(style="color-scheme:light dark">)",
                   map.width() / kUnits, map.height() / kUnits, map.width(), map.height());
   // The rarer and graver the outcome, the later it is drawn, and so on top.
   for (const Outcome outcome : {Outcome::culled, Outcome::excess, Outcome::visible, Outcome::lost})
