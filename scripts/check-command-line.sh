@@ -131,8 +131,10 @@ expect 0 "(no|yes)" "$sightline" generate --help
 expect 0 "(leaves|grate|sides)" "$sightline" generate --help
 
 # No output is written over another, or over what is read; none is asked for in vain.
-refused "one place" "$sightline" bake forest.glb -o forest.glb
-refused "one place" "$sightline" bake "$world" -o same.pvs --cells ./same.pvs
+ln -s forest.glb forest.pvs
+refused "one place" "$sightline" bake forest.glb -o forest.pvs
+rm forest.pvs
+refused "one place" "$sightline" bake "$world" -o same --cells ./same
 refused "one place" "$sightline" occluders forest.glb -o "$PWD/forest.glb"
 refused "one place" "$sightline" compare "$world" --report page --json page/index.html
 refused "no visible sets of its own" "$sightline" bake "$world" -o no.pvs --cells no.csv
@@ -141,7 +143,7 @@ refused "expected a name" "$sightline" compare "$world" --report ""
 mkdir here
 (cd here && expect 0 "vfc-vc" "$sightline" compare "$world" --methods none,vfc-vc --frames 1 --size 16x12 --no-draw --path near --report . && [ -s index.html ] && exit $failed) ||
   fail "compare --report . wrote no page"
-[ ! -e no.pvs ] && [ ! -e same.pvs ] || fail "bake wrote what it refused"
+[ ! -e no.pvs ] && [ ! -e same ] || fail "bake wrote what it refused"
 grep -q "<html" page/index.html || fail "a refused call changed an earlier page"
 
 # A name as long as one may be; a device that is no device to replace.
@@ -156,6 +158,8 @@ fi
 # A file is what its name says.
 for name in x.obj x.gltf x.glb.png; do refused "expected a name that ends in .glb" "$sightline" generate cards -o $name; done
 refused "expected a name that ends in .glb" "$sightline" occluders "$world" -o x.ply
+refused "expected a name that ends in .pvs" "$sightline" bake "$world" -o x.png
+refused "expected a name that ends in .csv" "$sightline" bake "$world" -o x.pvs --cells x.pvs.txt
 refused "expected a name that ends in .png" "$sightline" casters "$world" --picture x.jpg
 expect 0 "3 objects" "$sightline" generate 'forest?trees=3' -o upper.GLB
 expect 0 "objects     3 " "$sightline" info upper.GLB
@@ -250,6 +254,7 @@ refused "/dev/full" "$sightline" methods --json /dev/full
 refused "nowhere" "$sightline" generate forest?trees=10 -o nowhere/forest.glb
 if [ "$(id -u)" -eq 0 ] && mkdir full && mount -t tmpfs -o size=64k tmpfs full 2>/dev/null; then
   refused "full/forest.glb" "$sightline" generate forest?trees=3000 -o full/forest.glb
+  expect 2 "sightline: full/page/" "$sightline" compare "$world" --methods none --frames 1 --size 16x12 --no-draw --report full/page
   [ -z "$(ls -A full)" ] || fail "a full disk keeps: $(ls -A full)"
   umount full
 else

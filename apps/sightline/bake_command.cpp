@@ -169,7 +169,7 @@ void add_bake(CLI::App& app, int& exit) {
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("-o,--output", options->file, "the file to write")
       ->required()
-      ->check(output_file())
+      ->check(output_file(".pvs"))
       ->type_name("FILE.pvs");
   command.add_option("--cell", options->bake.cell, "metres along each side of a cell")
       ->check(number(0.01, 1e6))
@@ -197,7 +197,7 @@ void add_bake(CLI::App& app, int& exit) {
       ->capture_default_str();
   command
       .add_option("--cells", options->cells, "write the comparison with the level's own PVS, cell by cell")
-      ->check(output_file())
+      ->check(output_file(".csv"))
       ->type_name("FILE.csv");
   on_run(command, exit, [options] { return run_bake(*options); });
 }
