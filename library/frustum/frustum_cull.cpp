@@ -170,8 +170,9 @@ std::size_t cull(const Frustum& frustum, const geometry::SphereSpan& spheres, Ob
 Status check(std::size_t count, bool sound, std::span<ObjectId> visible) {
   if (!sound) return {StatusCode::bad_argument, "cull: a pointer is null or a stride too short"};
   if (count >= kNoObject) return {StatusCode::bad_argument, "cull: expected fewer than 2^32 - 1 elements"};
+  static_assert(kCullPadding == 64, "as the sentence says");
   if (visible.size() < count + kCullPadding)
-    return {StatusCode::buffer_too_small, "cull: expected room for the count and kCullPadding indices"};
+    return {StatusCode::buffer_too_small, "cull: expected room for 64 more indices than there are elements"};
   return {};
 }
 

@@ -57,7 +57,7 @@ void set_size(DepthTiles& t, TileMemory& memory, std::uint32_t width, std::uint3
 Status check_begun(const DepthTiles& tiles) noexcept {
   if (tiles.begun) return {};
   return {StatusCode::stale_buffer,
-          "occlusion: the buffer was never begun, expected begin() with a view first"};
+          "occlusion: the buffer was never begun, expected a begin with a view first"};
 }
 
 float nearness_at(const DepthTiles& t, std::uint32_t x, std::uint32_t y) noexcept {

@@ -87,13 +87,14 @@ Status check_call(const World& world, std::span<const CullView> views, const Cul
   if (const Status sound = check_views(views, options.jobs, options.zones); !sound) return sound;
   const std::size_t needed = cull_capacity(world, options);
   if (output.ids.size() < needed)
-    return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() ids"};
+    return {StatusCode::buffer_too_small, "cull: expected room for as many ids as the cull capacity"};
   if (!output.masks.empty() && output.masks.size() < needed)
-    return {StatusCode::buffer_too_small, "cull: expected room for cull_capacity() masks, or none"};
+    return {StatusCode::buffer_too_small,
+            "cull: expected room for as many masks as the cull capacity, or none"};
   for (const std::span<std::uint8_t> bytes : {output.levels, output.fades})
     if (!bytes.empty() && bytes.size() < needed)
       return {StatusCode::buffer_too_small,
-              "cull: expected room for cull_capacity() levels and fades, or none"};
+              "cull: expected room for as many levels and fades as the cull capacity, or none"};
   if (output.levels.empty() && !output.fades.empty())
     return {StatusCode::bad_argument, "cull: fades without levels, expected both or no fades"};
   const Levels* const levels = output.levels.empty() ? nullptr : WorldAccess::state(world).levels.get();

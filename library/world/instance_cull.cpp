@@ -149,7 +149,7 @@ Status check_worlds(const InstancesState& instances) {
     const WorldState& world = WorldAccess::state(*placed.world);
     if (!holds_all(placed.bounds, bounds_of(world)))
       return bad_option(
-          "instances: a world reaches elsewhere since its instances were placed, expected update()", w);
+          "instances: a world reaches elsewhere since its instances were placed, expected an update", w);
   }
   return {};
 }

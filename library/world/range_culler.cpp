@@ -117,8 +117,9 @@ Result<RangeResult> RangeCuller::cull(const World& world, const ObjectOrder& ord
   if (const Status sound = world::check_views(views, options.jobs, options.zones); !sound) return sound;
   const world::OrderState& slots = OrderAccess::state(order);
   if (!slots.is_of(WorldAccess::state(world)))
-    return Status(StatusCode::stale_buffer,
-                  "ranges: the order is not that of the world as it is now, expected update() after changes");
+    return Status(
+        StatusCode::stale_buffer,
+        "ranges: the order is not that of the world as it is now, expected an update after changes");
   world::RangeCullerState& state = *state_;
   state.inner.zones = options.zones;
   const world::Zone zone(options.zones, "sightline: cull");

@@ -203,7 +203,7 @@ Status ShadowCasters::receive(const World& world, std::span<const ObjectId> visi
                               const OcclusionBuffer* depth) {
   State& s = *state_;
   if (!s.begun)
-    return {StatusCode::stale_buffer, "shadows: casters were never begun, expected begin() first"};
+    return {StatusCode::stale_buffer, "shadows: casters were never begun, expected a begin first"};
   if (depth && (!depth->begun() || depth->view() != s.camera))
     return {StatusCode::stale_buffer,
             "shadows: the depth was begun with another view than the casters' camera"};

@@ -29,7 +29,8 @@ Status check_direction(const Vec3& direction) {
 }
 
 Status check_light(const Light& light) {
-  if (light.kind > LightKind::point) return bad("light: the kind is none, expected one of LightKind");
+  if (light.kind > LightKind::point)
+    return bad("light: the kind is none, expected directional, spot or point");
   if (light.kind != LightKind::point)
     if (const Status sound = check_direction(light.direction); !sound) return sound;
   if (light.kind == LightKind::directional) {

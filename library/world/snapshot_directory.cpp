@@ -102,10 +102,10 @@ Result<SnapshotDirectory> read_directory(Bytes bytes) {
   SnapshotHead head;
   SnapshotTail tail;
   if (bytes.size() < sizeof head + sizeof tail)
-    return damaged("snapshot: it is too short, expected what save() wrote", bytes.size());
+    return damaged("snapshot: it is too short, expected a saved world", bytes.size());
   std::memcpy(&head, bytes.data(), sizeof head);
   std::memcpy(&tail, bytes.data() + bytes.size() - sizeof tail, sizeof tail);
-  if (head.magic != kSnapshotMagic) return damaged("snapshot: it is none, expected what save() wrote", 0);
+  if (head.magic != kSnapshotMagic) return damaged("snapshot: it is none, expected a saved world", 0);
   if (head.version != kSnapshotVersion)
     return damaged("snapshot: it is of another version, expected 1", offsetof(SnapshotHead, version));
   if (tail.magic != kSnapshotMagic)

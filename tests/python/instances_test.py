@@ -99,7 +99,7 @@ class Instances(Case):
         self.bad("while an instance shows it", instances.remove_world, name)
         world.insert(np.array([[[-1, -1, -6], [1, 1, -5]]], float))
         culler = sightline.InstanceCuller()
-        self.bad("expected update()", culler.cull, instances, sightline.camera(), index=name)
+        self.bad("expected an update", culler.cull, instances, sightline.camera(), index=name)
         instances.update()
         self.assertEqual(len(culler.cull(instances, sightline.camera())[0]), 1)
         casters = sightline.ShadowCasters()
