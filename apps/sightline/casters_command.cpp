@@ -91,7 +91,10 @@ void add_casters(CLI::App& app, int& exit) {
   command.add_option("--reach", o.lookup.reach, "texels to either side that each point asks, too")
       ->transform(whole(0, 7))
       ->capture_default_str();
-  command.add_option("--offset", o.lookup.metres, "metres that each point moves along its normal before")
+  command
+      .add_option("--offset", o.lookup.metres,
+                  "metres that each point moves along its normal before, which keeps surfaces from shading "
+                  "themselves")
       ->check(number(0, 1000))
       ->capture_default_str();
   command.add_option("--picture", call->picture, "write the last view's lit picture there")

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include <sightline/workbench/error.hpp>
@@ -29,6 +30,8 @@ TEST_P(CasterProof, DroppedCastersChangeNoLitPicture) {
   EXPECT_GT(found.shaded_pixels, found.pixels / 20);
   EXPECT_LE(found.towards_it, found.in_light);
   EXPECT_LT(10 * found.kept, 9 * found.in_light);
+  EXPECT_GT(std::ranges::count(found.picture.pixels, 0xffe6d4c2u), 0) << "a sky";
+  EXPECT_EQ(std::ranges::count(found.picture.pixels, 0xff000000u), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CasterProof,

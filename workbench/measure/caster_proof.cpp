@@ -13,6 +13,8 @@ namespace sightline::measure {
 
 namespace {
 
+constexpr std::uint32_t kSky = 0xffe6d4c2;  // as pixels are: alpha, blue, green, red
+
 Vec3 plus(const Vec3& a, float by, const Vec3& b) {
   return {a.x + by * b.x, a.y + by * b.y, a.z + by * b.z};
 }
@@ -111,7 +113,8 @@ CasterEvidence prove_casters(device::Renderer& renderer, std::span<const Camera>
     ++evidence.views;
     if (progress) progress(i + 1, cameras.size());
   }
-  for (std::uint32_t& pixel : evidence.picture.pixels) pixel |= 0xff000000u;
+  // Where nothing is drawn is a sky: in black no edge would show.
+  for (std::uint32_t& pixel : evidence.picture.pixels) pixel = pixel == 0 ? kSky : pixel | 0xff000000u;
   return evidence;
 }
 

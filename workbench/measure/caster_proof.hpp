@@ -30,7 +30,7 @@ struct CasterEvidence {
   std::uint64_t kept = 0;        ///< and of these, those whose shadow can fall on something visible
   std::uint64_t pixels = 0, shaded_pixels = 0, different_pixels = 0;  ///< shaded: not wholly lit
   std::optional<std::size_t> first_different;                         ///< the index of a camera
-  device::Picture picture;  ///< the last view's, of all casters; every alpha 255
+  device::Picture picture;  ///< the last view's, of all casters, under a sky; every alpha 255
 };
 
 /// Culls each camera by frustum and occluders, then its light's casters by what is left. A sun stands
