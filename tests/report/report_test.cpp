@@ -222,12 +222,29 @@ TEST(Pictures, TopViewBlendsNoTwoOutcomes) {
   const std::string svg = report::draw_top_view(scene, snapshot, method, 300);
   std::size_t at = 0;
   for (const char* colour : {"#949ca8", "#e29e26", "#2084d0", "#de265c"}) {
-    const std::size_t cleared = svg.find("<g fill=\"Canvas\">", at);
+    const std::size_t cleared = svg.find("<g fill=\"Canvas\" ", at);
     at = svg.find(std::string("fill=\"") + colour, at);
     ASSERT_NE(at, std::string::npos) << colour << ", or in another order";
     EXPECT_LT(cleared, at) << colour;
   }
   EXPECT_THAT(svg, HasSubstr("color-scheme:light dark")) << "the page's colour is its reader's";
+}
+
+// The ground of a city is visible, and much that stands on it is kept in vain.
+TEST(Pictures, TopViewDrawsGroundBeneathWhatStandsOnIt) {
+  Scene scene;
+  for (const float half : {100.0f, 8.0f, 1.0f}) {
+    scene.mesh.push_back(0);
+    scene.bounds.push_back({{-half, 0, -half}, {half, 1, half}});
+  }
+  Snapshot snapshot;
+  snapshot.view = or_throw(make_view({}, 64, 36));
+  const Snapshot::Method method{"m", {Outcome::culled, Outcome::visible, Outcome::excess}, {}};
+  const std::string svg = report::draw_top_view(scene, snapshot, method, 300);
+  const std::size_t ground = svg.find("fill=\"#2084d0"), kept = svg.find("fill=\"#e29e26");
+  ASSERT_NE(kept, std::string::npos);
+  EXPECT_LT(ground, kept);
+  EXPECT_LT(kept, svg.find("fill=\"none\" stroke=\"#949ca8")) << "what covers all is an outline";
 }
 
 // On a narrow page they are the ones that are seen.

@@ -1,6 +1,7 @@
 #include "workbench/report/top_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -103,38 +104,47 @@ std::string eye_svg(const Map& map, const View& view) {
                            at.x, at.y, 8 * kUnits, 2.5 * kUnits);
 }
 
-std::string outcome_svg(const Map& map, const Boxes& bounds, const std::vector<Outcome>& outcomes,
-                        Outcome outcome) {
-  std::vector<FlatBox> boxes, wide;
+// The share of the picture that a box covers. Ground is drawn beneath all that stands on it; what covers much
+// of the world, such as a sky, would hide the rest, and its outline has to do.
+enum Size : std::uint8_t { ground, small, outlined };
+constexpr double kGround = 1.0 / 400, kOutlined = 0.1;
+
+// By outcome and size.
+using SortedBoxes = std::array<std::array<std::vector<FlatBox>, 3>, kOutcomes>;
+
+SortedBoxes sort_boxes(const Map& map, const Boxes& bounds, const std::vector<Outcome>& outcomes) {
+  SortedBoxes sorted;
   const double whole = static_cast<double>(map.width()) * map.height();
   for (ObjectId object = 0; object < bounds.size(); ++object) {
-    if (outcomes[object] != outcome) continue;
     const Point low = map(bounds[object].min.x, bounds[object].min.z),
                 high = map(bounds[object].max.x, bounds[object].max.z);
-    const FlatBox box{
-        static_cast<std::int32_t>(std::lround(low.x)), static_cast<std::int32_t>(std::lround(low.y)),
-        static_cast<std::int32_t>(std::lround(high.x)), static_cast<std::int32_t>(std::lround(high.y))};
-    // What covers much of the world, such as a sky, would hide the rest: its outline has to do.
-    const bool covers = (double{high.x} - low.x) * (double{high.y} - low.y) > 0.1 * whole;
-    (covers ? wide : boxes).push_back(box);
+    const double share = (double{high.x} - low.x) * (double{high.y} - low.y) / whole;
+    const Size size = share > kOutlined ? outlined : share > kGround ? ground : small;
+    sorted[static_cast<std::size_t>(outcomes[object])][size].push_back(
+        {static_cast<std::int32_t>(std::lround(low.x)), static_cast<std::int32_t>(std::lround(low.y)),
+         static_cast<std::int32_t>(std::lround(high.x)), static_cast<std::int32_t>(std::lround(high.y))});
   }
+  return sorted;
+}
+
+std::string boxes_svg(std::vector<FlatBox> boxes, Outcome outcome, Size size) {
+  if (boxes.empty()) return {};
+  const bool culled = outcome == Outcome::culled;
   const Colour c = outcome_colour(outcome);
-  const double fill = outcome == Outcome::culled ? 0.1 : 0.55, edge = outcome == Outcome::culled ? 0.35 : 1;
-  const std::string name = fmt::format("outcome-{}", static_cast<unsigned>(outcome));
-  const auto colours = [&](double opacity) {
-    return fmt::format(R"(fill="#{0:02x}{1:02x}{2:02x}" stroke="#{0:02x}{1:02x}{2:02x}" fill-opacity="{3}" )"
-                       R"(stroke-opacity="{4}" stroke-width="{5}")",
-                       c.r, c.g, c.b, opacity, edge, kUnits * (outcome == Outcome::lost ? 2 : 1));
-  };
-  std::string svg;
-  // On the page's own colour, which hides what was drawn before: no two outcomes blend into a third colour.
-  if (!boxes.empty()) {
-    svg += fmt::format(R"(<g fill="Canvas"><path id="{0}" d="{1}"/></g><use href="#{0}" {2}/>)", name,
-                       path_of(std::move(boxes), kMostBoxes), colours(fill));
+  const int edge = kUnits * (outcome == Outcome::lost ? 2 : 1);
+  const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b);
+  const std::string path = path_of(std::move(boxes), kMostBoxes);
+  if (size == outlined) {
+    return fmt::format(R"(<path fill="none" stroke="{}" stroke-opacity="{}" stroke-width="{}" d="{}"/>)",
+                       colour, culled ? 0.35 : 1, edge, path);
   }
-  if (!wide.empty())
-    svg += fmt::format(R"(<path {} d="{}"/>)", colours(0), path_of(std::move(wide), kMostBoxes));
-  return svg;
+  const std::string name =
+      fmt::format("{}{}", size == ground ? "ground-" : "small-", static_cast<unsigned>(outcome));
+  // On the page's own colour, which hides what was drawn before: no two outcomes blend into a third colour.
+  return fmt::format(R"(<g fill="Canvas" stroke="Canvas" stroke-width="{0}"><path id="{1}" d="{2}"/></g>)"
+                     R"(<use href="#{1}" fill="{3}" stroke="{3}" fill-opacity="{4}" stroke-opacity="{5}" )"
+                     R"(stroke-width="{0}"/>)",
+                     edge, name, path, colour, culled ? 0.1 : 0.55, culled ? 0.35 : 1);
 }
 
 }  // namespace
@@ -184,9 +194,12 @@ std::string draw_top_view(const Scene& scene, const Snapshot& snapshot, const Sn
       fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="{}" viewBox="0 0 {} {}" )"
                   R"(style="color-scheme:light dark">)",
                   map.width() / kUnits, map.height() / kUnits, map.width(), map.height());
+  SortedBoxes sorted = sort_boxes(map, scene.bounds, method.outcomes);
   // The rarer and graver the outcome, the later it is drawn, and so on top.
-  for (const Outcome outcome : {Outcome::culled, Outcome::excess, Outcome::visible, Outcome::lost})
-    svg += outcome_svg(map, scene.bounds, method.outcomes, outcome);
+  for (const Size size : {ground, small, outlined}) {
+    for (const Outcome outcome : {Outcome::culled, Outcome::excess, Outcome::visible, Outcome::lost})
+      svg += boxes_svg(std::move(sorted[static_cast<std::size_t>(outcome)][size]), outcome, size);
+  }
   return svg + frustum_svg(map, snapshot.view) + eye_svg(map, snapshot.view) + "</svg>\n";
 }
 
