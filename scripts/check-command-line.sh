@@ -257,6 +257,9 @@ if [ "$(id -u)" -eq 0 ] && mkdir full && mount -t tmpfs -o size=64k tmpfs full 2
   expect 2 "sightline: full/page/" "$sightline" compare "$world" --methods none --frames 1 --size 16x12 --no-draw --report full/page
   [ -z "$(ls -A full)" ] || fail "a full disk keeps: $(ls -A full)"
   umount full
+  mount -t tmpfs -o size=20m tmpfs full && expect 0 "none" "$sightline" compare "$world" --methods none --frames 1 --size 16x12 --no-draw --report full
+  [ "$(ls -A full | wc -l)" -gt 2 ] && ! ls -A full | grep -q tmp || fail "compare --report to a mounted folder leaves: $(ls -A full)"
+  umount full
 else
   # Without the right to mount, a limit on the size of files is the full disk.
   (ulimit -f 8; refused "forest-full.glb" "$sightline" generate forest?trees=3000 -o forest-full.glb; exit $failed) || failed=$((failed + 1))

@@ -14,6 +14,7 @@
 #include "workbench/io/text_file.hpp"
 #include "workbench/report/canvas.hpp"
 #include "workbench/report/page.hpp"
+#include "workbench/report/page_folder.hpp"
 #include "workbench/report/pictures.hpp"
 #include "workbench/report/report.hpp"
 #include "workbench/report/top_view.hpp"
@@ -145,6 +146,22 @@ TEST(Report, ReplacesAnEarlierOneWholeAndNothingElse) {
   EXPECT_EQ(io::read_file(folder / "mine/letter", 100), "dear");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2)
       << "nothing unfinished stays";
+}
+
+// A folder that is mounted has another file system beside it, from which nothing can be renamed into it.
+TEST(PageFolder, HoldsAllThatIsNotFinishedItself) {
+  const TemporaryFolder folder;
+  const auto beside = [&] { return std::distance(std::filesystem::directory_iterator(folder.path()), {}); };
+  std::filesystem::create_directories(folder / "page/.sightline-1-0.tmp");  // as of one that was killed
+  {
+    PageFolder page(folder / "page");
+    EXPECT_EQ(beside(), 1);
+    io::write_file(page.path() / "index.html", "new");
+    page.commit();
+  }
+  EXPECT_EQ(io::read_file(folder / "page/index.html", 100), "new");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "page"), {}), 1);
+  EXPECT_EQ(beside(), 1);
 }
 
 TEST(Snapshot, OutcomesAddUpAndAgreeWithTheTruth) {

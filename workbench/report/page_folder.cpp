@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <string_view>
 
 #include <sightline/workbench/error.hpp>
 
@@ -21,6 +23,17 @@ bool is_page(const fs::path& folder) {
   return head.find(kPageMark) != std::string::npos;
 }
 
+constexpr std::string_view kBegins = ".sightline-", kEnds = ".tmp";
+
+// What a program that was killed left behind counts for nothing.
+bool is_free(const fs::path& folder) {
+  std::error_code failed;
+  return std::ranges::all_of(fs::directory_iterator(folder, failed), [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return name.starts_with(kBegins) && name.ends_with(kEnds);
+  });
+}
+
 }  // namespace
 
 PageFolder::PageFolder(const fs::path& target) {
@@ -33,22 +46,24 @@ PageFolder::PageFolder(const fs::path& target) {
   };
   if (fs::exists(target_, failed)) {
     if (!fs::is_directory(target_, failed)) refuse("a folder");
-    if (!fs::is_empty(target_, failed) && !is_page(target_))
+    if (access(target_.c_str(), R_OK | W_OK | X_OK) != 0) refuse("a folder open to writing");
+    if (!is_free(target_) && !is_page(target_))
       refuse("an empty folder, a new one, or an earlier page of ours to replace");
-    if (failed || access(target_.c_str(), W_OK | X_OK) != 0) refuse("a folder open to writing");
   } else {
     if (fs::create_directories(target_, failed)) made_target_.emplace(target_, target);
     if (failed) refuse("a folder or a place for one");
   }
   static std::atomic<unsigned> count = 0;
-  partial_.emplace(target_.parent_path() / fmt::format(".sightline-{}-{}.tmp", getpid(), count++), target);
+  // Within the target: what stands beside it may be another file system, or closed.
+  partial_.emplace(target_ / fmt::format("{}{}-{}{}", kBegins, getpid(), count++, kEnds), target);
   fs::create_directory(path(), failed);
-  if (failed) refuse("a place beside it for what is not finished");
+  if (failed) throw Error(fmt::format("{}: cannot be written: {}", target.string(), failed.message()));
 }
 
 void PageFolder::commit() {
   std::error_code failed;
-  for (const fs::directory_entry& old : fs::directory_iterator(target_)) fs::remove_all(old.path(), failed);
+  for (const fs::directory_entry& old : fs::directory_iterator(target_))
+    if (old.path() != path()) fs::remove_all(old.path(), failed);
   const auto move = [&](const fs::path& file) {
     if (!failed) fs::rename(file, target_ / file.filename(), failed);
   };

@@ -11,8 +11,8 @@ namespace sightline::report {
 /// What index.html holds in its first kilobyte, so that a later report knows what it may replace.
 inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"Sightline\">";
 
-/// Files are written to path(), a folder under a temporary name beside the target; commit() puts them in the
-/// target's place. Without it nothing is left behind, and what stood in the target stays.
+/// Files are written to path(), a folder under a temporary name in the target; commit() puts them in the
+/// place of all else there. Without it nothing is left behind, and what stood in the target stays.
 class PageFolder {
 public:
   /// Throws Error where the folder cannot be made, or the target holds anything but an earlier page.
