@@ -16,7 +16,8 @@ import { isLoaded, ready, supported } from './runtime.js';
 import { isInstancedGeometry, isStill, pointsOf, type Points } from './three/bounds.js';
 import { eyeOf, isRigid } from './three/eye.js';
 import {
-  breaksDepth, breaksLateDepth, canBeHidden, determinantOf, isInFrustum, isSkewed, markOf, mayOcclude, setFrustum, type Eye,
+  breaksDepth, breaksLateDepth, canBeHidden, determinantOf, isInFrustum, isSkewed, markOf, materialsOf, mayOcclude,
+  setFrustum, type Eye,
 } from './three/occluders.js';
 import { release } from './three/release.js';
 
@@ -184,7 +185,7 @@ export class SightlineTilesPlugin {
     const m = object.matrixWorld.elements;
     if (!isPlain(object) || !mayOcclude(object, this.#override, camera) || !isInFrustum(object) || determinantOf(m) <= 0) return 0;
     const mark = markOf(object), isOther = typeof mark === 'object';
-    const mesh = this.#meshOf(isOther ? mark : object.geometry, !isOther && [object.material].flat().every(({ side }) => side === 2));
+    const mesh = this.#meshOf(isOther ? mark : object.geometry, !isOther && materialsOf(object, this.#override).every(({ side }) => side === 2));
     if (!mesh) return 0;
     const transform = Array.from(m);
     for (let axis = 0; axis < 3; ++axis) transform[12 + axis]! -= eye.origin[axis]!;

@@ -100,6 +100,8 @@ test('a tile is masked by what is drawn as its geometry stands, and by nothing e
     ['what clips', () => {}, (_, { world, group }) => world.add(Object.assign(new THREE.Group(), { isClippingGroup: true }).add(group))],
     ['the order', () => {}, (_, { group }) => { group.renderOrder = 1; }],
     ['what the scene overrides', () => {}, (_, { world }) => { world.overrideMaterial = new THREE.MeshBasicMaterial({ transparent: true }); }],
+    ['the side that the scene overrides', (mesh) => { inside(mesh), mesh.material.side = THREE.DoubleSide; }, (_, { world }) => {
+      world.overrideMaterial = new THREE.MeshBasicMaterial(); }],
     ['what writes depth over others', () => {}, ({ geometry }, { world }) => world.add(drawnThrough(geometry, true))],
     ['what the tiles draw through others', () => {}, (mesh) => mesh.parent.add(drawnThrough(mesh.geometry))],
     ['what the tile draws through others', () => {}, ({ geometry }, { back }) => { back.engineData.scene = drawnThrough(geometry); }],

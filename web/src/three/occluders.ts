@@ -33,8 +33,8 @@ function isSolid(material: Material): boolean {
   return isWhole(m) && !m.displacementMap && !m.isShaderMaterial && !m.isNodeMaterial && !isPatched(m);
 }
 
-// With what an object is drawn, if its own materials are visible.
-const materialsOf = (object: Object3D, override: Material | null): Material[] => {
+/** With what an object is drawn, if its own materials are visible. */
+export const materialsOf = (object: Object3D, override: Material | null): Material[] => {
   const { material } = object as Mesh, own = Array.isArray(material) ? material : [material];
   return own.filter(Boolean).map((m) => (override && (m as { allowOverride?: boolean }).allowOverride !== false ? override : m));
 };
