@@ -25,13 +25,15 @@ bool is_page(const fs::path& folder) {
 
 constexpr std::string_view kBegins = ".sightline-", kEnds = ".tmp";
 
-// What a program that was killed left behind counts for nothing.
+// What another program has not finished, or was killed over: it is not ours to look at or take away.
+bool is_unfinished(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  return name.starts_with(kBegins) && name.ends_with(kEnds);
+}
+
 bool is_free(const fs::path& folder) {
   std::error_code failed;
-  return std::ranges::all_of(fs::directory_iterator(folder, failed), [](const fs::directory_entry& entry) {
-    const std::string name = entry.path().filename().string();
-    return name.starts_with(kBegins) && name.ends_with(kEnds);
-  });
+  return std::ranges::all_of(fs::directory_iterator(folder, failed), is_unfinished);
 }
 
 }  // namespace
@@ -63,7 +65,7 @@ PageFolder::PageFolder(const fs::path& target) {
 void PageFolder::commit() {
   std::error_code failed;
   for (const fs::directory_entry& old : fs::directory_iterator(target_))
-    if (old.path() != path()) fs::remove_all(old.path(), failed);
+    if (!is_unfinished(old)) fs::remove_all(old.path(), failed);
   const auto move = [&](const fs::path& file) {
     if (!failed) fs::rename(file, target_ / file.filename(), failed);
   };
