@@ -75,6 +75,29 @@ TEST_F(EdgeCases, BoxesAtTheNearPlaneOfAWideWorld) {
   }
 }
 
+// A wall of small cubes, each dropped as the camera goes back, before one that is not. The other methods draw
+// last frame's visible objects into the picture.
+TEST_F(EdgeCases, WhatIsDroppedByAreaHidesNothingFromThatFrameOn) {
+  Scene scene;
+  const std::uint32_t cube = add_cube(scene);
+  for (int i = 0; i < 144; ++i) scene.add_object(cube, at(i % 12 - 5.5f, i / 12 - 5.5f, 0, 0.5f, 0.5f, 0.5f));
+  scene.add_object(cube, at(0, 0, -8, 3, 3, 3));
+  const std::string by_area = "contribution=area&threshold=300";
+  std::vector<std::string> methods;
+  for (const char* name : {"roc?", "hroc?", "ioc?", "ihzb?", "vertex-chunk?"})
+    methods.push_back(name + by_area);
+  Examination examination(device(), scene, methods, "vfc-vc?" + by_area);
+  std::vector<std::uint64_t> kept;
+  for (const float z : {10.0f, 10.0f, 20.0f, 20.0f, 10.0f}) {
+    Camera camera;
+    camera.eye = {0, 0, z};
+    const std::uint64_t before = examination.kept();
+    examination.look(view_of(camera, 320, 180), "from " + std::to_string(z) + " m");
+    kept.push_back((examination.kept() - before) / methods.size());
+  }
+  EXPECT_THAT(kept, testing::ElementsAre(144u, 144u, 1u, 1u, testing::Ge(144u)));
+}
+
 TEST_F(EdgeCases, EverythingBehindTheCamera) {
   Scene scene;
   const std::uint32_t cube = add_cube(scene);

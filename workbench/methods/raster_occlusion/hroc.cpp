@@ -77,8 +77,8 @@ public:
     const auto nothing = [&](std::size_t count) {
       return upload(device, std::vector<std::uint32_t>(count), "the tree's marks");
     };
-    marks_ = nothing(renderer.scene().size());
-    occluders_ = nothing(renderer.scene().size());
+    marks_ = make_marks(renderer);
+    occluders_ = make_marks(renderer);
     groups_ = nothing(tree_.nodes().size());
     seen_ = nothing(tree_.nodes().size());
     test_ = nothing(sizeof(GroupTest) / 4);

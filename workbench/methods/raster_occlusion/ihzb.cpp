@@ -33,7 +33,7 @@ public:
         refine_(renderer.device(), kRefine, shader_constants(contribution_)),
         boxes_(make_box_pipeline(renderer.device(), contribution_)),
         no_levels_(std::size_t{tree_.levels()} + 1),
-        marks_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "marks"),
+        marks_(make_marks(renderer)),
         fine_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "objects to test"),
         levels_(renderer.device(), no_levels_.size() * sizeof(Level), device::Memory::device, "dispatches"),
         test_(renderer.device(), sizeof(vk::DrawIndirectCommand), device::Memory::device, "a draw command"),

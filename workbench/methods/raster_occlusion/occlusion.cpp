@@ -13,6 +13,14 @@ constexpr std::uint32_t kBoxVert[] =
 constexpr std::uint32_t kMarkFrag[] =
 #include "shaders/mark.frag.inc"
     ;
+constexpr std::uint32_t kAreaOccluders[] =
+#include "shaders/area_occluders.comp.inc"
+    ;
+
+struct AreaOccludersPush {
+  vk::DeviceAddress boxes, marks, occluders;
+  std::uint32_t objects;
+};
 
 using device::PassKind;
 using device::Renderer;
@@ -36,6 +44,10 @@ device::GraphicsPipeline make_box_pipeline(const device::Device& device,
            .fragment = kMarkFrag,
            .constants = shader_constants(contribution),
            .depth_write = false}};
+}
+
+device::Buffer make_marks(const Renderer& renderer) {
+  return upload(renderer.device(), std::vector<std::uint32_t>(renderer.scene().size()), "marks");
 }
 
 void report_visible(const Renderer& renderer, std::span<const std::uint32_t> flags,
@@ -62,7 +74,24 @@ MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
     : Method(renderer.scene()),
       renderer_(renderer),
       contribution_(submission::contribution_from(parameters)),
-      draws_(renderer.draws().make_buffers(renderer.device())) {}
+      draws_(renderer.draws().make_buffers(renderer.device())) {
+  if (contribution_.test != submission::Contribution::Test::area) return;
+  by_area_.emplace(ByArea{{renderer.device(), kAreaOccluders, shader_constants(contribution_)},
+                          make_marks(renderer),
+                          renderer.draws().make_buffers(renderer.device())});
+}
+
+const device::DrawBuffers& MarkAndDraw::occluders(device::Recorder& frame) {
+  if (!by_area_) return draws_;
+  const auto pass = frame.pass("find occluders", PassKind::cull);
+  const device::SceneBuffers& scene = renderer_.buffers();
+  frame.dispatch(
+      by_area_->find,
+      AreaOccludersPush{scene.box_data.address(), marks(), by_area_->marks.address(), scene.objects},
+      scene.objects);
+  renderer_.draws().build(frame, by_area_->marks.address(), {}, 0, by_area_->draws);
+  return by_area_->draws;
+}
 
 void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
@@ -77,10 +106,7 @@ void MarkAndDraw::do_record(FrameContext& context) {
     renderer_.draws().build(frame, marks(), {}, renderer_.transparent_order(), draws_);
   }
   const auto pass = frame.pass("draw", PassKind::draw);
-  // An object dropped by area may have laid down depth that nothing would cover.
-  const bool dropped = guarantee() == Guarantee::approximate;
-  renderer_.draw_solid(frame, draws_, Renderer::Style::lit,
-                       dropped ? Renderer::Clear::both : Renderer::Clear::colour);
+  renderer_.draw_solid(frame, draws_, Renderer::Style::lit, Renderer::Clear::colour);
   renderer_.draw_rest(frame, draws_);
 }
 

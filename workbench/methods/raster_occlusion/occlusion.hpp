@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "workbench/device/renderer.hpp"
 #include "workbench/methods/methods.hpp"
@@ -30,6 +31,9 @@ struct BoxPush {
 device::GraphicsPipeline make_box_pipeline(const device::Device& device,
                                            const submission::Contribution& contribution);
 
+/// A word an object, none of them seen yet.
+device::Buffer make_marks(const device::Renderer& renderer);
+
 /// Lists the objects with (flags[o] & mask) == value, and counts draw calls and triangles.
 void report_visible(const device::Renderer& renderer, std::span<const std::uint32_t> flags,
                     device::VisibleDraws::Condition solid, device::VisibleDraws::Condition rest,
@@ -46,8 +50,9 @@ public:
   void read_back(Frame& frame) final;
 
 protected:
-  /// Who lays down depth, of last frame's visible objects; finds them in a pass of its own.
-  virtual const device::DrawBuffers& occluders(device::Recorder&) { return draws_; }
+  /// Who lays down depth, of last frame's visible objects: all but those that are dropped by their area now.
+  /// Finds them in a pass of its own.
+  virtual const device::DrawBuffers& occluders(device::Recorder& frame);
   /// Clears marks and tests boxes, each in a pass of its own.
   virtual void test(device::Recorder& frame) = 0;
   /// Where object 0's mark lies.
@@ -59,7 +64,15 @@ protected:
   submission::Contribution contribution_;
 
 private:
+  /// Finds whom their area leaves.
+  struct ByArea {
+    device::ComputePipeline find;
+    device::Buffer marks;
+    device::DrawBuffers draws;
+  };
+
   device::DrawBuffers draws_;  ///< of the last frame until this frame's marks are known
+  std::optional<ByArea> by_area_;
 };
 
 }  // namespace sightline::methods

@@ -11,7 +11,7 @@ public:
   Roc(device::Renderer& renderer, const Parameters& parameters)
       : MarkAndDraw(renderer, parameters),
         boxes_(make_box_pipeline(renderer.device(), contribution_)),
-        marks_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "marks") {}
+        marks_(make_marks(renderer)) {}
 
   void do_update(std::span<const ObjectId>) override {}
 

@@ -31,7 +31,7 @@ public:
                                    .input = device::Input::point,
                                    .topology = vk::PrimitiveTopology::ePointList,
                                    .depth_write = false}),
-        marks_(renderer.device(), renderer.scene().size() * 4, device::Memory::device, "marks"),
+        marks_(make_marks(renderer)),
         input_(renderer.device(), renderer.scene().size() * sizeof(world::ChunkVertex),
                device::Memory::upload, "the input buffer of vertex chunks") {}
 
