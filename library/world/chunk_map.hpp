@@ -1,5 +1,5 @@
 // Who is near whom, for moving objects: chunks of fewer than 100 boxes by ground region (Lee & Shin 2023,
-// section 3.1), kept right while objects come, move and go, at a cost that does not depend on how many stand.
+// section 3.3), kept right while objects come, move and go, at a cost that does not depend on how many stand.
 //
 // The ground rectangle (x-z) is split like a quadtree down to `depth`. An object is homed by the set of leaf
 // regions its box touches: one region makes its chunk an own chunk, several make it a chunk shared by exactly

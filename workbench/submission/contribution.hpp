@@ -13,7 +13,7 @@ struct Contribution {
   enum class Test : std::uint8_t {
     off,
     exact,  ///< drops an object whose image holds no pixel centre
-    area,   ///< Lee & Shin 2023, section 3.3: drops a bounding sphere of less than `threshold` px²;
+    area,   ///< Lee & Shin 2023, section 3.1: drops a bounding sphere of less than `threshold` px²;
             ///< approximate
   };
   Test test = Test::off;
