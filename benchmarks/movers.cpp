@@ -3,8 +3,6 @@
 // on one thread; means are over all frames, those in which the world settles included.
 #include <benchmark/benchmark.h>
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -16,6 +14,7 @@
 #include <sightline/world.hpp>
 
 #include "judged.hpp"
+#include "thread_time.hpp"
 #include "workbench/scene/random.hpp"
 #include "world_case.hpp"
 
@@ -41,18 +40,6 @@ struct Moves {
   std::vector<Handle> handles;
   std::vector<Box> boxes;
 };
-
-// This thread's own time: what others run meanwhile does not count.
-double milliseconds(auto&& work) {
-  const auto now = [] {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-  };
-  const double start = now();
-  work();
-  return now() - start;
-}
 
 // One world and its flat peer, frame after frame.
 class Race {

@@ -36,52 +36,24 @@ void scalar_loop(benchmark::State& state) {
   flat(state, cull_boxes_scalar);
 }
 
-// Culls a world by some views at once; what it keeps for nothing is a few boxes at the borders.
-void cull_world(benchmark::State& state, const Case& c, std::span<const View> views, bool with_masks) {
-  std::vector<CullView> asked;
-  for (const View& view : views) asked.push_back({.view = {view, {}}});
+// Culls a world by a view, again and again; what it keeps for nothing is a few boxes at the borders.
+void cull_world(benchmark::State& state, const Case& c, const View& view) {
   std::vector<ObjectId> visible(cull_capacity(c.world));
-  std::vector<std::uint8_t> masks(with_masks ? visible.size() : 0);
   Culler culler;
   CullResult result;
-  for (auto _ : state) benchmark::DoNotOptimize(result = *culler.cull(c.world, asked, {}, {visible, masks}));
-  judge(state, c.flat, views, std::span(visible).first(result.count));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(result = *culler.cull(c.world, CullView{.view = {view, {}}}, visible));
+  judge(state, c.flat, {&view, 1}, std::span(visible).first(result.count));
   if (state.counters["lost"] > 0 || state.counters["excess"] > 10) state.SkipWithError("a wrong answer");
 }
 
 void world(benchmark::State& state) {
-  const View view = looking(0.3f, tenth_of_view());
-  cull_world(state, case_of(static_cast<std::size_t>(state.range(0))), {&view, 1}, false);
+  cull_world(state, case_of(static_cast<std::size_t>(state.range(0))), looking(0.3f, tenth_of_view()));
 }
 
 void world_avx2(benchmark::State& state) {
   const OnlyAvx2 without_avx512;
   world(state);
-}
-
-// Views in these directions, in widths of a view.
-void cull_views(benchmark::State& state, std::initializer_list<float> turns) {
-  std::vector<View> views;
-  const float fov = tenth_of_view();
-  const float across = 2 * std::atan(std::tan(fov / 2) * 1280 / 720);
-  for (const float turn : turns) views.push_back(looking(0.3f + turn * across, fov));
-  cull_world(state, case_of(1'000'000), views, true);
-}
-
-void one_view(benchmark::State& state) {
-  cull_views(state, {0});
-}
-// Any two of the four share at least half of what they see.
-void four_views_sharing_half(benchmark::State& state) {
-  cull_views(state, {0, 1.0f / 6, 2.0f / 6, 3.0f / 6});
-}
-// Each shares half with the next, and nothing with the one after that.
-void four_views_in_a_fan(benchmark::State& state) {
-  cull_views(state, {0, 1.0f / 2, 2.0f / 2, 3.0f / 2});
-}
-// Two and two the same, the pairs sharing half.
-void four_views_in_two_pairs(benchmark::State& state) {
-  cull_views(state, {0, 1.0f / 2, 0, 1.0f / 2});
 }
 
 // A million boxes put in and moved, out of an array of boxes and out of the caller's own structs.
@@ -183,7 +155,7 @@ Case& far_sectors() {
 
 void far_sectors_cull(benchmark::State& state) {
   const View view = *make_view({.eye = {0, 50, 0}, .near_plane = 1, .far_plane = 1e5f}, 1280, 720);
-  cull_world(state, far_sectors(), {&view, 1}, false);
+  cull_world(state, far_sectors(), view);
 }
 
 void far_sectors_move(benchmark::State& state) {
@@ -202,10 +174,6 @@ BENCHMARK(flat_simd)->Unit(benchmark::kMicrosecond);
 BENCHMARK(scalar_loop)->Unit(benchmark::kMicrosecond);
 BENCHMARK(world)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(world_avx2)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
-BENCHMARK(one_view)->Unit(benchmark::kMicrosecond);
-BENCHMARK(four_views_sharing_half)->Unit(benchmark::kMicrosecond);
-BENCHMARK(four_views_in_two_pairs)->Unit(benchmark::kMicrosecond);
-BENCHMARK(four_views_in_a_fan)->Unit(benchmark::kMicrosecond);
 BENCHMARK(build)->Unit(benchmark::kMillisecond);
 BENCHMARK(build_from_structs)->Unit(benchmark::kMillisecond);
 BENCHMARK(move_all)->Unit(benchmark::kMillisecond);
