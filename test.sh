@@ -12,6 +12,23 @@ cd "$(dirname "$0")"
 start=$(date +%s)
 stage() { echo "== $1 (after $(elapsed "$start"))"; }
 
+# beside NAME COMMAND…: begins it beside the stages that follow, each of which leaves a core idle at times.
+# joined NAME: a stage of its own, which waits for it and shows what it said.
+declare -A beside
+trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
+beside() {
+  mkdir -p build/beside
+  "${@:2}" >"build/beside/$1" 2>&1 &
+  beside[$1]=$!
+}
+joined() {
+  stage "$1"
+  local result=0
+  wait "${beside[$1]}" || result=$?
+  cat "build/beside/$1"
+  return $result
+}
+
 full=${1:-}
 case $full in
   "") ;;
@@ -23,21 +40,27 @@ ensure_packages $test_packages
 command -v npm >/dev/null || ensure_packages npm
 [ -z "$full" ] || ensure_packages $full_packages
 
-stage "structure, layout and clones (jscpd)"
-scripts/check-structure.sh
-tests/structure/planted_includes.sh
-scripts/check-face.py
-tests/structure/planted_face.sh
-scripts/check-format.sh
-scripts/check-clones.sh
-tests/structure/planted_clones.sh
-scripts/check-figures.sh
-tests/structure/planted_figures.sh
-tests/structure/changed_comments.sh
+structure() {
+  scripts/check-structure.sh
+  tests/structure/planted_includes.sh
+  scripts/check-face.py
+  tests/structure/planted_face.sh
+  scripts/check-format.sh
+  scripts/check-clones.sh
+  tests/structure/planted_clones.sh
+  scripts/check-figures.sh
+  tests/structure/planted_figures.sh
+  tests/structure/changed_comments.sh
+}
+beside "structure, layout and clones (jscpd)" structure
 
-stage "release build and tests"
+stage "release build"
 cmake --preset release -DSIGHTLINE_TESTS=ON -DSIGHTLINE_BENCHMARKS=ON -DSIGHTLINE_PYTHON=ON >/dev/null
 cmake --build --preset release
+
+joined "structure, layout and clones (jscpd)"
+
+stage "release tests"
 ctest --preset release --show-only | grep ' python[.]module$' # which once stood in no list
 ctest --preset release -j"$(nproc)"
 
@@ -68,8 +91,7 @@ stage "documents"
 scripts/check-docs.py build/release
 tests/structure/planted_docs.sh build/release
 
-stage "installed packages"
-scripts/check-package.sh build/release
+beside "installed packages" scripts/check-package.sh build/release
 
 stage "sanitizers"
 cmake --preset asan >/dev/null
@@ -79,6 +101,8 @@ cmake --build --preset asan --target tests_of_input fuzzers
 checked='^(geometry|frustum|rays|occlusion|world|snapshots|c|pvs|scene|submission|partition|io|camera|methods)[.]'
 large='AMillionObjects|Conformance.*(forest|irregular|regular)|FiveModels'
 ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
+
+joined "installed packages"
 
 stage "mutants"
 scripts/check-mutants.sh build/release build/asan
@@ -98,14 +122,16 @@ unset GTEST_TOTAL_SHARDS
 stage "fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-6}" build/asan
 
+beside "port to ARM" scripts/check-ports.sh aarch64
+
 stage "web"
 scripts/check-web.sh build/release
 
-stage "ports"
-if [ -z "$full" ]; then
-  scripts/check-ports.sh
-else
-  scripts/run-full.sh "$start"
-fi
+joined "port to ARM"
+
+stage "port to WebAssembly"
+scripts/check-ports.sh wasm32
+
+[ -z "$full" ] || scripts/run-full.sh "$start"
 
 echo "All tests passed in $(elapsed "$start")."
