@@ -33,8 +33,7 @@ struct Casters {
 
   Casters(device::Device& device, const Scene& scene) {
     all.emplace_back("iwcpa", methods::make_iwcpa(device, scene));
-    all.emplace_back("iwcpa?mapping=printed",
-                     methods::make_iwcpa(device, scene, methods::IwcpaMapping::printed));
+    all.emplace_back("tuned-iwcpa", methods::make_tuned_iwcpa(device, scene));
     all.emplace_back("bvha", methods::make_bvha(device, scene));
     all.emplace_back("saa", methods::make_saa(device, scene));
   }
@@ -161,7 +160,7 @@ TEST_F(DeviceRaysTest, MethodsDrawWhatBocaFinds) {
   cull(*boca, view, expected);
   std::ranges::sort(expected.visible);
   EXPECT_GT(expected.visible.size(), 50u);
-  for (const char* name : {"iwcpa", "iwcpa?mapping=printed", "bvha", "saa"}) {
+  for (const char* name : {"iwcpa", "tuned-iwcpa", "bvha", "saa"}) {
     const auto method = create_method(name, MethodSite{scene, &renderer});
     Frame frame;
     renderer.frame(view, [&](device::Recorder& recorder) {

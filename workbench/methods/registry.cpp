@@ -30,6 +30,7 @@
   METHOD(kIwcpa)                          \
   METHOD(kBvha)                           \
   METHOD(kSaa)                            \
+  METHOD(kTunedIwcpa)                     \
   METHOD(kWideRays)                       \
   METHOD(kTrianglePvs)                    \
   METHOD(kGuided)                         \

@@ -76,13 +76,9 @@ private:
   device::Buffer slot_objects_, see_through_nodes_, object_marks_;  ///< where something hides nothing
 };
 
-/// How IWCPA's pairs of ray and box lie on lanes.
-enum class IwcpaMapping : std::uint8_t {
-  tuned,    ///< eight rays and many boxes a lane
-  printed,  ///< a lane a pair
-};
-std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene,
-                                       IwcpaMapping mapping = IwcpaMapping::tuned);
+/// A lane a pair of ray and box, as the paper has it; and the same set by lanes of eight rays and many boxes.
+std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene);
+std::unique_ptr<DeviceRays> make_tuned_iwcpa(device::Device& device, const Scene& scene);
 std::unique_ptr<DeviceRays> make_bvha(device::Device& device, const Scene& scene);
 std::unique_ptr<DeviceRays> make_saa(device::Device& device, const Scene& scene);
 

@@ -142,27 +142,31 @@ private:
   device::Buffer found_;
 };
 
-constexpr std::array kIwcpaParameters{
-    kRaysParameter, ParameterInfo{"mapping", "a lane takes many boxes and eight rays, or as printed one pair",
-                                  "tuned", 0, 0, false, "tuned|printed"}};
+constexpr std::array kIwcpaParameters{kRaysParameter};
 
+template <std::unique_ptr<DeviceRays> (*kMake)(device::Device&, const Scene&)>
 std::unique_ptr<Method> make_iwcpa_method(const MethodSite& site, const Parameters& parameters) {
-  const IwcpaMapping mapping =
-      parameters.word("mapping") == "printed" ? IwcpaMapping::printed : IwcpaMapping::tuned;
-  return make_ray_device_method(*site.renderer, parameters,
-                                make_iwcpa(site.renderer->device(), site.scene, mapping));
+  return make_ray_device_method(*site.renderer, parameters, kMake(site.renderer->device(), site.scene));
 }
 
 }  // namespace
 
-std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene, IwcpaMapping mapping) {
-  if (mapping == IwcpaMapping::printed) return std::make_unique<PrintedIwcpa>(device, scene);
+std::unique_ptr<DeviceRays> make_iwcpa(device::Device& device, const Scene& scene) {
+  return std::make_unique<PrintedIwcpa>(device, scene);
+}
+std::unique_ptr<DeviceRays> make_tuned_iwcpa(device::Device& device, const Scene& scene) {
   return std::make_unique<TunedIwcpa>(device, scene);
 }
 
-extern const MethodInfo kIwcpa{.name = "iwcpa",
-                               .paper = kRayPaper,
-                               .summary = "100 x 100 rays, every ray and box at once on the GPU",
-                               .device = {Guarantee::approximate, kIwcpaParameters, make_iwcpa_method}};
+extern const MethodInfo kIwcpa{
+    .name = "iwcpa",
+    .paper = kRayPaper,
+    .summary = "100 x 100 rays, every ray and box at once on the GPU",
+    .device = {Guarantee::approximate, kIwcpaParameters, make_iwcpa_method<make_iwcpa>}};
+extern const MethodInfo kTunedIwcpa{
+    .name = "tuned-iwcpa",
+    .paper = "",
+    .summary = "the set of iwcpa, where a lane keeps the nearest of many boxes to itself",
+    .device = {Guarantee::approximate, kIwcpaParameters, make_iwcpa_method<make_tuned_iwcpa>}};
 
 }  // namespace sightline::methods

@@ -46,8 +46,8 @@ struct Contestant {
   Contestant() = default;
   Contestant(std::size_t method, const Boxes& boxes, device::Device& device, const Scene& scene) {
     if (method == kBoca) bvh.build(boxes);
-    if (method == kIwcpa) rays = methods::make_iwcpa(device, scene, methods::IwcpaMapping::printed);
-    if (method == kTunedIwcpa) rays = methods::make_iwcpa(device, scene);
+    if (method == kIwcpa) rays = methods::make_iwcpa(device, scene);
+    if (method == kTunedIwcpa) rays = methods::make_tuned_iwcpa(device, scene);
     if (method == kBvha) rays = methods::make_bvha(device, scene);
     if (method == kSaa) rays = methods::make_saa(device, scene);
   }

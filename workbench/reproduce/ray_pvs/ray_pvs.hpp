@@ -15,9 +15,9 @@
 
 namespace sightline::reproduce {
 
-/// IWCPA stands under the paper's name as it is printed; as it is tuned, beside the paper's five.
+/// The paper's five, and ours beside them.
 inline constexpr std::array<const char*, 6> kRayMethods{"toca", "boca", "iwcpa",
-                                                        "bvha", "saa",  "tuned iwcpa"};
+                                                        "bvha", "saa",  "tuned-iwcpa"};
 enum RayMethod : std::size_t { kToca, kBoca, kIwcpa, kBvha, kSaa, kTunedIwcpa, kRayMethodCount };
 
 /// Medians in milliseconds, while tree, pipelines and buffers stand.
