@@ -65,11 +65,14 @@ struct WalkRow {
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
 
+/// The parameters by which a structure is split and bounded as in the paper.
+inline constexpr std::string_view kPrintedRules = "least=0&cells=printed";
+
 /// What one structure of one height makes of a level, and submits along the walk; means over its views.
 struct StructureCount {
   std::string structure;
   std::uint32_t height = 0;
-  std::string rules;  ///< parameters beyond the height: "", "least=0", "least=0&cells=printed"
+  std::string rules;                           ///< parameters beyond the height: "", "least=0", kPrintedRules
   double possible = 0, made = 0, visited = 0;  ///< cells, cells, nodes a frame
   double wise_calls = 0, simple_calls = 0, wise_triangles = 0;
 

@@ -10,7 +10,7 @@ namespace sightline::reproduce {
 
 namespace {
 
-constexpr std::array<const char*, 3> kCellRules{"", "least=0", "least=0&cells=printed"};
+constexpr std::array<std::string_view, 3> kCellRules{"", "least=0", kPrintedRules};
 
 StructureCount count_one(const Scene& scene, std::string_view structure, std::uint32_t height,
                          const std::string& rules, const std::vector<View>& views) {
@@ -43,7 +43,8 @@ std::vector<StructureCount> count_structures(const Scene& scene, const std::vect
   std::vector<StructureCount> out;
   for (const std::string_view structure : kWalkStructures) {
     for (std::uint32_t height = 1; height <= kHighest; ++height) {
-      for (const char* rules : kCellRules) out.push_back(count_one(scene, structure, height, rules, views));
+      for (const std::string_view rules : kCellRules)
+        out.push_back(count_one(scene, structure, height, std::string(rules), views));
     }
   }
   return out;
