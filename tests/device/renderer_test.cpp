@@ -62,6 +62,40 @@ TEST_F(RendererTest, CommandsOfTheCpuDrawTheSamePictureAsCommandsOfTheDevice) {
     device::save_png(picture, std::string(folder) + "/forest.png");
 }
 
+// Of lists that follow one another the changed part is sent: longer, shorter, other in the middle, as before.
+TEST_F(RendererTest, ListsThatChangeInPartDrawWhatTheyName) {
+  const Scene scene = generate_world("regular?columns=8&rows=8&detail=1");
+  device::Renderer renderer(device(), scene);
+  const View view = view_of(camera_at(scene, "far"));
+  const Mesh& mesh = scene.meshes[0];
+  const auto picture = [&](device::Renderer& by, std::span<const ObjectId> list) {
+    const DrawCommand draw{mesh.index_count, static_cast<std::uint32_t>(list.size()), mesh.first_index,
+                           static_cast<std::int32_t>(mesh.first_vertex), 0};
+    by.frame(view, [&](device::Recorder& frame) { by.draw(frame, list, {&draw, list.empty() ? 0u : 1u}); });
+    return by.picture();
+  };
+  using List = std::vector<ObjectId>;
+  for (const List& list : {List{}, List{1, 2, 3}, List{1, 2, 3, 20, 40}, List{1, 2}, List{1, 9, 3}, List{9},
+                           List{}, List{1, 9, 3}, List{60, 61, 62, 63, 5, 6, 7}}) {
+    device::Renderer fresh(device(), scene);
+    EXPECT_TRUE(picture(renderer, list) == picture(fresh, list)) << list.size();
+  }
+}
+
+TEST_F(RendererTest, SendsOfAListWhatIsNotTheLastFrames) {
+  device::SentList<std::uint32_t> list;
+  const auto sent = [&](const std::vector<std::uint32_t>& values) {
+    return list.send(device(), values, "a list");
+  };
+  EXPECT_EQ(sent({1, 2, 3, 4}), 4u);
+  EXPECT_EQ(sent({1, 2, 3, 4}), 0u);
+  EXPECT_EQ(sent({1, 2, 5, 4}), 2u);
+  EXPECT_EQ(sent({1, 2}), 0u);
+  EXPECT_EQ(sent({1, 2, 5, 4}), 2u);              // what lies behind a list is nobody's
+  EXPECT_EQ(sent({1, 2, 5, 4, 6, 7, 8, 9}), 8u);  // in a larger buffer
+  EXPECT_EQ(list.buffer().mapped<std::uint32_t>()[7], 9u);
+}
+
 TEST_F(RendererTest, UpIsUpAndNearerHidesFartherWithEitherDepth) {
   Scene scene;
   const std::vector<Vec3> corners{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};

@@ -242,14 +242,9 @@ void Renderer::draw_rest(const Recorder& frame, const DrawBuffers& draws) const 
 
 void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
                     std::span<const DrawCommand> draws, bool one_by_one) {
-  if (host_list_.size() < visible.size_bytes())
-    host_list_ = Buffer(device_, visible.size_bytes(), Memory::upload, "a draw list");
-  if (host_commands_.size() < draws.size_bytes()) {
-    host_commands_ = Buffer(device_, draws.size_bytes(), Memory::upload, "draw commands");
-  }
-  if (host_list_.size() == 0) host_list_ = Buffer(device_, 16, Memory::upload, "a draw list");
-  std::ranges::copy(visible, host_list_.mapped<ObjectId>());
-  if (!draws.empty()) std::ranges::copy(draws, host_commands_.mapped<DrawCommand>());
+  host_list_.send(device_, visible, "a draw list");
+  // Draws that are calls of their own are no list.
+  host_commands_.send(device_, one_by_one ? std::span<const DrawCommand>() : draws, "draw commands");
   frame.begin_rendering({.colour = &frame.targets.colour,
                          .clear_colour = true,
                          .clear_depth = true,
@@ -260,8 +255,8 @@ void Renderer::draw(const Recorder& frame, std::span<const ObjectId> visible,
   for (std::size_t first = 0, end = 0; first < draws.size(); first = end) {
     const DrawState state = state_of(draws[first]);
     while (end < draws.size() && state_of(draws[end]) == state) ++end;
-    const Commands commands{host_commands_.handle(), static_cast<std::uint32_t>(first),
-                            static_cast<std::uint32_t>(end - first), host_list_.address(), state};
+    const Commands commands{host_commands_.buffer().handle(), static_cast<std::uint32_t>(first),
+                            static_cast<std::uint32_t>(end - first), host_list_.buffer().address(), state};
     if (!one_by_one) {
       draw_lit(frame, commands);
       continue;

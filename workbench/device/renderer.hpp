@@ -10,6 +10,7 @@
 #include "workbench/device/frame_times.hpp"
 #include "workbench/device/recorder.hpp"
 #include "workbench/device/scene_buffers.hpp"
+#include "workbench/device/sent_list.hpp"
 #include "workbench/device/visible_draws.hpp"
 
 namespace sightline::device {
@@ -94,7 +95,9 @@ private:
   std::optional<Targets> targets_;
   Timer timer_;
   vk::raii::CommandBuffers commands_;
-  Buffer view_buffer_, transparent_order_, host_list_, host_commands_;
+  Buffer view_buffer_, transparent_order_;
+  SentList<ObjectId> host_list_;
+  SentList<DrawCommand> host_commands_;
   vk::raii::DescriptorPool descriptors_;
   vk::raii::DescriptorSets view_set_;
   std::vector<std::uint64_t> sort_keys_;

@@ -16,6 +16,7 @@ struct DrawCommand {
   /// Position in Frame::visible of the first instance's object. Where the method draws a geometry of its own
   /// (Method::geometry), the first triangle of the range instead, of which there is one instance.
   std::uint32_t first_instance = 0;
+  bool operator==(const DrawCommand&) const = default;
 };
 
 /// The work of one cull, in counts. Fields that make no sense for a method stay 0.
