@@ -11,7 +11,7 @@ class Exactness : public DeviceTest, public testing::WithParamInterface<const ch
 std::vector<std::string> with_exact_contribution() {
   std::vector<std::string> out;
   for (const std::string& name : kOcclusionMethods) out.push_back(name + "?contribution=exact");
-  out.push_back("vfc-vc?contribution=exact");
+  out.insert(out.end(), {"vertex-chunk?faces=facing&contribution=exact", "vfc-vc?contribution=exact"});
   return out;
 }
 

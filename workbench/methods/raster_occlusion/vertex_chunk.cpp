@@ -12,20 +12,26 @@ constexpr std::uint32_t kVert[] =
 constexpr std::uint32_t kGeom[] =
 #include "shaders/vertex_chunk.geom.inc"
     ;
+constexpr std::uint32_t kFacingGeom[] =
+#include "shaders/vertex_chunk_facing.geom.inc"
+    ;
 constexpr std::uint32_t kFrag[] =
 #include "shaders/mark.frag.inc"
     ;
 
-constexpr std::array kVertexChunkParameters{submission::kContributionParameter,
-                                            submission::kThresholdParameter, kRegionDepthParameter};
+constexpr std::array kVertexChunkParameters{
+    submission::kContributionParameter, submission::kThresholdParameter, kRegionDepthParameter,
+    ParameterInfo{"faces", "what is restored of a box: all of it, or the faces that look at the eye", "all",
+                  0, 0, false, "all|facing"}};
 
 class VertexChunk final : public MarkAndDraw {
 public:
   VertexChunk(device::Renderer& renderer, const Parameters& parameters)
       : MarkAndDraw(renderer, parameters),
         chunks_(renderer.scene(), parameters.count("depth")),
+        facing_(parameters.word("faces") == "facing"),
         boxes_(renderer.device(), {.vertex = kVert,
-                                   .geometry = kGeom,
+                                   .geometry = facing_ ? device::Spirv(kFacingGeom) : device::Spirv(kGeom),
                                    .fragment = kFrag,
                                    .constants = shader_constants(contribution_),
                                    .input = device::Input::point,
@@ -59,7 +65,8 @@ private:
     const auto pass = frame.pass("box test", device::PassKind::cull);
     frame.fill(marks_, 0, marks_.size());
     frame.begin_rendering({});
-    frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias);
+    frame.bind(boxes_, device::Recorder::Compare::nearer_or_equal, device::kTestBias,
+               facing_ ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack);
     frame.push(BoxPush{renderer_.buffers().box_data.address(), marks_.address(), 0, 0, 0, 1});
     frame.commands.bindVertexBuffers(0, input_.handle(), vk::DeviceSize{0});
     // Chunks wholly in view apart from those at its edges: a rasteriser that clips a batch as soon as one
@@ -79,6 +86,7 @@ private:
   }
 
   GroundChunks chunks_;
+  bool facing_;
   device::GraphicsPipeline boxes_;
   device::Buffer marks_, input_;
   std::uint32_t vertices_ = 0;

@@ -18,8 +18,16 @@ namespace sightline::reproduce {
 namespace {
 
 // One contribution test for all that have one, as in the paper; then ours.
-constexpr std::array kCulling{"vfc-vc",          "roc", "hroc", "vertex-chunk", "resident-chunk", "hiz",
-                              "hroc?leaf=boxes", "ioc", "ihzb"};
+constexpr std::array kCulling{"vfc-vc",
+                              "roc",
+                              "hroc",
+                              "vertex-chunk",
+                              "resident-chunk",
+                              "hiz",
+                              "hroc?leaf=boxes",
+                              "ioc",
+                              "ihzb",
+                              "vertex-chunk?faces=facing"};
 constexpr std::size_t kChunk = 4;  // after none
 
 std::vector<std::string> methods() {
