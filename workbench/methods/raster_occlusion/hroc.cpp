@@ -10,9 +10,6 @@ namespace sightline::methods {
 
 namespace {
 
-constexpr std::uint32_t kHrocOccluders[] =
-#include "shaders/hroc_occluders.comp.inc"
-    ;
 constexpr std::uint32_t kHrocGroups[] =
 #include "shaders/hroc_groups.comp.inc"
     ;
@@ -27,9 +24,8 @@ constexpr std::uint32_t kHrocFrag[] =
     ;
 
 struct HrocPush {
-  vk::DeviceAddress boxes, nodes, parents, leaves, marks, seen, occluders, groups, test;
+  vk::DeviceAddress boxes, nodes, parents, leaves, marks, seen, groups, test;
   std::uint32_t total, objects, most, everywhere;
-  float least;
 };
 
 /// As in hroc.h.
@@ -59,18 +55,15 @@ std::vector<std::uint32_t> constants_of(const submission::Contribution& contribu
 class Hroc final : public MarkAndDraw {
 public:
   Hroc(device::Renderer& renderer, const Parameters& parameters)
-      : MarkAndDraw(renderer, parameters),
+      : MarkAndDraw(renderer, parameters, static_cast<float>(parameters.number("occluder"))),
         every_box_(parameters.word("leaf") == "boxes"),
         most_(every_box_ ? 1 : parameters.count("most")),
-        least_(static_cast<float>(parameters.number("occluder"))),
-        find_occluders_(renderer.device(), kHrocOccluders, shader_constants(contribution_)),
         find_groups_(renderer.device(), kHrocGroups, shader_constants(contribution_)),
         lift_(renderer.device(), kHrocLift),
         cast_(renderer.device(), {.vertex = kHrocVert,
                                   .fragment = kHrocFrag,
                                   .constants = constants_of(contribution_, parameters),
-                                  .depth_write = false}),
-        occluder_draws_(renderer.draws().make_buffers(renderer.device())) {
+                                  .depth_write = false}) {
     device::Device& device = renderer.device();
     tree_.build(renderer.scene().bounds);
     upload_tree(device);
@@ -78,7 +71,6 @@ public:
       return upload(device, std::vector<std::uint32_t>(count), "the tree's marks");
     };
     marks_ = make_marks(renderer);
-    occluders_ = make_marks(renderer);
     groups_ = nothing(tree_.nodes().size());
     seen_ = nothing(tree_.nodes().size());
     test_ = nothing(sizeof(GroupTest) / 4);
@@ -125,21 +117,12 @@ private:
             leaves_.address(),
             marks_.address(),
             seen_.address(),
-            occluders_.address(),
             groups_.address(),
             test_.address(),
             static_cast<std::uint32_t>(tree_.nodes().size()),
             scene.objects,
             2 * (most_ - 1),
-            every_box_ ? 1u : 0u,
-            least_};
-  }
-
-  const device::DrawBuffers& occluders(device::Recorder& frame) override {
-    const auto pass = frame.pass("find occluders", device::PassKind::cull);
-    frame.dispatch(find_occluders_, push(), renderer_.buffers().objects);
-    renderer_.draws().build(frame, occluders_.address(), {}, 0, occluder_draws_);
-    return occluder_draws_;
+            every_box_ ? 1u : 0u};
   }
 
   void test(device::Recorder& frame) override {
@@ -176,12 +159,10 @@ private:
 
   bool every_box_;
   std::uint32_t most_;
-  float least_;
   rays::Bvh tree_;
-  device::ComputePipeline find_occluders_, find_groups_, lift_;
+  device::ComputePipeline find_groups_, lift_;
   device::GraphicsPipeline cast_;
-  device::DrawBuffers occluder_draws_;
-  device::Buffer nodes_, parents_, leaves_, marks_, occluders_, groups_, seen_, test_, staging_;
+  device::Buffer nodes_, parents_, leaves_, marks_, groups_, seen_, test_, staging_;
 };
 
 }  // namespace

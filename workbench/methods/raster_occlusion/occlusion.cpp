@@ -13,13 +13,14 @@ constexpr std::uint32_t kBoxVert[] =
 constexpr std::uint32_t kMarkFrag[] =
 #include "shaders/mark.frag.inc"
     ;
-constexpr std::uint32_t kAreaOccluders[] =
-#include "shaders/area_occluders.comp.inc"
+constexpr std::uint32_t kOccluders[] =
+#include "shaders/occluders.comp.inc"
     ;
 
-struct AreaOccludersPush {
+struct OccludersPush {
   vk::DeviceAddress boxes, marks, occluders;
   std::uint32_t objects;
+  float least;
 };
 
 using device::PassKind;
@@ -70,32 +71,33 @@ void report_visible(const Renderer& renderer, std::span<const std::uint32_t> fla
   frame.stats.objects = scene.size();
 }
 
-MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters)
+MarkAndDraw::MarkAndDraw(Renderer& renderer, const Parameters& parameters, std::optional<float> least)
     : Method(renderer.scene()),
       renderer_(renderer),
       contribution_(submission::contribution_from(parameters)),
       draws_(renderer.draws().make_buffers(renderer.device())) {
-  if (contribution_.test != submission::Contribution::Test::area) return;
-  by_area_.emplace(ByArea{{renderer.device(), kAreaOccluders, shader_constants(contribution_)},
-                          make_marks(renderer),
-                          renderer.draws().make_buffers(renderer.device())});
+  if (!least && contribution_.test != submission::Contribution::Test::area) return;
+  occluders_.emplace(Occluders{least.value_or(0),
+                               {renderer.device(), kOccluders, shader_constants(contribution_)},
+                               make_marks(renderer),
+                               renderer.draws().make_buffers(renderer.device())});
 }
 
-const device::DrawBuffers& MarkAndDraw::occluders(device::Recorder& frame) {
-  if (!by_area_) return draws_;
+const device::DrawBuffers& MarkAndDraw::find_occluders(device::Recorder& frame) const {
+  if (!occluders_) return draws_;
   const auto pass = frame.pass("find occluders", PassKind::cull);
   const device::SceneBuffers& scene = renderer_.buffers();
-  frame.dispatch(
-      by_area_->find,
-      AreaOccludersPush{scene.box_data.address(), marks(), by_area_->marks.address(), scene.objects},
-      scene.objects);
-  renderer_.draws().build(frame, by_area_->marks.address(), {}, 0, by_area_->draws);
-  return by_area_->draws;
+  frame.dispatch(occluders_->find,
+                 OccludersPush{scene.box_data.address(), marks(), occluders_->marks.address(), scene.objects,
+                               occluders_->least},
+                 scene.objects);
+  renderer_.draws().build(frame, occluders_->marks.address(), {}, 0, occluders_->draws);
+  return occluders_->draws;
 }
 
 void MarkAndDraw::do_record(FrameContext& context) {
   device::Recorder& frame = *context.recorder;
-  const device::DrawBuffers& depth = occluders(frame);
+  const device::DrawBuffers& depth = find_occluders(frame);
   {
     const auto pass = frame.pass("depth of last frame's visible objects", PassKind::occluders);
     renderer_.draw_solid(frame, depth, Renderer::Style::depth, Renderer::Clear::depth);

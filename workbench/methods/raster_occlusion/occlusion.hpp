@@ -43,16 +43,14 @@ void report_visible(const device::Renderer& renderer, std::span<const std::uint3
 /// frame's camera; boxes are tested against it; what is marked is drawn.
 class MarkAndDraw : public Method {
 public:
-  MarkAndDraw(device::Renderer& renderer, const Parameters& parameters);
+  /// `least`: px², the area of an object that lays down depth; all do where none is given.
+  MarkAndDraw(device::Renderer& renderer, const Parameters& parameters, std::optional<float> least = {});
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
   void do_record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 
 protected:
-  /// Who lays down depth, of last frame's visible objects: all but those that are dropped by their area now.
-  /// Finds them in a pass of its own.
-  virtual const device::DrawBuffers& occluders(device::Recorder& frame);
   /// Clears marks and tests boxes, each in a pass of its own.
   virtual void test(device::Recorder& frame) = 0;
   /// Where object 0's mark lies.
@@ -64,15 +62,18 @@ protected:
   submission::Contribution contribution_;
 
 private:
-  /// Finds whom their area leaves.
-  struct ByArea {
+  /// Of last frame's visible objects those that lay down depth, where not all do.
+  struct Occluders {
+    float least;
     device::ComputePipeline find;
     device::Buffer marks;
     device::DrawBuffers draws;
   };
+  /// Who lays down depth.
+  const device::DrawBuffers& find_occluders(device::Recorder& frame) const;
 
   device::DrawBuffers draws_;  ///< of the last frame until this frame's marks are known
-  std::optional<ByArea> by_area_;
+  std::optional<Occluders> occluders_;
 };
 
 }  // namespace sightline::methods

@@ -150,9 +150,8 @@ std::vector<PaperTable> times_tables(const RayPvs& measured) {
                         first_ms)};
   tables[0].note =
       "The paper does not say what its times hold. They stand here, beside the cast alone: rays, boxes and "
-      "what goes to the device and comes back. iwcpa is as printed, a lane a pair of ray and box; "
-      "tuned-iwcpa is "
-      "ours, with the same set.";
+      "what goes to the device and comes back. iwcpa is as printed, a lane a pair of ray and "
+      "box; tuned-iwcpa is ours, with the same set.";
   tables[1].note = "100 × (1 − time / BOCA's time), as the paper's text counts it.";
   tables[2].note =
       "Boxes out of triangles, tree, pipelines and buffers, cast, and one frame that draws the set. The "

@@ -19,12 +19,11 @@ layout(push_constant, scalar) uniform Push {
   NodeBuffer nodes;
   WordBuffer parents, leaves;  // by node; by object
   WordBuffer marks, seen;      // by object; by node: whether an object below it was visible last frame
-  WordBuffer occluders, groups;
+  WordBuffer groups;
   TestBuffer test;
   uint total, objects;
   uint most;        // descendants of a group
   uint everywhere;  // 1: groups out of view are drawn as well
-  float least;      // px² of an occluder
 };
 
 const uint kNoParent = 0xffffffff;

@@ -7,18 +7,21 @@
 layout(local_size_x = 256) in;
 #include "workbench/device/shaders/invocation.h"
 
-// Of what was visible last frame, what is not dropped now: nothing would be drawn where it hides others.
+// Of what was visible last frame, what is in view now and not too small to hide anything; nor dropped, for
+// nothing would be drawn where it hides others.
 layout(push_constant, scalar) uniform Push {
   BoxBuffer boxes;
   WordBuffer marks;
   WordBuffer occluders;
   uint objects;
+  float least;  // px² of an occluder
 };
 
 void main() {
   const uint object = invocation();
   if (object >= objects) return;
-  const BoxData box = boxes.at[object];
-  const bool kept = marks.at[object] != 0 && contributes(box.centre_radius, box.half_extent.xyz);
+  const vec4 sphere = boxes.at[object].centre_radius;
+  const bool kept = marks.at[object] != 0 && !outside(sphere) && projected_area(sphere) >= least &&
+                    contributes(sphere, boxes.at[object].half_extent.xyz);
   occluders.at[object] = kept ? 1 : 0;
 }
