@@ -1,6 +1,7 @@
 // Every number that the four papers print stands in their reproductions, once, in its own row and column.
 #include "workbench/reproduce/published.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "support/temporary_folder.hpp"
+#include "workbench/io/text_file.hpp"
 #include "workbench/reproduce/draw_calls/draw_calls.hpp"
 #include "workbench/reproduce/object_frustum/object_frustum.hpp"
 #include "workbench/reproduce/ray_pvs/ray_pvs.hpp"
@@ -154,6 +157,23 @@ TEST(Reproduction, TellsRatiosToItsBase) {
   const report::Table text = text_table(table);
   EXPECT_EQ(text.rows[0], (std::vector<std::string>{"a", "4 (0.67)", "8.00 (4.00)"}));
   EXPECT_EQ(text.rows[2], (std::vector<std::string>{"c", "–", "1.00 (0.50)"}));
+}
+
+TEST(Page, ChartsWhatThePaperPrintsAndOursAloneWhereItPrintsNothing) {
+  PaperTable table;
+  table.name = "table", table.keys = {"method"}, table.columns = {"speed", "excess"};
+  table.rows = {{{"a"}, {{"4", 2, {}}, {"", 3, {}}}}, {{"b"}, {{"6", 3, {}}, {"", 5, {}}}}};
+  const test::TemporaryFolder folder;
+  const auto page_of = [&] {
+    Reproduction one;
+    one.tables = {table};
+    write_reproduction(folder / "page", one);
+    return io::read_file(folder / "page/index.html", 10'000'000);
+  };
+  EXPECT_THAT(page_of(), testing::AllOf(testing::HasSubstr("a: speed"), testing::HasSubstr("excess"),
+                                        testing::Not(testing::HasSubstr("a: excess"))));
+  for (PaperTable::Row& row : table.rows) row.cells[0].published.clear();
+  EXPECT_THAT(page_of(), testing::AllOf(testing::HasSubstr("a: speed"), testing::HasSubstr("a: excess")));
 }
 
 }  // namespace

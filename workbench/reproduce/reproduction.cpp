@@ -61,26 +61,21 @@ std::string with_ratio(std::string figure, const std::optional<double>& ratio) {
   return ratio ? fmt::format("{} ({:.2f})", figure, *ratio) : figure;
 }
 
-bool has_published(const PaperTable& table, std::size_t column) {
-  return std::ranges::any_of(table.rows,
-                             [&](const auto& row) { return !row.cells[column].published.empty(); });
-}
-
 // Ratios stand in brackets; a column of ours alone takes one.
 report::Table side_by_side(const PaperTable& table) {
   report::Table out;
   out.header = table.keys;
   out.text_columns = table.keys.size();
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (has_published(table, c)) out.header.push_back(table.columns[c] + ", published");
-    out.header.push_back(has_published(table, c) ? "ours" : table.columns[c]);
+    if (table.has_published(c)) out.header.push_back(table.columns[c] + ", published");
+    out.header.push_back(table.has_published(c) ? "ours" : table.columns[c]);
   }
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     std::vector<std::string> line = table.rows[r].keys;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = table.rows[r].cells[c];
       const bool ratios = table.has_ratios(c);
-      if (has_published(table, c))
+      if (table.has_published(c))
         line.push_back(ratios ? with_ratio(published_text(cell), table.published_ratio(r, c))
                               : published_text(cell));
       line.push_back(ratios ? with_ratio(ours_text(cell), table.our_ratio(r, c)) : ours_text(cell));
@@ -97,7 +92,7 @@ report::Table line_by_line(const PaperTable& table) {
   out.text_columns = table.keys.size() + 1;
   out.header.insert(out.header.end(), table.columns.begin(), table.columns.end());
   bool both = false;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) both = both || has_published(table, c);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) both = both || table.has_published(c);
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto add = [&](const char* what, const auto& cell_text) {
       std::vector<std::string> line = table.rows[r].keys;
@@ -165,6 +160,10 @@ std::optional<double> PaperTable::published_ratio(std::size_t row, std::size_t c
 std::optional<double> PaperTable::our_ratio(std::size_t row, std::size_t column) const {
   const Cell* to = base_of(*this, row, column);
   return to ? quotient(rows[row].cells[column].ours, to->ours) : std::nullopt;
+}
+
+bool PaperTable::has_published(std::size_t column) const {
+  return std::ranges::any_of(rows, [&](const Row& row) { return !row.cells[column].published.empty(); });
 }
 
 bool PaperTable::has_ratios(std::size_t column) const {

@@ -45,6 +45,8 @@ struct PaperTable {
   [[nodiscard]] std::optional<double> our_ratio(std::size_t row, std::size_t column) const;
   /// Whether any of a column's ratios is other than 1.
   [[nodiscard]] bool has_ratios(std::size_t column) const;
+  /// Whether the paper prints anything of a column.
+  [[nodiscard]] bool has_published(std::size_t column) const;
 };
 
 /// A figure of the paper, or a part of its text: tables of ours, pictures, charts; or why it cannot be had.

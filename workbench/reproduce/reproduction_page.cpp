@@ -45,18 +45,21 @@ std::string row_label(const PaperTable& table, std::size_t row) {
   return out;
 }
 
-// Ratios where the table has a base, else what is printed; published and ours side by side.
+// Ratios where the table has a base, else what is printed; published and ours side by side. Columns of ours
+// alone stand in the table, unless there are no others.
 std::string table_chart(const PaperTable& table, const std::string& id) {
   const bool ratios = table.base != PaperTable::Base::none;
   std::string out;
   Chart made;
   made.bars = true;
   made.y = ratios ? "ratio" : "";
+  bool compared = false;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) compared = compared || table.has_published(c);
   double least = 1e300, most = 0;
   bool negative = false;
   Series published{"published", {}}, ours{"ours", {}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (ratios && !table.has_ratios(c)) continue;
+    if ((ratios && !table.has_ratios(c)) || (compared && !table.has_published(c))) continue;
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       const Cell& cell = table.rows[r].cells[c];
       const auto theirs = ratios ? table.published_ratio(r, c) : number_of(cell.published);
