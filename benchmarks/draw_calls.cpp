@@ -80,8 +80,9 @@ void move_one(benchmark::State& state, const std::string& name) {
 }
 
 void register_all() {
-  for (const std::string name : {"drawcall-wise-octree?height=6", "zhang-octree?height=6",
-                                 "zhang-kd-tree?height=6", "cluster-cone?size=128"}) {
+  for (const std::string name :
+       {"drawcall-wise-octree?height=6&least=11&cells=tight", "zhang-octree?height=6&least=11&cells=tight",
+        "zhang-kd-tree?height=6&least=11&cells=tight", "cluster-cone?size=128"}) {
     benchmark::RegisterBenchmark(("build/" + name).c_str(), build, name)
         ->Iterations(1)
         ->Unit(benchmark::kSecond);

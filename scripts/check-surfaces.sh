@@ -22,7 +22,7 @@ if [ "$full" = --full ]; then
   for structure in grid octree kd-tree; do
     triangles+=,simple-$structure,drawcall-wise-$structure,zhang-$structure
     # Forms that only parameters ask for.
-    forms+=${forms:+,}simple-$structure'?least=0&cells=printed',drawcall-wise-$structure'?least=0&cells=printed'
+    forms+=${forms:+,}simple-$structure'?least=11&cells=tight',drawcall-wise-$structure'?least=11&cells=tight'
     forms+=,drawcall-wise-$structure'?occlusion=masked',zhang-$structure'?planes=xy',zhang-$structure'?planes=both'
   done
   for name in oasago2 oa_dm1 kaos2 ce1m7 wrackdm17 ctf_inyard czest2ctf; do scenes+=("$(level $name)"); done

@@ -262,7 +262,7 @@ def shadows(quick):
 
 def draw_calls(quick):
     """The paper's walks through three levels: ratios of simple to drawcall-wise at height 4, calls of both at every
-    height by ours and by the paper's rules, and what adaptive's frames cost beside the quickest method's. Many minutes
+    height as printed and by rules of ours, and what adaptive's frames cost beside the quickest method's. Many minutes
     long, so not in a quick run."""
     if quick:
         return []
@@ -276,7 +276,7 @@ def draw_calls(quick):
         for what, column in (("calls", "calls"), ("small-frame", small), ("frame", "frame"), ("record", "CPU")):
             rows.append(Row(level, f"simple-to-wise/{structure}/{what}", "×", number(line[column])))
         rows.append(Row(level, f"zhang-to-wise/{structure}/triangles", "×", number(line["triangles zhang / wise"])))
-    for line in table_of(said, "text: structures as printed"):
+    for line in table_of(said, "text: structures"):
         case = f"{line['structure']}/{line['rules']}/height-{line['height']}"
         for method, column in (("simple", "simple's calls"), ("drawcall-wise", "drawcall-wise's")):
             rows.append(Row(line["level"], f"calls-of-{method}/{case}", "calls", number(line[column])))
@@ -284,7 +284,8 @@ def draw_calls(quick):
     for line in table_of(said, "beyond the paper, by level"):
         for what, unit, column in (("adaptive-to-quickest/frame", "×", "adaptive / quickest"),
                                    ("adaptive/learning", "frames", "after frames"),
-                                   ("cone-to-zhang-octree/triangles", "×", "triangles cluster-cone / zhang-octree")):
+                                   ("cone-to-zhang-octree/triangles", "×",
+                                    "triangles cluster-cone / zhang-octree, tight")):
             rows.append(Row(line["level"], what, unit, number(line[column])))
     if not rows:
         raise Wrong("reproduce draw-calls named no level")

@@ -24,16 +24,16 @@ const std::array<std::string, 11> kAll{
     "zhang-kd-tree",        "cluster-cone",          "adaptive"};
 
 // Forms of them that draw more, less or otherwise.
-const std::array<std::string, 10> kForms{"simple-grid?least=0&height=3",
-                                         "simple-octree?least=0&cells=printed&height=3",
-                                         "drawcall-wise-grid?cells=printed",
-                                         "drawcall-wise-octree?least=0&cells=printed&height=3",
-                                         "drawcall-wise-kd-tree?least=0&cells=printed",
+const std::array<std::string, 10> kForms{"simple-grid?cells=tight&height=3",
+                                         "simple-octree?least=11&cells=tight&height=3",
+                                         "drawcall-wise-grid?cells=tight",
+                                         "drawcall-wise-octree?least=11&cells=tight&height=3",
+                                         "drawcall-wise-kd-tree?least=11&cells=tight",
                                          "drawcall-wise-grid?occlusion=masked",
                                          "drawcall-wise-octree?occlusion=masked",
-                                         "drawcall-wise-kd-tree?occlusion=masked&cells=printed",
+                                         "drawcall-wise-kd-tree?occlusion=masked&cells=tight",
                                          "zhang-octree?planes=xy",
-                                         "zhang-grid?planes=both&cells=printed"};
+                                         "zhang-grid?planes=both&cells=tight"};
 
 std::set<std::uint32_t> submitted(const Method& method, const Frame& frame) {
   std::set<std::uint32_t> out;

@@ -117,7 +117,8 @@ TEST(HiddenCells, SmallGapsAreDrawnAlong) {
   add(1, -8), add(3, -30), add(1, -7), add(6, -30), add(1, -6);
   Frame frame;
   // Too few triangles for more than one cell.
-  cull(*create_method("drawcall-wise-octree?occlusion=masked", scene), kOntoTheWall, frame);
+  cull(*create_method("drawcall-wise-octree?occlusion=masked&least=11&cells=tight", scene), kOntoTheWall,
+       frame);
   EXPECT_EQ(frame.visible, (std::vector<ObjectId>{0, 1, 2, 3, 4, 5, 12}));
   EXPECT_EQ(frame.stats.draw_calls, 2u);
   EXPECT_EQ(frame.stats.triangles, 14u);
@@ -153,14 +154,14 @@ TEST_P(Levels, OcclusionKeepsHalfAtMostAndLosesNothing) {
 INSTANTIATE_TEST_SUITE_P(OpenArena, Levels, testing::Values("ce1m7", "wrackdm17", "ctf_inyard"),
                          [](const auto& test) { return std::string(test.param); });
 
-// What was the only way is the default, to the bit.
-TEST(CellRules, TheDefaultsAreWhatTheyWere) {
+// Who names a method of the paper gets its cells: every node split to the height, and regions.
+TEST(CellRules, TheDefaultsAreThePapers) {
   const Scene scene = test::scene_of(test::awkward_triangles()[0].triangles);
   scene::Random random(65);
   for (const std::string strategy : {"simple-", "drawcall-wise-", "zhang-"}) {
     for (const std::string structure : {"grid", "octree", "kd-tree"}) {
       const auto plain = create_method(strategy + structure, scene),
-                 told = create_method(strategy + structure + "?least=11&cells=tight", scene);
+                 told = create_method(strategy + structure + "?least=0&cells=printed", scene);
       for (int v = 0; v < 10; ++v) {
         const View view = test::random_view(random, {{-60, -25, -60}, {60, 25, 60}});
         Frame a, b;
@@ -187,8 +188,8 @@ TEST(CellRules, ThePapersRulesDrawMore) {
     }
     return sum;
   };
-  const CullStats ours = count("drawcall-wise-octree"), split = count("drawcall-wise-octree?least=0"),
-                  printed = count("drawcall-wise-octree?least=0&cells=printed");
+  const CullStats ours = count("drawcall-wise-octree?least=11&cells=tight"),
+                  split = count("drawcall-wise-octree?cells=tight"), printed = count("drawcall-wise-octree");
   EXPECT_GT(split.draw_calls, 2 * ours.draw_calls);
   EXPECT_LT(split.triangles, ours.triangles);
   EXPECT_GT(printed.draw_calls, split.draw_calls);

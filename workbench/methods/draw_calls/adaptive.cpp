@@ -61,7 +61,8 @@ std::string Adaptive::in_use() const {
   } else {
     name.append(kStrategies[static_cast<std::size_t>(plan.strategy)])
         .append(kStructures[static_cast<std::size_t>(plan.structure)])
-        .append("?height=" + std::to_string(plan.height));
+        .append("?height=" + std::to_string(plan.height))
+        .append("&least=" + std::to_string(plan.cells.least) + "&cells=tight");
   }
   return name.append("&submission=").append(to_string(way.submission));
 }

@@ -30,7 +30,7 @@ public:
   [[nodiscard]] const TriangleGeometry* geometry() const noexcept override { return &geometry_; }
 
   [[nodiscard]] bool settled() const noexcept { return trials_.settled(); }
-  /// The way in use, as a method's specification: "zhang-octree?height=4&submission=merged".
+  /// The way in use, as a method's specification: "cluster-cone?size=64&submission=merged".
   [[nodiscard]] std::string in_use() const;
 
 private:

@@ -31,6 +31,8 @@ struct Costs {
   double call, command, triangle;
 };
 
+constexpr Costs kFreeCommands{1600, 0, 100};  // a device that reads the commands of a multi-draw by itself
+
 /// Sums over the sample views.
 struct Reckoning {
   DrawCallPlan plan;
@@ -47,15 +49,22 @@ struct Reckoning {
 };
 
 std::vector<DrawCallPlan> candidates(bool many) {
+  constexpr std::uint32_t kHighest = 6;
+  constexpr std::uint32_t kStops = 3;  // lower trees are split to their height by either rule, or nearly
   std::vector<DrawCallPlan> plans;
+  const auto add = [&](partition::Structure structure, Strategy strategy, std::uint32_t height,
+                       std::uint32_t least) {
+    DrawCallPlan plan;
+    plan.structure = structure, plan.height = height, plan.strategy = strategy, plan.cells.least = least;
+    plan.facing = strategy == Strategy::zhang ? FacingRule::cone : FacingRule::none;
+    plans.push_back(plan);
+  };
   for (const auto structure :
        {partition::Structure::grid, partition::Structure::octree, partition::Structure::kd_tree}) {
     for (const Strategy strategy : {Strategy::simple, Strategy::drawcall_wise, Strategy::zhang}) {
-      for (std::uint32_t height = many ? 6 : 1; height <= 6; ++height) {
-        DrawCallPlan plan;
-        plan.structure = structure, plan.height = height, plan.strategy = strategy;
-        plan.facing = strategy == Strategy::zhang ? FacingRule::cone : FacingRule::none;
-        plans.push_back(plan);
+      for (std::uint32_t height = many ? kHighest : 1; height <= kHighest; ++height) {
+        add(structure, strategy, height, partition::kCallsWorth);
+        if (!many && height >= kStops) add(structure, strategy, height, 0);  // where calls are cheap
       }
     }
   }
@@ -174,6 +183,11 @@ std::unique_ptr<Method> make_adaptive(const MethodSite& site, const Parameters& 
   choose(cheapest(all, given, any));
   for (const double price : {16.0, 64.0, 4.0, 256.0, 1.0, 0.25})
     choose(cheapest(all, calls_worth(price), any));
+  for (const std::uint32_t least : {partition::kCallsWorth, std::uint32_t{0}}) {
+    choose(cheapest(all, kFreeCommands, [least](const DrawCallPlan& plan) {
+      return !plan.clusters && plan.cells.least == least;
+    }));
+  }
   for (const std::uint32_t size : {16, 64, 256}) {
     choose(cheapest(all, given,
                     [size](const DrawCallPlan& plan) { return plan.clusters && plan.cluster_size == size; }));

@@ -21,19 +21,19 @@ constexpr ParameterInfo kFacing{
     "facing", "the safe rule for each cell, or the paper's as printed", "cone", 0, 0, false, "cone|printed"};
 constexpr ParameterInfo kLeast{"least",
                                "a tree's node of fewer triangles than this for each child stays whole; 0 "
-                               "splits every node to the height",
-                               "11",
+                               "splits every node to the height, as the paper does",
+                               "0",
                                0,
                                1e6,
                                true};
 constexpr ParameterInfo kCells{"cells",
-                               "boxes around what shows in a cell, or the cells as the paper has them: "
-                               "regions, those of a grid as high as the scene",
-                               "tight",
+                               "the cells as the paper has them: regions, those of a grid as high as the "
+                               "scene; or boxes around what shows in a cell",
+                               "printed",
                                0,
                                0,
                                false,
-                               "tight|printed"};
+                               "printed|tight"};
 constexpr ParameterInfo kOcclusion{
     "occlusion",
     "masked: what opaque triangles hide of cells in view is not drawn, found on "

@@ -13,6 +13,7 @@
 
 #include "workbench/camera/camera_path.hpp"
 #include "workbench/device/frame_times.hpp"
+#include "workbench/methods/draw_calls/draw_calls.hpp"
 #include "workbench/reproduce/draw_calls/call_rates.hpp"
 #include "workbench/reproduce/draw_calls/draw_call_levels.hpp"
 #include "workbench/reproduce/reproduction.hpp"
@@ -65,14 +66,17 @@ struct WalkRow {
   [[nodiscard]] double fps() const noexcept { return frame_ms > 0 ? 1000 / frame_ms : 0; }
 };
 
-/// The parameters by which a structure is split and bounded as in the paper.
-inline constexpr std::string_view kPrintedRules = "least=0&cells=printed";
+/// How a structure is split and bounded: as in the paper, and two other ways as parameters.
+inline constexpr std::string_view kPrintedCells = "", kSplitCells = "cells=tight";
+
+/// A method, parameters and all, with the cells that `adaptive` chooses among.
+std::string with_tight_cells(std::string_view method);
 
 /// What one structure of one height makes of a level, and submits along the walk; means over its views.
 struct StructureCount {
   std::string structure;
   std::uint32_t height = 0;
-  std::string rules;                           ///< parameters beyond the height: "", "least=0", kPrintedRules
+  std::string rules;                           ///< kPrintedCells, kSplitCells or methods::kTightCells
   double possible = 0, made = 0, visited = 0;  ///< cells, cells, nodes a frame
   double wise_calls = 0, simple_calls = 0, wise_triangles = 0;
 
@@ -125,7 +129,7 @@ camera::CameraPath turn_and_walk(const Scene& scene, std::size_t turn, std::size
 LevelWalk walk_level(device::Device& device, const LevelChoice& level, const DrawCallOptions& options,
                      const Progress& progress = {});
 
-/// Cells, nodes and calls of every structure and height, by the rules of ours and as printed, along views.
+/// Cells, nodes and calls of every structure and height, as printed and by two rules of ours, along views.
 std::vector<StructureCount> count_structures(const Scene& scene, const std::vector<View>& views);
 
 /// All that was measured; what was not is empty.

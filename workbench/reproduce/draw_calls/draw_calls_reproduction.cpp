@@ -78,7 +78,7 @@ double most_calls_ratio(const LevelWalks& walks) {
   double most = 0;
   for (const LevelWalk& walk : walks) {
     for (const StructureCount& count : walk.counts) {
-      if (count.rules == kPrintedRules) most = std::max(most, count.ratio());
+      if (count.rules == kPrintedCells) most = std::max(most, count.ratio());
     }
   }
   return most;
@@ -136,9 +136,9 @@ Cell text_cell(std::string_view what, const LevelWalks& walks) {
   } else if (what == "octree height 4: nodes possible") {
     cell.ours = possible_cells("octree", 4);
   } else if (what == "octree height 4 Manor: nodes created about") {
-    words([](const LevelWalk& w) { return w.count("octree", 4, kPrintedRules).made; });
+    words([](const LevelWalk& w) { return w.count("octree", 4, kPrintedCells).made; });
   } else if (what.starts_with("octree") && what.find("nodes") != std::string_view::npos) {
-    words([](const LevelWalk& w) { return w.count("octree", 4, kPrintedRules).visited; });
+    words([](const LevelWalk& w) { return w.count("octree", 4, kPrintedCells).visited; });
   } else if (what == "zhang octree Coldfront: calls a frame mean") {
     words([&](const LevelWalk& w) { return zhang(w).draw_calls; });
   } else if (what == "zhang octree Manor: calls more than drawcall-wise about") {

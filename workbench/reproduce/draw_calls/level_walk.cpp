@@ -61,11 +61,15 @@ std::vector<std::string> specifications(bool whole) {
   std::vector<std::string> out{"nothing", "none"};
   for (const auto variant : kWalkVariants) {
     for (const auto structure : kWalkStructures) {
-      for (std::uint32_t height = 1; height <= kHighest; ++height)
+      for (std::uint32_t height = 1; height <= kHighest; ++height) {
         out.push_back(fmt::format("{}-{}?height={}", variant, structure, height));
+        if (whole || height == 4) out.push_back(with_tight_cells(out.back()));
+      }
       if (!whole) continue;
-      for (const char* submission : {"multi-draw", "merged"})
-        out.push_back(fmt::format("{}-{}?height=4&submission={}", variant, structure, submission));
+      for (const char* submission : {"multi-draw", "merged"}) {
+        out.push_back(with_tight_cells(fmt::format("{}-{}?height=4", variant, structure)) +
+                      "&submission=" + submission);
+      }
     }
   }
   for (const auto structure : kWalkStructures) {
@@ -208,6 +212,10 @@ private:
 };
 
 }  // namespace
+
+std::string with_tight_cells(std::string_view method) {
+  return fmt::format("{}&{}", method, methods::kTightCells);
+}
 
 bool WalkRow::is_of_the_paper() const noexcept {
   return height > 0 && method.find('&') == std::string::npos;

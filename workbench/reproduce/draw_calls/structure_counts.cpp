@@ -10,7 +10,7 @@ namespace sightline::reproduce {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kCellRules{"", "least=0", kPrintedRules};
+constexpr std::array kCellRules{kPrintedCells, kSplitCells, methods::kTightCells};
 
 StructureCount count_one(const Scene& scene, std::string_view structure, std::uint32_t height,
                          const std::string& rules, const std::vector<View>& views) {

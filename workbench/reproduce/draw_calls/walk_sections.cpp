@@ -67,10 +67,7 @@ PaperSection figure_8(const LevelWalks& walks) {
     section.tables.push_back(std::move(table));
   }
   section.note =
-      "Means over the views of each walk, here and in figures 9 and 10 with cells by our rules, which stop "
-      "splitting by themselves: the heights at which they are best are no more than like the paper's. What "
-      "its own cells make of calls stands under \"structures as printed\". The paper's bars are not printed "
-      "as numbers; its best heights are.";
+      "Means over the views of each walk. The paper's bars are not printed as numbers; its best heights are.";
   return section;
 }
 
