@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "library/world/world_state.hpp"
@@ -86,6 +87,13 @@ public:
   void shuffle() {
     for (std::size_t i = standing_.size(); i > 1; --i)
       std::swap(standing_[i - 1], standing_[random_.below(static_cast<std::uint32_t>(i))]);
+  }
+
+  // Lists others first, as many, in the order of their ids.
+  void choose(std::size_t count) {
+    shuffle();
+    std::sort(standing_.begin(), standing_.begin() + static_cast<std::ptrdiff_t>(count),
+              [](Handle a, Handle b) { return a.index < b.index; });
   }
 
   void remove(std::size_t count) {
@@ -288,6 +296,26 @@ TEST(Movers, ThoseThatMoveInNoOrderStandInPages) {
     crowd.expect_right();
     crowd.move(0, 1, 1);
     EXPECT_FALSE(keeps_pages(crowd.world()));
+  }
+}
+
+// Others each frame in the order of their ids, of which many fall in each page: they are written together,
+// also beside holes, where some come to their pages only now, and where some go far.
+TEST(Movers, ThoseThatMoveInTheOrderOfTheirIdsStandInPages) {
+  for (const Box& around : {kOneSector, kTwoSectors}) {
+    Crowd crowd(35, around);
+    crowd.insert(6000);
+    for (int frame = 0; frame < 60; ++frame) {
+      const std::size_t count = crowd.size() / (frame % 2 == 0 ? 2 : 4);
+      crowd.choose(count);
+      crowd.move(0, count, frame % 5 == 4 ? 0.0f : 2.0f);
+      if (frame % 7 == 3) crowd.remove(40), crowd.insert(45);
+      if (frame % 5 == 4) expect_sound(crowd.world()), crowd.expect_right();
+      crowd.cull();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_TRUE(keeps_pages(crowd.world()));
+    EXPECT_GT(movers_of(crowd.world()), 5000u);
   }
 }
 
