@@ -12,7 +12,7 @@ int main(void) {
     float* box = boxes[i];
     box[0] = x, box[1] = 0, box[2] = z, box[3] = x + 1, box[4] = 2, box[5] = z + 1;
   }
-  sightline_world* world = sightline_world_create(); /* the process ends before they need be destroyed */
+  sightline_world* world = sightline_world_create(); /* if a call fails the process ends with it */
   sightline_culler* culler = sightline_culler_create();
   const sightline_box_view all = sightline_boxes_min_max_float(*boxes, *boxes + 3, sizeof *boxes, kThings);
   const sightline_handles given = sightline_handles_of(handles, sizeof *handles, kThings);
@@ -36,5 +36,5 @@ int main(void) {
       return puts(sightline_last_error()), 2;
     printf("the gate is %s: draw %zu of %d\n", shut ? "shut" : "open", done.count, kThings);
   }
-  return 0;
+  return sightline_culler_destroy(culler), sightline_world_destroy(world), 0;
 }
