@@ -252,7 +252,7 @@ void run(const Options& options) {
   const OccluderMesh mesh =
       or_throw(OccluderMesh::make(occluders.positions, occluders.indices,
                                   options.two_sided ? Sides::both : Sides::front, TJunctions::closed));
-  auto owned = std::make_unique<Ours>(mesh, "sightline", OcclusionOptions{});
+  auto owned = std::make_unique<Ours>(mesh, "sightline", OcclusionOptions{Coverage::centres});
   const Ours& ours = *owned;
   contestants.push_back(std::move(owned));
   contestants.push_back(
@@ -260,9 +260,9 @@ void run(const Options& options) {
   contestants.push_back(
       std::make_unique<Ours>(mesh, "sightline, half resolution", OcclusionOptions{Coverage::centres, 2}));
   if (options.threads > 1) {
-    contestants.push_back(std::make_unique<Ours>(mesh,
-                                                 "sightline, " + std::to_string(options.threads) + " threads",
-                                                 OcclusionOptions{}, tbb_jobs(options.threads)));
+    contestants.push_back(
+        std::make_unique<Ours>(mesh, "sightline, " + std::to_string(options.threads) + " threads",
+                               OcclusionOptions{Coverage::centres}, tbb_jobs(options.threads)));
   }
   for (const std::string& file : options.peers)
     contestants.push_back(std::make_unique<Peer>(file, occluders, options.two_sided, width, height));

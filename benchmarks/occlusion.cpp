@@ -55,7 +55,7 @@ void draw(benchmark::State& state, bool from_above, bool sorted) {
   const std::vector<Box> boxes = in_order(houses(4000, 300), view, sorted);
   OcclusionBuffer buffer;
   for (auto _ : state) {
-    or_throw(buffer.begin({view, {}}));
+    or_throw(buffer.begin({view, {}}, {Coverage::centres}));
     or_throw(buffer.draw_boxes(std::span<const Box>(boxes)));
   }
   std::vector<float> pixels(std::size_t{view.width} * view.height);
@@ -122,7 +122,7 @@ std::size_t reference(const View& view, std::span<const Box> occluders, const Bo
 void query(benchmark::State& state, bool from_above) {
   const View view = looking(from_above);
   OcclusionBuffer buffer;
-  or_throw(buffer.begin({view, {}}));
+  or_throw(buffer.begin({view, {}}, {Coverage::centres}));
   const std::vector<Box> occluders = in_order(houses(4000, 300), view, true);
   or_throw(buffer.draw_boxes(std::span<const Box>(occluders)));
   scene::Random random(2);

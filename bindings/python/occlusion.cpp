@@ -226,9 +226,10 @@ void add_occlusion(py::module_& m) {
       "are in metres about the view's origin. Refused: drawing and reading before begin().")
       .def(py::init<>())
       .def("begin", &begin,
-           "Empties it and takes the view, of at most 8192 pixels a side. It answers for pixel 'centres',\n"
-           "or for any place on the image ('area'), in pixels 1, 2 or 4 times as wide as the view's.",
-           py::arg("view"), py::arg("coverage") = "centres", py::arg("scale") = 1)
+           "Empties it and takes the view, of at most 8192 pixels a side. It answers for any place on\n"
+           "the image ('area'), or for pixel 'centres' alone, in pixels 1, 2 or 4 times as wide as the "
+           "view's.",
+           py::arg("view"), py::arg("coverage") = "area", py::arg("scale") = 1)
       .def_property_readonly("view", &begun_view, "The view it was begun with, or None.")
       .def("draw_boxes", &draw_boxes,
            "Draws solid boxes: every point inside one must be solid. Those that are not valid or reach\n"
@@ -240,11 +241,12 @@ void add_occlusion(py::module_& m) {
       .def("draw_mesh", &draw_mesh, "Draws a mesh moved by an affine matrix (4, 4), or where it stands.",
            py::arg("mesh"), py::arg("transform") = py::none())
       .def("may_see_boxes", &may_see_boxes,
-           "bool (n,): whether some pixel centre may see the box; False is certain. All True before begin().",
+           "bool (n,): whether some place on the image may see the box; False is certain. All True before\n"
+           "begin().",
            py::arg("boxes"))
       .def("may_see_spheres", &may_see_spheres, "The same of spheres.", py::arg("spheres"))
       .def("may_see_triangles", &may_see_triangles,
-           "Whether some pixel centre may see one of the triangles, whose corners are float32 (..., 3).",
+           "Whether some place on the image may see one of the triangles; corners are float32 (..., 3).",
            py::arg("corners"))
       .def("keep_seen", &keep_seen,
            "Those of `objects`, uint32 (n,), of which a triangle may be seen, in order.",

@@ -367,7 +367,7 @@ void add_culler(py::module_& m) {
           "Occlusion.begin has them. levels=Levels(...): also each object's level of detail and, of 255,\n"
           "the share of the next coarser one that it fades into, uint8 (k,) each.",
           py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
-          py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "centres",
+          py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "area",
           py::arg("scale") = 1, py::arg("levels") = py::none())
       .def(
           "report_frame_time",

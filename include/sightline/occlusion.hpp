@@ -1,9 +1,9 @@
 // Occlusion on the CPU, with no GPU: occluders are rasterised into a tiled hierarchical depth buffer, then
 // boxes are tested against it. After masked software occlusion culling (Hasselgren, Andersson &
 // Akenine-Möller 2016), but with a depth a pixel, and conservative: an occluder counts at a pixel only where
-// it surely covers the pixel's centre, with a depth that surely is not nearer than its own; a box is hidden
-// only where its nearest depth lies behind every pixel centre of its outward-rounded rectangle. Where all of
-// the image is asked for, the same is said of whole pixels in place of centres.
+// it surely covers all of it, with a depth that surely is nowhere nearer than its own; a box is hidden only
+// where its nearest depth lies behind every pixel that its outward-rounded rectangle touches. Where centres
+// are asked for, the same is said of pixels' centres in place of whole ones.
 #pragma once
 
 #include <cstddef>
@@ -21,17 +21,19 @@ namespace sightline {
 
 /// Which places on the image an OcclusionBuffer answers for.
 enum class Coverage : std::uint8_t {
-  centres,  ///< pixel centres, where rasterisers and rays take their one sample by default
+  /// Pixel centres alone, where a rasteriser takes its one sample: for who draws the view's own pixels
+  /// without
+  /// multisampling, jitter or upscaling. Hides more, and meshes cost a half to a third as much to draw.
+  centres,
   /// Any place on the image: multisampling, jitter, upscaling, another renderer's pixels. An occluder counts
   /// only in pixels that it covers whole. Triangles of a mesh that share an edge cover a pixel together, but
-  /// those that are less than half a pixel wide count as missing. Meshes cost two to three times as much to
-  /// draw.
+  /// those that are less than half a pixel wide count as missing.
   area,
 };
 
 /// How fine and for which places an OcclusionBuffer answers.
 struct OcclusionOptions {
-  Coverage coverage = Coverage::centres;  ///< which places are answered for
+  Coverage coverage = Coverage::area;  ///< which places are answered for
   /// Pixels of the view along a side of one of the buffer's: 1, 2 (half resolution) or 4. Coarser has fewer
   /// tiles and hides less, and meshes are slower to draw; what is promised stays the same.
   std::uint32_t scale = 1;
@@ -80,10 +82,10 @@ private:
   State* state_;
 };
 
-/// One view's depth of occluders. Begin it with a view, draw occluders, ask. What is said of pixel centres
-/// holds for any place on the image where it was begun for that (Coverage::area). It answers for that view
-/// alone: Culler refuses it beside any other. Before the first begin() nothing can be drawn and all may be
-/// seen.
+/// One view's depth of occluders. Begin it with a view, draw occluders, ask. What is said of places on
+/// the image holds for pixel centres alone where it was begun for those (Coverage::centres). It answers for
+/// that view alone: Culler refuses it beside any other. Before the first begin() nothing can be drawn and all
+/// may be seen.
 ///
 /// A BoxView says itself where its boxes stand: doubles, or floats about its own origin, which is fastest
 /// where it is the view's. All else is in metres about the view's origin.
@@ -128,20 +130,20 @@ public:
   /// 1 ns a tile. Allocates: until it has seen its largest mesh, for each job.
   Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
-  /// Whether some pixel centre may see the box. False is certain; of a box that is not finite, true. Cost: 30
-  /// ns.
+  /// Whether some place on the image may see the box. False is certain; of a box that is not finite, true.
+  /// Cost: 30 ns.
   [[nodiscard]] bool may_see(const Box& box) const noexcept;
   /// The same for many: visible[i] is 1 or 0, for as many as there are boxes.
   /// Errors: bad_argument for boxes that are not sound; buffer_too_small. Cost: linear, some 10 ns a box; an
   /// array a coordinate (BoxView::arrays) costs least.
   Status may_see(const BoxView& boxes, std::span<std::uint8_t> visible) const noexcept;
-  /// Whether some pixel centre may see each sphere. A thing whose box and sphere are both known may be seen
-  /// only if both may. Errors, Cost: the same.
+  /// Whether some place on the image may see each sphere. A thing whose box and sphere are both known may be
+  /// seen only if both may. Errors, Cost: the same.
   Status may_see(const SphereView& spheres, std::span<std::uint8_t> visible) const noexcept;
 
-  /// Whether some pixel centre may see one of the triangles, three corners each: pixel by pixel, so closer to
-  /// the truth than a box, and dearer. False is certain. A triangle with a corner that is not finite is seen;
-  /// corners that make no whole triangle are not looked at. Cost: linear until one is seen.
+  /// Whether some place on the image may see one of the triangles, three corners each: pixel by pixel, so
+  /// closer to the truth than a box, and dearer. False is certain. A triangle with a corner that is not
+  /// finite is seen; corners that make no whole triangle are not looked at. Cost: linear until one is seen.
   [[nodiscard]] bool may_see(std::span<const Vec3> triangles) const noexcept;
   /// The same of one object's triangles; true where there is no such object, false where it has none. Cost:
   /// linear until one is seen.

@@ -315,9 +315,9 @@ public:
 
   /// Writes the ids of the objects that at least one of the 1 … kMaxViews views may see, and which views see
   /// each, in an order that depends on the calls so far alone, culls between moves among them: never on
-  /// threads, SIMD width or processor. Nothing that is visible at some pixel centre is left out, but by
-  /// `layers`, `distances`, `min_area` and `casters`; nothing at any place on the image where occlusion is
-  /// asked for with Coverage::area. Errors: bad_argument (no or too many views; an option out of range),
+  /// threads, SIMD width or processor. Nothing that is visible anywhere on the image is left out, but by
+  /// `layers`, `distances`, `min_area` and `casters`; by occlusion for Coverage::centres, nothing that is
+  /// visible at some pixel centre. Errors: bad_argument (no or too many views; an option out of range),
   /// bad_view, buffer_too_small, stale_buffer; index() is the view's. Nothing is written then. Cost: grows
   /// with what is visible and with the boundary of the views, not with the world: some 25 µs for the
   /// 100,000 of a million still boxes that a camera sees. Threads: only reads the world and the buffers.

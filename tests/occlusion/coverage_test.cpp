@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <sightline/occlusion.hpp>
+#include <sightline/world.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -317,7 +318,7 @@ void hold_placed(Random& random, const View& view, const scene::Shape& shape, co
   const ExactRays rays(view);
   const geometry::ExactAffine there = geometry::exact_affine(to);
   OcclusionBuffer buffer;
-  ASSERT_TRUE(buffer.begin({view, {}}));
+  ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
   ASSERT_TRUE(buffer.draw_mesh(mesh, to));
   hold_pixels(
       random, buffer, [&](double x, double y) { return nearest_of(rays, x, y, shape, there); }, counted);
@@ -460,6 +461,31 @@ TEST(Coverage, RefusesOptionsThatAreNone) {
     EXPECT_EQ(buffer.begin(view, {Coverage::area, scale}).code(), StatusCode::bad_argument);
   EXPECT_EQ(buffer.begin(view, {static_cast<Coverage>(7), 1}).code(), StatusCode::bad_argument);
   EXPECT_FALSE(buffer.begun());
+}
+
+// Who asks for nothing else is safe wherever he samples.
+TEST(Coverage, IsOfAllOfTheImageUnlessToldOtherwise) {
+  EXPECT_EQ(OcclusionOptions{}, kArea);
+  EXPECT_EQ(CullOptions{}.buffer, kArea);
+  const View view = *make_view({}, 64, 64);
+  OcclusionBuffer plain, area, centres;
+  ASSERT_TRUE(plain.begin({view, {}}));
+  ASSERT_TRUE(area.begin({view, {}}, kArea));
+  ASSERT_TRUE(centres.begin({view, {}}, {Coverage::centres}));
+  const Box wall{{-1.08f, -1.08f, -6}, {1.08f, 1.08f, -5}};  // ends within pixels, beyond their centres
+  std::array<std::vector<float>, 3> nearness;
+  const std::array<OcclusionBuffer*, 3> buffers{&plain, &area, &centres};
+  for (std::size_t b = 0; b < buffers.size(); ++b) {
+    ASSERT_TRUE(buffers[b]->draw_boxes(BoxView(std::span(&wall, 1))));
+    nearness[b].resize(64 * 64);
+    ASSERT_TRUE(buffers[b]->read_nearness(nearness[b]));
+  }
+  const auto drawn = [&](std::size_t b) {
+    return std::ranges::count_if(nearness[b], [](float depth) { return depth > 0; });
+  };
+  EXPECT_EQ(nearness[0], nearness[1]);
+  EXPECT_GT(drawn(0), 0);
+  EXPECT_LT(drawn(0), drawn(2));
 }
 
 }  // namespace

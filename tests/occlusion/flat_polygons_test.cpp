@@ -206,7 +206,7 @@ TEST(FlatPolygons, AreNowhereDrawnNearerThanTheyAreAndAlmostEverywhereTheyAre) {
     const OccluderMesh mesh = mesh_of(quads);
     pairs += polygons_of(mesh).size();
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({*view, {}}));
+    ASSERT_TRUE(buffer.begin({*view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_mesh(mesh));
     std::vector<float> drawn(std::size_t{view->width} * view->height);
     EXPECT_TRUE(buffer.read_nearness(drawn));

@@ -59,7 +59,8 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThread) {
     // No whole number of tiles high.
     const View view = *make_view(camera, 250, 301);
     for (const OcclusionOptions& options :
-         {OcclusionOptions{}, OcclusionOptions{Coverage::area}, OcclusionOptions{Coverage::centres, 2}}) {
+         {OcclusionOptions{Coverage::centres}, OcclusionOptions{Coverage::area},
+          OcclusionOptions{Coverage::centres, 2}}) {
       const std::vector<float> alone = drawn(mesh, view, options, {});
       for (const float nearness : alone) covered += nearness > 0;
       for (const std::uint32_t threads : {1u, 2u, 3u, 8u, 64u}) {
@@ -89,7 +90,8 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThreadOfFlatPieces) {
                         .near_plane = 0.05f};
     const View view = *make_view(camera, 120, 200);
     for (const OcclusionOptions& options :
-         {OcclusionOptions{}, OcclusionOptions{Coverage::area}, OcclusionOptions{Coverage::area, 2}}) {
+         {OcclusionOptions{Coverage::centres}, OcclusionOptions{Coverage::area},
+          OcclusionOptions{Coverage::area, 2}}) {
       const std::vector<float> alone = drawn(mesh, view, options, {});
       for (const float nearness : alone) covered += nearness > 0;
       EXPECT_EQ(drawn(mesh, view, options, {test::run_threads, nullptr, 3}), alone) << scene;
@@ -110,7 +112,7 @@ TEST(OcclusionJobs, DrawBehindWhatIsThere) {
   for (const std::uint32_t threads : {1u, 4u}) {
     OcclusionBuffer buffer;
     const JobSystem jobs{test::run_threads, nullptr, threads};
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     ASSERT_TRUE(buffer.draw_mesh(mesh, {}, jobs));
     ASSERT_TRUE(buffer.draw_mesh(mesh, behind, jobs));
     ASSERT_TRUE(buffer.read_nearness(pictures.emplace_back(320 * 200)));

@@ -187,7 +187,7 @@ TEST(MakeOccluder, CoversWhatTheMeshCoversByRaysInDoubles) {
           .eye = test::scaled(way, 6), .forward = test::scaled(way, -1), .vertical_fov = 0.7f};
       const View view = *make_view(camera, 48, 48);
       OcclusionBuffer buffer;
-      ASSERT_TRUE(buffer.begin({view, {}}));
+      ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
       ASSERT_TRUE(buffer.draw_mesh(mesh));
       std::vector<float> nearness(std::size_t{48} * 48);
       ASSERT_TRUE(buffer.read_nearness(nearness));

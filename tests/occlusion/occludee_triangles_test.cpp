@@ -29,7 +29,7 @@ TEST(OccludeeTriangles, AreSeenWhereTheirTrianglesAreOneByOneAndInBatches) {
   std::size_t hidden = 0, seen = 0;
   for (int round = 0; round < 100; ++round) {
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({test::small_view(random), {}}));
+    ASSERT_TRUE(buffer.begin({test::small_view(random), {}}, {Coverage::centres}));
     std::vector<Box> occluders;
     for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, 6.0f));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
@@ -148,7 +148,7 @@ TEST(OccludeeTriangles, OfOneSideAlmostEdgeOnMayBeSeenFromBehind) {
 TEST(OccludeeTriangles, ThatDoNotExistMayBeSeen) {
   Random random(24);
   OcclusionBuffer buffer;
-  ASSERT_TRUE(buffer.begin({test::small_view(random), {}}));
+  ASSERT_TRUE(buffer.begin({test::small_view(random), {}}, {Coverage::centres}));
   EXPECT_TRUE(buffer.may_see(OccludeeTriangles{}, 0));
 }
 

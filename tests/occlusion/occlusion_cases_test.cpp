@@ -16,7 +16,7 @@ struct Case {
   // One frame: what a pixel centre sees must be kept.
   void frame(const View& view, std::span<const Box> occluders, const Box& object) {
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     const ExactRays rays(view);
     bool visible = false;
@@ -105,7 +105,8 @@ TEST(OcclusionCases, TheEyeCloseToAnOccluderAndInsideOne) {
 bool seen_beside_mesh(std::span<const Vec3> positions, std::span<const std::uint32_t> indices,
                       const Box& object) {
   OcclusionBuffer buffer;
-  EXPECT_TRUE(buffer.begin({*make_view(Camera{.near_plane = 0.1f, .far_plane = 2000}, 1280, 720), {}}));
+  EXPECT_TRUE(buffer.begin({*make_view(Camera{.near_plane = 0.1f, .far_plane = 2000}, 1280, 720), {}},
+                           {Coverage::centres}));
   EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(positions, indices)));
   return buffer.may_see(object);
 }
@@ -140,7 +141,7 @@ TEST(OcclusionCases, BehindWhatTheNearPlaneCutsOffFarFromTheOrigin) {
       const std::array<Vec3, 4> wall{Vec3{1.5f, 0.5f, z}, Vec3{3.5f, 0.5f, z}, Vec3{3.5f, 2.5f, z},
                                      Vec3{1.5f, 2.5f, z}};
       OcclusionBuffer buffer;
-      ASSERT_TRUE(buffer.begin({*make_view(here, 160, 120), {}}));
+      ASSERT_TRUE(buffer.begin({*make_view(here, 160, 120), {}}, {Coverage::centres}));
       ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(wall, indices)));
       EXPECT_EQ(buffer.may_see(Box{{2, 1, 225}, {3, 2, 226}}), farther < 0) << farther;
     }

@@ -40,7 +40,7 @@ TEST(Occlusion, DrawsBoxesNowhereNearerThanTheyAreAndAlmostEverywhereTheyAre) {
     std::vector<Box> occluders;
     for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, round % 3 == 0 ? 30.0f : 6.0f));
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     std::vector<float> drawn(std::size_t{view.width} * view.height);
     EXPECT_TRUE(buffer.read_nearness(drawn));
@@ -66,7 +66,7 @@ TEST(Occlusion, NeverHidesWhatAPixelCentreSees) {
     std::vector<Box> occluders;
     for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, 8));
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     const ExactRays rays(view);
     const Frustum frustum = make_frustum(view);
@@ -105,7 +105,7 @@ TEST(Occlusion, MeshesAreTightInsideAndNeverTooLarge) {
     camera.forward = {-camera.eye.x, -camera.eye.y, -camera.eye.z};
     const View view = *make_view(camera, 200, 160);
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_mesh(mesh));
     std::vector<float> drawn(200 * 160);
     EXPECT_TRUE(buffer.read_nearness(drawn));
@@ -148,7 +148,7 @@ TEST(Occlusion, DrawsNothingOfWhatTransformsMakeNoNumbers) {
       for (int row = 0; row < 3; ++row) {
         for (const int column : {0, 1, 3}) {
           OcclusionBuffer buffer;
-          ASSERT_TRUE(buffer.begin({view, {}}));
+          ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
           Mat4 transform;
           transform.m[static_cast<std::size_t>(4 * column + row)] = bad;
           EXPECT_EQ(bool(buffer.draw_mesh(mesh, transform)), std::isfinite(bad));
@@ -186,7 +186,7 @@ struct BoxesBeforeTriangles {
   BoxesBeforeTriangles(Random& random, float size) : view(test::small_view(random)) {
     std::vector<Box> occluders;
     for (int i = 0; i < 12; ++i) occluders.push_back(test::box_of(random, size));
-    EXPECT_TRUE(buffer.begin({view, {}}));
+    EXPECT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     const ExactRays rays(view);
     exact = exact_depths(rays, view, occluders);
@@ -284,8 +284,8 @@ TEST(Occlusion, MeshesOfManyGroupsHideTheSameHoweverTheyAreCut) {
     camera.orthographic_height = round % 5 == 4 ? 12.0f : 0;
     const View view = *make_view(camera, 150, 110);
     OcclusionBuffer whole, pieces;
-    ASSERT_TRUE(whole.begin({view, {}}));
-    ASSERT_TRUE(pieces.begin({view, {}}));
+    ASSERT_TRUE(whole.begin({view, {}}, {Coverage::centres}));
+    ASSERT_TRUE(pieces.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(whole.draw_mesh(mesh, transform));
     for (std::size_t i = 0; i < shape.indices.size(); i += 48)
       EXPECT_TRUE(pieces.draw_mesh(
@@ -313,7 +313,7 @@ TEST(Occlusion, RectanglesOfAnySizeAreTestedByEachOfTheirPixels) {
     std::vector<Box> occluders;
     for (int i = 0; i < 60; ++i) occluders.push_back(test::box_of(random, 12));
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     std::vector<float> drawn(203 * 117);
     EXPECT_TRUE(buffer.read_nearness(drawn));
@@ -364,7 +364,7 @@ TEST(Occlusion, CallsVisibleWhatIsNoNumber) {
     Camera camera;
     camera.orthographic_height = orthographic ? 6.0f : 0;
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({*make_view(camera, 64, 48), {}}));
+    ASSERT_TRUE(buffer.begin({*make_view(camera, 64, 48), {}}, {Coverage::centres}));
     ASSERT_TRUE(buffer.draw_boxes(std::array{Box{{-50, -50, -9}, {50, 50, -8}}}));
     const auto box = [&](const std::array<float, 9>& c) {
       return buffer.may_see(Box{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}});
@@ -414,7 +414,7 @@ TEST(Occlusion, SameBitsForEveryTargetAndOrder) {
   crossing.m[12] = 2, crossing.m[14] = 60;
   const auto run = [&] {
     OcclusionBuffer buffer;
-    EXPECT_TRUE(buffer.begin({view, {}}));
+    EXPECT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_boxes(occluders));
     EXPECT_TRUE(buffer.draw_spheres(spheres));
     EXPECT_TRUE(buffer.draw_mesh(mesh, crossing));

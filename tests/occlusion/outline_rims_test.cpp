@@ -27,7 +27,7 @@ TEST(OutlineRims, HoldNoPixelCentreThatARasteriserMayMiss) {
   OcclusionBuffer buffer;
   std::vector<float> nearness(kSide * kSide);
   for (const float within : {1.0f / 1024, 1.0f / 300, 1.0f / 64}) {
-    ASSERT_TRUE(buffer.begin(flat_view()));
+    ASSERT_TRUE(buffer.begin(flat_view(), {Coverage::centres}));
     const std::array wall{up_to(20.5f + within, 0, 1)};
     ASSERT_TRUE(buffer.draw_boxes(wall));
     ASSERT_TRUE(buffer.read_nearness(nearness));
@@ -40,7 +40,7 @@ TEST(OutlineRims, HoldNoPixelCentreThatARasteriserMayMiss) {
 TEST(OutlineRims, ReachEveryPixelCentreThatARasteriserMayFill) {
   OcclusionBuffer buffer;
   for (const float before : {1.0f / 1024, 1.0f / 300, 1.0f / 16}) {
-    ASSERT_TRUE(buffer.begin(flat_view()));
+    ASSERT_TRUE(buffer.begin(flat_view(), {Coverage::centres}));
     const std::array wall{up_to(20.3f, 0, 1)};
     ASSERT_TRUE(buffer.draw_boxes(wall));
     const std::array asked{Box{{5, 10, -20}, {20.5f - before, 50, -10}}};

@@ -44,7 +44,7 @@ TEST(OcclusionRefusals, BeforeBeginNothingIsDrawnAndAllMayBeSeen) {
 
 TEST(OcclusionRefusals, ShortSpansAndUnsoundViews) {
   OcclusionBuffer buffer;
-  ASSERT_TRUE(buffer.begin(kView));
+  ASSERT_TRUE(buffer.begin(kView, {Coverage::centres}));
   const std::vector<Box> boxes(100, Box{{-1, -1, -20}, {1, 1, -19}});
   const std::vector<Sphere> spheres(100, Sphere{{0, 0, -20}, 1});
   std::vector<std::uint8_t> visible(100);
@@ -80,7 +80,7 @@ TEST(OcclusionRefusals, MeshesAndTransforms) {
             StatusCode::bad_argument);
   const OccluderMesh mesh = *OccluderMesh::make(kTriangle, kCorners);
   OcclusionBuffer buffer;
-  ASSERT_TRUE(buffer.begin(kView));
+  ASSERT_TRUE(buffer.begin(kView, {Coverage::centres}));
   Mat4 projective, infinite;
   projective.m[3] = 1, infinite.m[13] = INFINITY;
   EXPECT_EQ(buffer.draw_mesh(mesh, projective).code(), StatusCode::bad_argument);
@@ -107,7 +107,7 @@ TEST(OcclusionRefusals, BoxesThatReachTooFarCoverNothing) {
       for (float* side : {&box.max.x, &box.max.y, &box.max.z})
         if (random.below(3) == 0) *side = reach;
       OcclusionBuffer buffer;
-      ASSERT_TRUE(buffer.begin({view, {}}));
+      ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
       EXPECT_TRUE(buffer.draw_boxes(std::span(&box, 1)));
       std::vector<float> drawn(24 * 16);
       ASSERT_TRUE(buffer.read_nearness(drawn));
@@ -132,8 +132,8 @@ TEST(OcclusionRefusals, BoxesStandWhereTheirViewSays) {
   const Box wall{{-50, -50, -11}, {50, 50, -10}}, behind{{-1, -1, -20}, {1, 1, -19}},
       before{{-1, -1, -9}, {1, 1, -8}};
   OcclusionBuffer doubles, floats;
-  ASSERT_TRUE(doubles.begin(view));
-  ASSERT_TRUE(floats.begin(view));
+  ASSERT_TRUE(doubles.begin(view, {Coverage::centres}));
+  ASSERT_TRUE(floats.begin(view, {Coverage::centres}));
   ASSERT_TRUE(doubles.draw_boxes(std::array{moved(wall)}));
   ASSERT_TRUE(floats.draw_boxes(BoxView(std::array{wall}, far)));
   std::vector<float> a(64 * 48), b(64 * 48);

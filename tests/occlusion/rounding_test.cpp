@@ -25,7 +25,7 @@ OccluderMesh mesh_of(const Box& wall) {
 std::vector<float> nearness_drawn(const OccluderMesh& mesh, const View& view) {
   OcclusionBuffer buffer;
   std::vector<float> out(std::size_t{view.width} * view.height);
-  EXPECT_TRUE(buffer.begin({view, {}}));
+  EXPECT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
   EXPECT_TRUE(buffer.draw_mesh(mesh));
   EXPECT_TRUE(buffer.read_nearness(out));
   return out;

@@ -36,7 +36,7 @@ struct Counted {
 // Pixels that stay open though a triangle covers them, and the reverse.
 Counted count(const Shape& shape, const View& view, TJunctions junctions = TJunctions::open) {
   OcclusionBuffer buffer;
-  EXPECT_TRUE(buffer.begin({view, {}}));
+  EXPECT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
   EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(shape.positions, shape.indices, Sides::both, junctions)));
   std::vector<float> nearness(std::size_t{view.width} * view.height);
   EXPECT_TRUE(buffer.read_nearness(nearness));
@@ -203,7 +203,7 @@ TEST(Seams, BoxesThatLieUponEachOtherAreOne) {
   const auto drawn = [](const Shape& shape) {
     const OccluderMesh mesh = *OccluderMesh::make(shape.positions, shape.indices, Sides::both);
     OcclusionBuffer buffer;
-    EXPECT_TRUE(buffer.begin({*make_view({}, 160, 100), {}}));
+    EXPECT_TRUE(buffer.begin({*make_view({}, 160, 100), {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_mesh(mesh));
     std::vector<float> nearness(160 * 100);
     EXPECT_TRUE(buffer.read_nearness(nearness));

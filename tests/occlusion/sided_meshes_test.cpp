@@ -22,7 +22,7 @@ const Box kBehind{{-1, -1, -9}, {1, 1, -8}};
 bool hides(const Camera& camera, std::span<const std::uint32_t> indices, std::span<const Sides> sides,
            const Mat4& transform = {}) {
   OcclusionBuffer buffer;
-  EXPECT_TRUE(buffer.begin({*make_view(camera, 64, 48), {}}));
+  EXPECT_TRUE(buffer.begin({*make_view(camera, 64, 48), {}}, {Coverage::centres}));
   EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(kWall, indices, sides), transform));
   return !buffer.may_see(kBehind);
 }
@@ -57,7 +57,7 @@ TEST(SidedMeshes, WhatTheNearPlaneCutsHasSidesToo) {
   const Box beneath{{-1, -9, -9}, {1, -8, -7}};
   for (const bool from_front : {false, true}) {
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({*make_view(Camera{.forward = {0, -1, -1}}, 64, 48), {}}));
+    ASSERT_TRUE(buffer.begin({*make_view(Camera{.forward = {0, -1, -1}}, 64, 48), {}}, {Coverage::centres}));
     ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(floor, from_front ? kFront : kBack, Sides::front)));
     EXPECT_EQ(buffer.may_see(beneath), !from_front);
   }
@@ -70,7 +70,8 @@ TEST(SidedMeshes, EndWhereANeighbourIsSeenFromBehind) {
   for (const bool alone : {false, true}) {
     const std::array sides{Sides::both, alone ? Sides::front : Sides::both};
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({*make_view(Camera{.orthographic_height = 64}, 64, 64), {}}));
+    ASSERT_TRUE(
+        buffer.begin({*make_view(Camera{.orthographic_height = 64}, 64, 64), {}}, {Coverage::centres}));
     ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(corners, indices, sides)));
     std::vector<float> nearness(64 * 64);
     ASSERT_TRUE(buffer.read_nearness(nearness));
@@ -104,7 +105,7 @@ TEST(SidedMeshes, NeverCoverWhatTheirFrontsDoNot) {
       sides.push_back(random.unit() < 0.7f ? Sides::front : Sides::both);
     }
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     ASSERT_TRUE(buffer.draw_mesh(*OccluderMesh::make(positions, indices, sides)));
     std::vector<float> nearness(std::size_t{view.width} * view.height);
     ASSERT_TRUE(buffer.read_nearness(nearness));

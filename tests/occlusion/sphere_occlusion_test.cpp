@@ -36,7 +36,7 @@ TEST(Occlusion, DrawsSpheresNowhereNearerThanTheyAreAndFillsMostOfThem) {
     std::vector<Sphere> spheres;
     for (int i = 0; i < 12; ++i) spheres.push_back(test::sphere_of(random, round % 3 == 0 ? 15.0f : 4.0f));
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_spheres(spheres));
     std::vector<float> drawn(std::size_t{view.width} * view.height);
     EXPECT_TRUE(buffer.read_nearness(drawn));
@@ -60,7 +60,7 @@ TEST(Occlusion, NeverHidesASphereThatAPixelCentreSees) {
     std::vector<Sphere> spheres;
     for (int i = 0; i < 12; ++i) spheres.push_back(test::sphere_of(random, 8));
     OcclusionBuffer buffer;
-    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
     EXPECT_TRUE(buffer.draw_spheres(spheres));
     const ExactRays rays(view);
     const std::vector<double> exact = exact_depths(rays, view, spheres);

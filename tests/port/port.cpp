@@ -194,7 +194,7 @@ void answer_occlusion(const std::vector<NamedView>& views, Answers& out) {
   std::vector<float> depth;
   std::vector<std::uint8_t> seen(boxes.size());
   for (const NamedView& named : views) {
-    expect(buffer.begin({named.view, {}}));
+    expect(buffer.begin({named.view, {}}, {Coverage::centres}));
     draw_occluders(buffer);
     depth.assign(std::size_t{named.view.width} * named.view.height, 0);
     expect(buffer.read_nearness(depth));
@@ -281,7 +281,7 @@ void answer_world(const std::vector<NamedView>& views, Answers& out) {
                   std::span(visible).first(culled ? culled->count : 0));
     };
     cull("frustum");
-    expect(buffer.begin(view.view));
+    expect(buffer.begin(view.view, {Coverage::centres}));
     draw_occluders(buffer);
     view.occlusion = &buffer;
     cull("occlusion");
@@ -313,7 +313,7 @@ void answer_instances(const std::vector<NamedView>& views, Answers& out) {
   const InstanceCullOptions options{.jobs = {test::run_threads, nullptr, out.threads}, .masks = true};
   for (const NamedView& named : views) {
     const WorldView view{named.view, {}};
-    expect(buffer.begin(view));
+    expect(buffer.begin(view, {Coverage::centres}));
     draw_occluders(buffer);
     const std::array both{CullView{.view = view},
                           CullView{.view = view, .occlusion = &buffer, .min_area = 4}};

@@ -70,9 +70,12 @@ TEST_P(KeepsLittle, OfWhatAWorldsOccludersHide) {
   World world;
   std::vector<Handle> handles(scene.size());
   ASSERT_TRUE(world.insert(scene.bounds.view(), handles));
-  methods::SceneOccluders occluders(
-      scene,
-      {.most = 512, .least_area = 150, .least_sphere = 5, .whole = 0, .all_solid = false, .buffer = {}});
+  methods::SceneOccluders occluders(scene, {.most = 512,
+                                            .least_area = 150,
+                                            .least_sphere = 5,
+                                            .whole = 0,
+                                            .all_solid = false,
+                                            .buffer = {Coverage::centres}});
   Culler culler;
   std::vector<ObjectId> ids(cull_capacity(world));
   double kept = 0, visible = 0;

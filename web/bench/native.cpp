@@ -79,7 +79,7 @@ void measure(const Input& in) {
   OcclusionBuffer buffer;
   const BoxView walls = BoxView::min_max(in.wall_boxes.data(), kStride, in.walls);
   time("occluders", [&] {
-    require(buffer.begin(seen));
+    require(buffer.begin(seen, {Coverage::centres}));
     require(buffer.draw_boxes(walls));
     return std::size_t{in.walls};
   });

@@ -36,9 +36,9 @@ export class OccluderMesh extends Owned {
 const coverages = ['centres', 'area'] as const;
 /** How fine and for which places an OcclusionBuffer answers. */
 export interface OcclusionOptions {
-  /** `centres` of pixels, where a canvas without antialiasing takes its one sample; or `area`, any place on the image:
-   * antialiasing, jitter, upscaling, another size of canvas. That hides a little less, and meshes take two to three times as
-   * long. */
+  /** `area`, any place on the image, unless told otherwise: antialiasing, jitter, upscaling, another size of canvas; or
+   * `centres` of pixels alone, where a canvas without antialiasing takes its one sample: more is hidden, and meshes take a
+   * half to a third as long. */
   coverage?: (typeof coverages)[number];
   /** Pixels of the view along a side of one of the buffer's: 1, 2 or 4. */
   scale?: number;
@@ -53,7 +53,7 @@ export class OcclusionBuffer extends Owned {
   }
   /** Empties it and takes the view, of at most 8192 pixels a side. */
   begin(view: View, options?: OcclusionOptions): void {
-    const [coverage = 'centres', scale = 1] = readOptions('begin', options, ['coverage', 'scale']);
+    const [coverage = 'area', scale = 1] = readOptions('begin', options, ['coverage', 'scale']);
     const places = coverages.indexOf(coverage);
     if (places < 0) refuse(`begin: a coverage of ${said(coverage)}, expected ${coverages.join(', ')}`);
     calling((call) => {
@@ -88,7 +88,7 @@ export class OcclusionBuffer extends Owned {
       check(wasm().occlusion_draw_mesh!(pointerOf('OcclusionBuffer', this), pointerOf('OccluderMesh', mesh), at));
     });
   }
-  /** Whether some pixel centre, or place on the image, may see each box: 1 or 0, where 0 is certain. */
+  /** Whether some place on the image, or pixel centre, may see each box: 1 or 0, where 0 is certain. */
   maySee(boxes: Boxes, out: Block<Uint8Array>): void {
     void pointerOf('OcclusionBuffer', this); // a Proxy of it has nothing that is private
     calling((call) => {

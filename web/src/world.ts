@@ -202,7 +202,7 @@ export class Culler extends Owned {
   }
 
   /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
-   * alone. Nothing that is visible at some pixel centre is left out, but by `layers` and `minArea`. */
+   * alone. Nothing that is visible anywhere on the image is left out, but by `layers` and `minArea`. */
   cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
     void pointerOf('Culler', this); // a Proxy of it could call nothing that is private
     const count = this.#run(world, viewList(views), options);

@@ -252,7 +252,7 @@ test('a buffer answers for pixel centres or for any place on the image', async (
     buffer.maySee(box, seen);
     return seen.array[0];
   });
-  assert.deepEqual(answers, [0, 0, 1, 1]);
+  assert.deepEqual(answers, [1, 0, 1, 1]); // any place, unless told otherwise
   assert.throws(() => buffer.begin(view, { coverage: 'samples' }), refusal('bad_argument', /samples, expected centres, area/));
   for (const scale of [0, 3, 1.5]) assert.throws(() => buffer.begin(view, { scale }), refusal('bad_argument', /./));
 });

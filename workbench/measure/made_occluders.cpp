@@ -94,7 +94,7 @@ public:
   // How many pixels of the truth are covered; `wrong` counts those that must not be.
   template <class Draw>
   std::uint64_t count(Draw draw, std::uint64_t& wrong) {
-    or_throw(buffer_.begin({view_, {}}));
+    or_throw(buffer_.begin({view_, {}}, {Coverage::centres}));
     draw(buffer_);
     or_throw(buffer_.read_nearness(nearness_));
     std::uint64_t covered = 0;

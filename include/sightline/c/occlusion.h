@@ -117,7 +117,8 @@ SIGHTLINE_API uint32_t sightline_occludees_triangles(const sightline_occludees* 
 
 /* --- the depth buffer: drawing is for one thread, asking for many at once while nobody draws --- */
 
-/** One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone. */
+/** One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone, and for
+ * any place on its image where it was begun for no other. */
 typedef struct sightline_occlusion sightline_occlusion;
 
 /** Never NULL. Allocates: a little. */
@@ -128,10 +129,10 @@ SIGHTLINE_API void sightline_occlusion_destroy(sightline_occlusion* occlusion);
  * than any before. */
 SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion,
                                                          const sightline_view* view);
-/** Which places on the image are answered for: pixel centres, where rasterisers take their samples by
- * default, or any place, for multisampling, jitter and upscaling. */
+/** Which places on the image are answered for: pixel centres alone, where a rasteriser takes its one sample,
+ * or any place, for multisampling, jitter and upscaling. */
 enum { SIGHTLINE_COVERAGE_CENTRES = 0, SIGHTLINE_COVERAGE_AREA = 1 };
-/** The same for those places, which sightline_occlusion_begin takes for centres, in pixels `scale` times as
+/** The same for those places, where sightline_occlusion_begin answers for any, in pixels `scale` times as
  * wide as the view's: 1, 2 or 4; coarser has fewer tiles and hides less, what is promised stays the same.
  * Errors: also BAD_ARGUMENT for a coverage or scale that is none. Cost, Allocates: the same. */
 SIGHTLINE_API sightline_status sightline_occlusion_begin_with(sightline_occlusion* occlusion,
@@ -158,7 +159,7 @@ SIGHTLINE_API sightline_status sightline_occlusion_draw_mesh(sightline_occlusion
                                                              const sightline_occluder_mesh* mesh,
                                                              const float transform[16]);
 
-/** visible[i]: 1 where some pixel centre may see box i, 0 where surely none does; all 1 before begin.
+/** visible[i]: 1 where some place on the image may see box i, 0 where surely none does; all 1 before begin.
  * `capacity` is boxes->count or more. Errors: BAD_ARGUMENT, BUFFER_TOO_SMALL. Cost: linear, some 10 ns a box.
  */
 SIGHTLINE_API sightline_status sightline_occlusion_may_see_boxes(const sightline_occlusion* occlusion,
@@ -169,9 +170,9 @@ SIGHTLINE_API sightline_status sightline_occlusion_may_see_boxes(const sightline
 SIGHTLINE_API sightline_status sightline_occlusion_may_see_spheres(const sightline_occlusion* occlusion,
                                                                    const sightline_sphere_view* spheres,
                                                                    uint8_t* visible, size_t capacity);
-/** Whether some pixel centre may see one of the triangles, three points of three floats each about the view's
- * origin; `corner_count` is in points. Closer to the truth than a box, and dearer. Errors: BAD_ARGUMENT.
- * Cost: linear until one is seen. */
+/** Whether some place on the image may see one of the triangles, three points of three floats each about the
+ * view's origin; `corner_count` is in points. Closer to the truth than a box, and dearer. Errors:
+ * BAD_ARGUMENT. Cost: linear until one is seen. */
 SIGHTLINE_API sightline_status sightline_occlusion_may_see_triangles(const sightline_occlusion* occlusion,
                                                                      const float* corners,
                                                                      size_t corner_count, int* visible);

@@ -286,7 +286,7 @@ static inline sightline_cull_options sightline_cull_options_default(void) {
   options.jobs.run = NULL, options.jobs.user = NULL, options.jobs.threads = 0, options.jobs.reserved = 0;
   options.occlusion = SIGHTLINE_OCCLUSION_NONE, options.reserved = 0;
   options.costs = costs;
-  options.coverage = SIGHTLINE_COVERAGE_CENTRES, options.scale = 1;
+  options.coverage = SIGHTLINE_COVERAGE_AREA, options.scale = 1;
   options.zones.begin = NULL, options.zones.end = NULL, options.zones.user = NULL;
   options.levels.view = options.levels.key = options.levels.cut = 0;
   options.levels.hysteresis = options.levels.fade = 0, options.levels.scale = 1;
@@ -342,7 +342,7 @@ SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
 SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* culler, double nanoseconds);
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
- * each, in an order that depends on the world's history alone. Nothing that is visible at some pixel centre
+ * each, in an order that depends on the world's history alone. Nothing that is visible anywhere on the image
  * is left out, but by `layers`, `distances`, `min_area` and `casters`. All views have the same struct_size.
  * `options` may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays,
  * in counted work x costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's

@@ -225,7 +225,8 @@ void hide(Life& life) {
     walls.push_back(life.model.objects[id].given);
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (one_in(random, 4)) continue;
-    ASSERT_TRUE(buffers[v].begin(views[v].view, {.scale = 1u << random.below(3)}));
+    ASSERT_TRUE(buffers[v].begin(
+        views[v].view, {one_in(random, 3) ? Coverage::area : Coverage::centres, 1u << random.below(3)}));
     ASSERT_TRUE(buffers[v].draw_boxes(BoxView(walls)));
     views[v].occlusion = &buffers[v];
   }

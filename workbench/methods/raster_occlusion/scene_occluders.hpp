@@ -20,7 +20,8 @@ struct OccluderChoice {
   float least_sphere = 5;        ///< px², of an object that occludes by the sphere inside it
   std::uint32_t whole = 150000;  ///< most triangles of a scene that occludes as one
   bool all_solid = false;        ///< everything occludes, from both sides
-  OcclusionOptions buffer;       ///< which places of the image are answered for, and how finely
+  /// Which places of the image are answered for, and how finely: centres are where its pictures are sampled.
+  OcclusionOptions buffer{Coverage::centres};
 };
 
 /// Objects that share few meshes occlude one by one, the largest on the image, round ones as spheres, which
