@@ -161,7 +161,8 @@ public:
   /// Finds the objects that at least one of the 1 … kMaxViews views may see, instance by instance, in an
   /// order that depends on the calls so far alone, never on threads, SIMD width or processor. Each object is
   /// a box in its own world's axes: its instance turns and scales it, and no larger box around that is
-  /// tested. Nothing that is visible anywhere on the image is left out, but by what the views ask for:
+  /// tested. Nothing that is visible anywhere on the image is left out, but by what the views ask for (by a
+  /// buffer begun for Coverage::centres, nothing that is visible at one):
   ///
   /// - `layers` as insert() says; `occlusion`, a buffer begun with the view, hides instances and objects;
   /// - `min_area` of an object as it is placed; `distances` of objects, in metres of their own world from the

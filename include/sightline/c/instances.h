@@ -154,13 +154,13 @@ SIGHTLINE_API void sightline_instance_culler_destroy(sightline_instance_culler* 
 /** Finds the objects that at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see, instance by instance,
  * in an order that depends on the calls so far alone. Nothing that is visible anywhere on the image is
  * left out, but by `layers`, by `min_area` of objects as they are placed, and by `distances`, in metres of
- * the objects' own world from the eye. `casters` are refused, and what objects carry to hide others is not
- * drawn. `options` may be NULL. Errors: BAD_ARGUMENT (also where a world reaches elsewhere since its
- * instances were placed: the index is its name, and sightline_instances_update() is due), BAD_VIEW,
- * STALE_BUFFER; TOO_MANY where the views may see more than most_objects. Cost: as sightline_cull() of a world
- * in which all that stood by itself, some 600 ns a view for each instance seen in part, some 100 ns for one
- * seen whole. Threads: only reads the instances, the worlds and the occlusions. Allocates: nothing once it
- * has seen its largest view. */
+ * the objects' own world from the eye; by an occlusion begun for pixel centres, nothing that is visible at
+ * one. `casters` are refused, and what objects carry to hide others is not drawn. `options` may be NULL.
+ * Errors: BAD_ARGUMENT (also where a world reaches elsewhere since its instances were placed: the index is
+ * its name, and sightline_instances_update() is due), BAD_VIEW, STALE_BUFFER; TOO_MANY where the views may
+ * see more than most_objects. Cost: as sightline_cull() of a world in which all that stood by itself, some
+ * 600 ns a view for each instance seen in part, some 100 ns for one seen whole. Threads: only reads the
+ * instances, the worlds and the occlusions. Allocates: nothing once it has seen its largest view. */
 SIGHTLINE_API sightline_status sightline_cull_instances(sightline_instance_culler* culler,
                                                         const sightline_instances* instances,
                                                         const sightline_cull_view* views, size_t view_count,

@@ -117,8 +117,8 @@ SIGHTLINE_API uint32_t sightline_occludees_triangles(const sightline_occludees* 
 
 /* --- the depth buffer: drawing is for one thread, asking for many at once while nobody draws --- */
 
-/** One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone, and for
- * any place on its image where it was begun for no other. */
+/** One view's depth of occluders: begin it with a view, draw, ask. It answers for that view alone. What is
+ * said of places on the image holds for pixel centres alone where it was begun for those. */
 typedef struct sightline_occlusion sightline_occlusion;
 
 /** Never NULL. Allocates: a little. */
@@ -132,7 +132,7 @@ SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* oc
 /** Which places on the image are answered for: pixel centres alone, where a rasteriser takes its one sample,
  * or any place, for multisampling, jitter and upscaling. */
 enum { SIGHTLINE_COVERAGE_CENTRES = 0, SIGHTLINE_COVERAGE_AREA = 1 };
-/** The same for those places, where sightline_occlusion_begin answers for any, in pixels `scale` times as
+/** The same for those places (sightline_occlusion_begin answers for any), in pixels `scale` times as
  * wide as the view's: 1, 2 or 4; coarser has fewer tiles and hides less, what is promised stays the same.
  * Errors: also BAD_ARGUMENT for a coverage or scale that is none. Cost, Allocates: the same. */
 SIGHTLINE_API sightline_status sightline_occlusion_begin_with(sightline_occlusion* occlusion,

@@ -343,13 +343,13 @@ SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* cul
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
  * each, in an order that depends on the world's history alone. Nothing that is visible anywhere on the image
- * is left out, but by `layers`, `distances`, `min_area` and `casters`. All views have the same struct_size.
- * `options` may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays,
- * in counted work x costs: no frame costs more than 1.05 x frustum culling alone, and all of a culler's
- * together no more than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is
- * the view's. Cost: grows with what is visible and with the boundary of the views, not with the world.
- * Threads: only reads the world and the occlusions. Allocates: nothing once the culler has grown to the
- * world's size. */
+ * is left out, but by `layers`, `distances`, `min_area` and `casters`; by occlusion for pixel centres,
+ * nothing that is visible at one. All views have the same struct_size. `options` may be NULL. With
+ * SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted work x costs: no
+ * frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more than 1.02 x.
+ * Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost: grows with
+ * what is visible and with the boundary of the views, not with the world. Threads: only reads the world and
+ * the occlusions. Allocates: nothing once the culler has grown to the world's size. */
 SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
                                               const sightline_cull_view* views, size_t view_count,
                                               const sightline_cull_options* options,
