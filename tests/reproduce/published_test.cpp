@@ -174,6 +174,9 @@ TEST(Page, ChartsWhatThePaperPrintsAndOursAloneWhereItPrintsNothing) {
                                         testing::Not(testing::HasSubstr("a: excess"))));
   for (PaperTable::Row& row : table.rows) row.cells[0].published.clear();
   EXPECT_THAT(page_of(), testing::AllOf(testing::HasSubstr("a: speed"), testing::HasSubstr("a: excess")));
+  table.charted = false;
+  EXPECT_THAT(page_of(),
+              testing::AllOf(testing::HasSubstr("excess"), testing::Not(testing::HasSubstr("<canvas "))));
 }
 
 }  // namespace

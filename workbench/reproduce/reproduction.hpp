@@ -38,7 +38,8 @@ struct PaperTable {
   std::vector<Row> rows;
   Base base = Base::none;
   std::size_t base_row = 0, base_column = 0;
-  std::string note;  ///< sentences on what differs, and why
+  std::string note;     ///< sentences on what differs, and why
+  bool charted = true;  ///< false where rows are of units that no axis has in common
 
   /// The cell's ratio to its base; nothing where either is no number, or the base 0.
   [[nodiscard]] std::optional<double> published_ratio(std::size_t row, std::size_t column) const;

@@ -15,19 +15,19 @@ for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
     borderColor: colour(series, i), backgroundColor: colour(series, i),
     borderWidth: chart.bars ? 0 : 1.75, pointRadius: chart.labels.length < 15 ? 3 : 0, tension: 0.15,
   }));
-  new Chart(canvas, {
+  legend(new Chart(canvas, {
     type: chart.bars ? "bar" : "line",
     data: { labels: chart.bars ? chart.labels.map((label) => label.split(": ")) : chart.labels, datasets },
     options: {
       interaction: { mode: "index", intersect: false },
-      plugins: { legend: { position: "bottom", labels: { boxWidth: 22, boxHeight: chart.bars ? 10 : 2 } } },
+      plugins: { legend: { display: false } },
       scales: {
         x: { title: { display: chart.x !== "", text: chart.x }, grid: { display: false } },
         y: { type: chart.logarithmic ? "logarithmic" : "linear", beginAtZero: !chart.logarithmic,
              title: { display: chart.y !== "", text: chart.y } },
       },
     },
-  });
+  }));
 }
 
 for (const slider of document.querySelectorAll(".slider input"))

@@ -48,6 +48,7 @@ std::string row_label(const PaperTable& table, std::size_t row) {
 // Ratios where the table has a base, else what is printed; published and ours side by side. Columns of ours
 // alone stand in the table, unless there are no others.
 std::string table_chart(const PaperTable& table, const std::string& id) {
+  if (!table.charted) return "";
   const bool ratios = table.base != PaperTable::Base::none;
   std::string out;
   Chart made;
@@ -139,7 +140,7 @@ void write_reproduction(const std::string& folder, const Reproduction& reproduct
       page += "<details><summary>The figures</summary>" + report::html(table) + "</details>\n";
   }
   page.append("</main>\n<script>").append(report::kChartScript).append("</script>\n<script>");
-  page.append(kReproductionScript).append("</script></body></html>\n");
+  page.append(report::kLegendScript).append(kReproductionScript).append("</script></body></html>\n");
   io::write_file(std::filesystem::path(folder) / "index.html", page);
 }
 

@@ -118,7 +118,7 @@ Cell text_cell(std::string_view what, const LevelWalks& walks) {
   };
   const auto words = [&](auto of) {
     cell.our_words = each_level(walks, of);
-    cell.ours = 0;  // for the chart
+    cell.ours = 0;  // their mean
     for (const LevelWalk& walk : walks)
       *cell.ours += static_cast<double>(of(walk)) / static_cast<double>(walks.size());
   };
@@ -160,7 +160,7 @@ Cell text_cell(std::string_view what, const LevelWalks& walks) {
 PaperTable text_figures(const LevelWalks& walks) {
   PaperTable table;
   table.name = "text", table.title = "figures that the paper's text gives";
-  table.keys = {"what"}, table.columns = {"value"};
+  table.keys = {"what"}, table.columns = {"value"}, table.charted = false;
   for (const std::vector<std::string>& row : published("draw_calls_text").rows())
     table.rows.push_back({{row[0]}, {text_cell(row[0], walks)}});
   table.note = fmt::format(
@@ -168,7 +168,7 @@ PaperTable text_figures(const LevelWalks& walks) {
       "free. They "
       "are for height 4; nodes created are those of the structure as printed, nodes visited those that a "
       "walk "
-      "looks at. In the chart stand their means. Of ratios of calls the greatest over all heights is given, "
+      "looks at. Of ratios of calls the greatest over all heights is given, "
       "of frames the median at height "
       "4.",
       kinds(walks));

@@ -180,7 +180,7 @@ PaperSection future_work_section(const LevelWalks& walks) {
   }
   section.tables.push_back(std::move(table));
   section.note = fmt::format(
-      "With occlusion=masked {} of the objects, {} of the triangles and {} of the calls are left.",
+      "With occlusion=masked {} of the objects and {} of the triangles are left, in {} times the calls.",
       range_text(objects), range_text(triangles), range_text(calls));
   return section;
 }

@@ -77,8 +77,7 @@ PaperSection figure_9(const LevelWalks& walks) {
   table.header = {"level", "best", "fps", "none: fps", "ratio", "triangles", "none: triangles", "share"};
   table.text_columns = 2;
   Chart rates{"figure-9-fps", "", "frames/s", {}, {{"best", {}}, {"none", {}}}, true};
-  Chart triangles{"figure-9-triangles",         "",  "triangles submitted a frame", {},
-                  {{"best", {}}, {"none", {}}}, true};
+  Chart triangles{"figure-9-triangles", "", "triangles a frame", {}, {{"best", {}}, {"none", {}}}, true};
   for (const LevelWalk& walk : walks) {
     const WalkRow &best = walk.best_of_the_paper(), &none = walk.row("none");
     for (Chart* bars : {&rates, &triangles})
