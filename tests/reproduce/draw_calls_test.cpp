@@ -186,8 +186,9 @@ TEST(DrawCallReproduction, SaysWhatWasMeasured) {
   EXPECT_THAT(out.sentences[1], HasSubstr("simple makes 10.0 to 10.0 × the calls"));
   EXPECT_THAT(out.sentences[1], HasSubstr("best height over all is 3"));
   EXPECT_THAT(out.sentences[2], HasSubstr("0.40 µs"));
-  EXPECT_THAT(text(out),
-              HasSubstr("With occlusion=masked 0.20 to 0.20 of the objects and 0.25 to 0.25 of the triangles"));
+  EXPECT_THAT(
+      text(out),
+      HasSubstr("With occlusion=masked 0.20 to 0.20 of the objects and 0.25 to 0.25 of the triangles"));
 }
 
 TEST(DrawCallReproduction, HasEveryFigureOfThePaperMeasuredOrNot) {
