@@ -22,8 +22,7 @@ namespace sightline {
 /// Which places on the image an OcclusionBuffer answers for.
 enum class Coverage : std::uint8_t {
   /// Pixel centres alone, where a rasteriser takes its one sample: for who draws the view's own pixels
-  /// without multisampling, jitter or upscaling. Hides more, and meshes cost a half to a third as much to
-  /// draw.
+  /// without multisampling, jitter or upscaling. Hides more, and meshes cost about half as much to draw.
   centres,
   /// Any place on the image: multisampling, jitter, upscaling, another renderer's pixels. An occluder counts
   /// only in pixels that it covers whole. Triangles of a mesh that share an edge cover a pixel together, but

@@ -45,37 +45,55 @@ public:
   void come_to(float first_y) {
     count_ = 0;
     for (std::size_t i = 0; i < bands_.count; ++i) {
-      if (bands_.top[i] <= first_y + 15 && bands_.bottom[i] >= first_y)
-        spans_[++count_] = spans_of(bands_, i, first_y, width_);
+      if (bands_.top[i] > first_y + 15 || bands_.bottom[i] < first_y) continue;
+      its_[count_] = i;
+      spans_[count_++] = spans_of(bands_, i, first_y, width_);
     }
-    if (count_ > 0) spans_[0] = spans_of(but_, first_y, width_);
+    if (count_ > 0) but_spans_ = spans_of(but_, first_y, width_);
   }
   [[nodiscard]] bool none() const { return count_ == 0; }
   HWY_INLINE void take_from(const Step& step, std::uint64_t* pixels, Held& held) const {
-    if (count_ == 0) return;
     const Words words;
-    // The polygon's pixels first, then those of one band after another.
-    alignas(64) std::array<std::array<std::uint64_t, kStepTiles>, 2> its;
-    for (std::size_t i = 0; i <= count_; ++i) {
-      store_step_pixels(spans_[i], step, its[i > 0].data());
-      if (i == 0) continue;
-      held = {};
-      for (std::size_t row = 0; row < kStepTiles; row += kStepColumns) {
-        for (std::size_t tile = row; tile < row + step.columns; tile += kWords) {
-          const auto out = hn::AndNot(hn::LoadU(words, &its[0][tile]), hn::LoadU(words, &its[1][tile]));
-          const auto rest = hn::AndNot(out, hn::LoadU(words, pixels + tile));
-          hn::StoreU(rest, words, pixels + tile);
-          add_held(rest, tile, held);
-        }
-      }
+    const auto left = static_cast<float>(step.tx * kTile),
+               right = left + static_cast<float>(step.columns * kTile);
+    alignas(64) std::array<std::uint64_t, kStepTiles> its, of_bands{};
+    bool some = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (bands_.right[its_[i]] < left || bands_.left[its_[i]] > right) continue;
+      some = true;
+      store_step_pixels(spans_[i], step, its.data());
+      for_words(step, [&](std::size_t tile) HWY_ATTR {
+        const auto both = hn::Or(hn::LoadU(words, &its[tile]), hn::LoadU(words, &of_bands[tile]));
+        hn::StoreU(both, words, &of_bands[tile]);
+      });
     }
+    if (!some) return;
+    store_step_pixels(but_spans_, step, its.data());
+    held = {};
+    for_words(step, [&](std::size_t tile) HWY_ATTR {
+      const auto out = hn::AndNot(hn::LoadU(words, &its[tile]), hn::LoadU(words, &of_bands[tile]));
+      const auto rest = hn::AndNot(out, hn::LoadU(words, pixels + tile));
+      hn::StoreU(rest, words, pixels + tile);
+      add_held(rest, tile, held);
+    });
   }
 
 private:
+  // word(tile) for each vector of a step's tiles.
+  template <class Word>
+  static HWY_INLINE void for_words(const Step& step, const Word& word) {
+    for (std::size_t row = 0; row < kStepTiles; row += kStepColumns) {
+      for (std::size_t tile = row; tile < row + step.columns; tile += kWords) word(tile);
+    }
+  }
+
   const Bands& bands_;
   const Convex& but_;
   float width_;
-  std::array<Spans, 1 + Bands::kMost> spans_;  // the polygon's, and the bands'
+  // Of these lines: the spans of the bands that reach into them, which those are, and the polygon's spans.
+  std::array<Spans, Bands::kMost> spans_;
+  std::array<std::size_t, Bands::kMost> its_;
+  Spans but_spans_;
   std::size_t count_ = 0;
 };
 

@@ -35,7 +35,8 @@ struct MeshScratch {
   std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
   /// Which way a triangle turns, in groups whose `known` says `turn`.
   geometry::AlignedVector<float> facing;
-  /// Beside it, where a pixel's margin counts: how much its nearness changes over a pixel at most.
+  /// Beside it, where a pixel's margin counts: how much its nearness changes over a pixel at most; with a
+  /// minus sign where the near plane cuts the triangle and it counts.
   geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;

@@ -166,6 +166,19 @@ struct RowErrors {
   VF x, y, w;
 };
 
+// The most that rounding a row's product with any corner can lose.
+HWY_INLINE VF error_of(const Vec4& row, const VF& reach) {
+  const F f;
+  const float size = std::fabs(row.x) + std::fabs(row.y) + std::fabs(row.z);
+  return hn::Mul(hn::Set(f, kRowRounding),
+                 hn::Add(hn::Mul(hn::Set(f, size), reach), hn::Set(f, std::fabs(row.w))));
+}
+
+// Of corners whose coordinates reach as far as `reach`.
+HWY_INLINE RowErrors row_errors(const EyeProjection& e, VF reach) {
+  return {error_of(e.x, reach), error_of(e.y, reach), error_of(e.w, reach)};
+}
+
 // Triangles that lie wholly to one side of what is in view.
 HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const Corners& corners,
                                        const RowErrors& error) {

@@ -203,7 +203,7 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   const bool known = bands_in(rim, 1u << i, image, bands);
   std::uint32_t around = 0;
   if (known) around = draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
-  if (!known || bands.count > 0 || rim.slant[i] > tiles.mesh->slant[group * kGroup + i])
+  if (!known || bands.count > 0 || rim.slant[i] > std::fabs(tiles.mesh->slant[group * kGroup + i]))
     around = std::max(around, draw_clipped_triangle(tiles, corners, way, {}));
   return around;
 }
@@ -259,7 +259,7 @@ HWY_INLINE void draw_group(DepthTiles& tiles, const OccluderTopology& mesh, std:
 
 HWY_INLINE void prefetch_group(const OccluderTopology& mesh, std::size_t group) {
   hwy::Prefetch(&mesh.groups[group]);
-  for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.corners[(group * 9 + i) * kGroup]);
+  prefetch_corners(mesh, group);
   for (std::size_t i = 0; i < 9; ++i) hwy::Prefetch(&mesh.beyond[(group * 9 + i) * kGroup]);
 }
 

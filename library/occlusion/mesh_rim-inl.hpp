@@ -170,10 +170,9 @@ HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mes
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     std::uint32_t cut = 0;
     for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
-      const VI triangle = hn::Load(i32, &blocks[b].triangle[lane]);
-      const VF facing = hn::GatherIndex(f, s.facing.data(), triangle);
-      hn::Store(hn::GatherIndex(f, s.slant.data(), triangle), f, &slants[b][lane]);
-      cut |= bits_of(f, hn::Eq(hn::Abs(facing), hn::Set(f, kCut))) << lane;
+      const VF slant = hn::GatherIndex(f, s.slant.data(), hn::Load(i32, &blocks[b].triangle[lane]));
+      hn::Store(hn::Abs(slant), f, &slants[b][lane]);
+      cut |= bits_of(f, hn::RebindMask(f, hn::Lt(hn::BitCast(i32, slant), hn::Zero(i32)))) << lane;
     }
     for (; cut != 0; cut &= cut - 1)
       append_near_edge(tiles, mesh, blocks[b], static_cast<std::size_t>(std::countr_zero(cut)), drawn, out);
@@ -196,7 +195,7 @@ HWY_INLINE void look_around(const DepthTiles& tiles, const OccluderTopology& mes
   const OccluderTopology::Group& its = mesh.groups[group];
   for (std::uint32_t bits = drawn; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-    out.slant[i] = tiles.mesh->slant[group * kGroup + i];
+    out.slant[i] = std::fabs(tiles.mesh->slant[group * kGroup + i]);
   }
   for (std::uint32_t b = its.first_around; b < its.end_around; b += kBlocksAtOnce) {
     const std::size_t count = std::min<std::size_t>(kBlocksAtOnce, its.end_around - b);

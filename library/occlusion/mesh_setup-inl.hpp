@@ -7,92 +7,10 @@
 #define SIGHTLINE_OCCLUSION_MESH_SETUP_INL
 #endif
 
-#include "library/occlusion/cut_triangle.hpp"
-#include "library/occlusion/depth_raster-inl.hpp"
+#include "library/occlusion/mesh_facing-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
-
-constexpr std::size_t kGroup = OccluderTopology::kGroup;
-
-// A vector of triangles' corners about the eye, from triangle 16·group + lane on.
-HWY_INLINE Corners corners_about_eye(const EyeProjection& e, const OccluderTopology& mesh, std::size_t group,
-                                     std::size_t lane) {
-  const F f;
-  Corners out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + lane];
-    const VPoints p{hn::Load(f, from), hn::Load(f, from + kGroup), hn::Load(f, from + 2 * kGroup)};
-    out[k] = about_eye(e, p);
-  }
-  return out;
-}
-
-// Which way a triangle turns on the image: 1 or -1; 0: too small, or not drawn from this side; kCut times
-// that: the near plane cuts it.
-constexpr float kCut = 2;
-
-// Which way triangles turn whose image is not known, by the side of their planes that the eye is on; 0 where
-// that is unsure.
-HWY_INLINE VF turn_by_plane(const DepthTiles& tiles, const Corners& corners) {
-  return hn::Mul(side_of_planes(tiles, corners), hn::Set(F(), tiles.rays.turns_right ? 1.0f : -1.0f));
-}
-
-// Not a number counts as behind.
-HWY_INLINE hn::Mask<F> before_near(const DepthTiles& tiles, const VPoints& corner) {
-  return hn::Ge(dot_row(tiles.rays.near_plane, corner), hn::Zero(F()));
-}
-
-// Where a pixel's margin counts, a triangle counts that no pixel can reach across, whichever edge it enters
-// by: then what a pixel touches of a mesh beside one of its triangles shares a corner with that triangle.
-HWY_INLINE hn::Mask<F> wide_enough(const DepthTiles& tiles, const OnImage& image, VF area) {
-  const F f;
-  VF longest = hn::Zero(f), farthest = longest;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t next = (k + 1) % 3;
-    longest = hn::Max(longest, hn::Add(hn::Abs(hn::Sub(image.x[next], image.x[k])),
-                                       hn::Abs(hn::Sub(image.y[next], image.y[k]))));
-    farthest = hn::Max(farthest, hn::Max(hn::Abs(image.x[k]), hn::Abs(image.y[k])));
-  }
-  return hn::Ge(hn::Abs(area), hn::Mul(inset_of(tiles, farthest), longest));
-}
-
-// Twice the area from which on it is sure which way a triangle turns.
-HWY_INLINE VF least_area(const DepthTiles& tiles, const OnImage& image) {
-  const F f;
-  const auto from_first = [&](std::size_t k) HWY_ATTR {
-    return hn::Add(hn::Abs(hn::Sub(image.x[k], image.x[0])), hn::Abs(hn::Sub(image.y[k], image.y[0])));
-  };
-  const VF length = hn::Add(from_first(1), from_first(2)),
-           farthest = hn::Add(length, hn::Add(hn::Abs(image.x[0]), hn::Abs(image.y[0])));
-  const VF rounding = hn::Add(hn::Set(f, tiles.rounding), hn::Mul(hn::Set(f, kCornerRounding), farthest));
-  return hn::Max(hn::Set(f, kLeastDrawnArea), hn::Mul(length, rounding));
-}
-
-// Which of the corners lie before the near plane.
-using Before = std::array<hn::Mask<F>, 3>;
-
-HWY_INLINE Before before_near(const DepthTiles& tiles, const Corners& corners) {
-  return {before_near(tiles, corners[0]), before_near(tiles, corners[1]), before_near(tiles, corners[2])};
-}
-
-HWY_INLINE VF facing_of(const DepthTiles& tiles, const Corners& corners, const OnImage& image,
-                        const Before& before, std::uint32_t one_sided) {
-  const F f;
-  const VF area = area_of(image);
-  const VF zero = hn::Zero(f), one = hn::Set(f, 1.0f), least = least_area(tiles, image);
-  VF facing = hn::IfThenElse(hn::Gt(area, least), one,
-                             hn::IfThenElse(hn::Lt(area, hn::Neg(least)), hn::Neg(one), zero));
-  if (tiles.margin > 0) facing = hn::IfThenElseZero(wide_enough(tiles, image, area), facing);
-  const auto& [a, b, c] = before;
-  const auto whole = hn::And(hn::And(a, b), c), cut = hn::AndNot(whole, hn::Or(hn::Or(a, b), c));
-  facing = hn::IfThenElseZero(whole, facing);
-  if (!hn::AllFalse(f, cut))
-    facing = hn::IfThenElse(cut, hn::Mul(turn_by_plane(tiles, corners), hn::Set(f, kCut)), facing);
-  const auto from_behind =
-      hn::And(mask_of(f, one_sided), hn::Lt(hn::Mul(facing, hn::Set(f, tiles.mesh->front)), zero));
-  return hn::IfThenZeroElse(from_behind, facing);
-}
 
 // A group of triangles, ready to be drawn.
 struct ReadyTriangles {
@@ -108,45 +26,6 @@ struct ReadyTriangles {
   std::uint32_t sound = 0, to_right = 0, flat = 0;
 };
 
-// A vector of triangles on their way to be ready, from triangle 16·group + lane of the mesh on.
-struct Candidates {
-  std::size_t group, lane;
-  Corners corners;
-  OnImage image;
-  Before before;
-  VF facing;
-  Rectangles outline;
-  hn::Mask<F> drawn;        // as far as is known
-  VF nearness[3], nearest;  // found where some are drawn
-};
-
-HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
-                                    std::size_t lane) {
-  const F f;
-  const EyeProjection& e = tiles.projection;
-  Candidates c;
-  c.group = group, c.lane = lane;
-  c.corners = corners_about_eye(e, mesh, group, lane);
-  c.image = on_image(e, c.corners);
-  c.before = before_near(tiles, c.corners);
-  c.facing = facing_of(tiles, c.corners, c.image, c.before, mesh.groups[group].one_sided >> lane);
-  if (hn::Lanes(f) == kGroup && tiles.margin == 0) {
-    hn::Store(c.facing, f, &tiles.mesh->facing[group * kGroup]);
-    tiles.mesh->known[group] = tiles.mesh->turn;
-  }
-  const VF *x = c.image.x, *y = c.image.y;
-  c.outline = {hn::Min(hn::Min(x[0], x[1]), x[2]), hn::Max(hn::Max(x[0], x[1]), x[2]),
-               hn::Min(hn::Min(y[0], y[1]), y[2]), hn::Max(hn::Max(y[0], y[1]), y[2])};
-  c.drawn = hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f));
-  return c;
-}
-
-HWY_INLINE void find_nearness(const EyeProjection& e, Candidates& c) {
-  for (std::size_t k = 0; k < 3; ++k)
-    c.nearness[k] = e.orthographic ? dot_row(e.nearness, c.corners[k]) : c.image.over_w[k];
-  c.nearest = hn::Max(hn::Max(c.nearness[0], c.nearness[1]), c.nearness[2]);
-}
-
 // Leaves those with no pixel centre between their sides within the image, and those behind the tiles of their
 // corners where those are all. False where none remains.
 HWY_INLINE bool keep_those_that_show(const DepthTiles& tiles, Candidates& c) {
@@ -161,103 +40,10 @@ HWY_INLINE bool keep_those_that_show(const DepthTiles& tiles, Candidates& c) {
   return !hn::AllFalse(f, c.drawn);
 }
 
-// From the nearest corner the normal's error counts the least.
-HWY_INLINE VPoints nearest_of(const Candidates& c) {
-  const auto is_first = hn::Eq(c.nearness[0], c.nearest), is_second = hn::Eq(c.nearness[1], c.nearest);
-  const auto choose = [&](VF p, VF q, VF r)
-                          HWY_ATTR { return hn::IfThenElse(is_first, p, hn::IfThenElse(is_second, q, r)); };
-  const auto& [p, q, r] = c.corners;
-  return {choose(p.x, q.x, r.x), choose(p.y, q.y, r.y), choose(p.z, q.z, r.z)};
-}
-
-// Nearness of the triangles' planes: at + x·across + y·down, less the doubt; of those seen too much edge on,
-// which are not sound, nothing is said.
-struct TrianglePlanes {
-  VF at, across, down, doubt;
-  VF distance;  // of the eye from the plane; in an orthographic view the sine under which it is seen
-  VF sides;     // two together, at least as long as the triangle reaches
-  hn::Mask<F> sound;
-};
-
-HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c) {
+HWY_INLINE void set_planes(const DepthTiles& tiles, const OccluderTopology& mesh,
+                           const TrianglePlanes& planes, Candidates& c, ReadyTriangles& out) {
   const F f;
-  const PixelRays& rays = tiles.rays;
-  const bool orthographic = tiles.projection.orthographic;
-  TrianglePlanes out;
-  const auto& [p, q, r] = c.corners;
-  const VPoints pq = minus(q, p), pr = minus(r, p), normal = cross(pq, pr);
-  const VF length = hn::Sqrt(dot(normal, normal));
-  const VPoints unit{hn::Div(normal.x, length), hn::Div(normal.y, length), hn::Div(normal.z, length)};
-  const VF reach = reach_of(c.corners);
-  const VF plane_at = dot(unit, nearest_of(c));
-  const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
-  out.distance = hn::Abs(scale);
-  const VF least = orthographic ? hn::Set(f, rays.edge_on)
-                                : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
-                                          hn::Set(f, static_cast<float>(kEdgeOnDistance)));
-  out.sound = hn::And(hn::Eq(hn::Abs(c.facing), hn::Set(f, 1.0f)),
-                      hn::And(hn::Gt(length, hn::Zero(f)), hn::Gt(hn::Abs(scale), least)));
-  out.across = hn::Div(dot(unit, rays.across), scale), out.down = hn::Div(dot(unit, rays.down), scale);
-  const VF ray_at = dot(unit, rays.at);
-  out.at = hn::Div(orthographic ? hn::Sub(ray_at, plane_at) : ray_at, scale);
-  // The normal is as uncertain as the corners are far and the triangle is thin.
-  const VF sides = out.sides = hn::Add(largest(pq), largest(pr));
-  out.doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
-                      hn::Mul(length, hn::Abs(scale)));
-  out.doubt = hn::Mul(out.doubt, orthographic ? hn::Add(sides, sides) : hn::Set(f, rays.stretch));
-  return out;
-}
-
-// Triangle 16·group + i of the mesh in double precision.
-HWY_NOINLINE inline ExactCorners exact_corners(const EyeProjection& e, const OccluderTopology& mesh,
-                                               std::size_t group, std::size_t i) {
-  ExactCorners out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float* from = &mesh.corners[(group * 9 + 3 * k) * kGroup + i];
-    out[k] = about_eye(e, Vec3{from[0], from[kGroup], from[2 * kGroup]});
-  }
-  return out;
-}
-
-// Of those of a group that the near plane cuts, which count where a pixel's margin does.
-HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
-  float* facing = &tiles.mesh->facing[group * kGroup];
-  for (std::size_t i = 0; i < kGroup; ++i) {
-    if (std::fabs(facing[i]) != kCut) continue;
-    const CutTriangle its = cut_triangle(tiles, exact_corners(tiles.projection, mesh, group, i));
-    tiles.mesh->slant[group * kGroup + i] = its.slant;
-    if (!its.counts) facing[i] = 0;
-  }
-}
-
-// Found when first asked for. Where a pixel's margin counts, those seen edge on are as if they were not
-// there: the mesh ends at them.
-void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
-  const F f;
-  MeshScratch& s = *tiles.mesh;
-  if (s.known[group] == s.turn) return;
-  s.known[group] = s.turn;
-  std::uint32_t cut = 0;
-  for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
-    Candidates c = candidates_of(tiles, mesh, group, lane);
-    if (tiles.margin > 0) {
-      find_nearness(tiles.projection, c);
-      const TrianglePlanes planes = planes_of(tiles, c);
-      const auto is_cut = hn::Eq(hn::Abs(c.facing), hn::Set(f, kCut));
-      cut |= bits_of(f, is_cut);
-      c.facing = hn::IfThenElseZero(hn::Or(planes.sound, is_cut), c.facing);
-      const VF slant = hn::Add(hn::Abs(planes.across), hn::Abs(planes.down));
-      hn::Store(hn::IfThenElseZero(planes.sound, slant), f, &s.slant[group * kGroup + lane]);
-    }
-    hn::Store(c.facing, f, &s.facing[group * kGroup + lane]);
-  }
-  if (cut != 0) know_cut(tiles, mesh, group);
-}
-
-HWY_INLINE void set_planes(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
-                           ReadyTriangles& out) {
-  const F f;
-  const auto [at, across, down, doubt, distance, sides, sound] = planes_of(tiles, c);
+  const auto& [at, across, down, doubt, distance, sides, sound] = planes;
   c.drawn = hn::And(c.drawn, sound);
   out.sound |= bits_of(f, sound) << c.lane;
   hn::Store(hn::Sub(moved_back(tiles, at, across, down, c.nearest), doubt), f, &out.at[c.lane]);
@@ -394,23 +180,12 @@ inline std::array<std::uint32_t, 3> shared_seams(const DepthTiles& tiles, const 
   return out;
 }
 
-// The groups whose facings tell where the mesh goes on: at the group's shared edges, or within a margin of
-// it.
-inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, const OccluderTopology& mesh,
-                                                   std::size_t group) {
-  const OccluderTopology::Group& its = mesh.groups[group];
-  if (tiles.margin > 0) return std::span(mesh.rings).subspan(its.first_ring, its.end_ring - its.first_ring);
-  return std::span(mesh.beside).subspan(its.first_beside, its.end_beside - its.first_beside);
-}
-
-// A vector of a group's triangles, some of which are drawn if `some`.
+// A vector of a group's triangles, and their planes where some of the group are drawn.
 HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Candidates& c,
-                       const std::array<std::uint32_t, 3>& shared, bool some, ReadyTriangles& out) {
+                       const TrianglePlanes* planes, const std::array<std::uint32_t, 3>& shared,
+                       ReadyTriangles& out) {
   const F f;
-  if (some) {
-    if (hn::AllFalse(f, c.drawn)) find_nearness(tiles.projection, c);
-    set_planes(tiles, mesh, c, out);
-  }
+  if (planes) set_planes(tiles, mesh, *planes, c, out);
   out.to_right |= bits_of(f, hn::Gt(c.facing, hn::Zero(f))) << c.lane;
   const VF inset = inset_of(tiles, widest_of(c.outline));
   Rectangles outline = c.outline;
@@ -426,8 +201,10 @@ HWY_INLINE void set_up(const DepthTiles& tiles, const OccluderTopology& mesh, Ca
 HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
                        ReadyTriangles& out) {
   const F f;
+  constexpr std::size_t kVectors = kGroup / hn::MaxLanes(F());
   const std::size_t lanes = hn::Lanes(f);
-  std::array<Candidates, kGroup / hn::MaxLanes(F())> vectors;
+  std::array<Candidates, kVectors> vectors;
+  std::array<TrianglePlanes, kVectors> planes;
   const VF exact = hn::Zero(f);
   bool some = false;
   for (std::size_t v = 0; v * lanes < kGroup; ++v) {
@@ -439,10 +216,19 @@ HWY_INLINE void set_up(DepthTiles& tiles, const OccluderTopology& mesh, std::siz
   }
   if (!some && out.cut == 0) return;
   const OccluderTopology::Group& its = mesh.groups[group];
-  if (tiles.margin > 0 || its.first_shared < its.end_shared) know_facing(tiles, mesh, group);
-  for (const std::uint32_t other : around_group(tiles, mesh, group)) know_facing(tiles, mesh, other);
+  const bool margin = tiles.margin > 0;
+  for (std::size_t v = 0; (some || margin) && v * lanes < kGroup; ++v) {
+    if (hn::AllFalse(f, vectors[v].drawn)) find_nearness(tiles.projection, vectors[v]);
+    planes[v] = planes_of(tiles, vectors[v]);
+  }
+  if (margin)
+    know_facing(tiles, mesh, group, vectors, planes);
+  else if (its.first_shared < its.end_shared)
+    know_facing(tiles, mesh, group);
+  know_around(tiles, mesh, group);
   const std::array<std::uint32_t, 3> shared = shared_seams(tiles, mesh, group);
-  for (std::size_t v = 0; v * lanes < kGroup; ++v) set_up(tiles, mesh, vectors[v], shared, some, out);
+  for (std::size_t v = 0; v * lanes < kGroup; ++v)
+    set_up(tiles, mesh, vectors[v], some ? &planes[v] : nullptr, shared, out);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

@@ -28,14 +28,6 @@ struct GrownTriangles {
   alignas(64) std::array<float, 16> left, right, top, bottom, nearest, at, across, down;
 };
 
-// The most that rounding a row's product with any corner can lose.
-HWY_INLINE VF error_of(const Vec4& row, const VF& reach) {
-  const F f;
-  const float size = std::fabs(row.x) + std::fabs(row.y) + std::fabs(row.z);
-  return hn::Mul(hn::Set(f, kRowRounding),
-                 hn::Add(hn::Mul(hn::Set(f, size), reach), hn::Set(f, std::fabs(row.w))));
-}
-
 // Nearness of the triangles' planes, never less than it is: at + x·across + y·down; where a plane is seen too
 // much edge on, the triangle's nearest point.
 HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach, VF nearest,
@@ -174,7 +166,7 @@ HWY_INLINE Projected project(const DepthTiles& tiles, const Corners& q, VF reach
   const EyeProjection& e = tiles.projection;
   Projected out;
   out.image = on_image(e, q);
-  out.error = {error_of(e.x, reach), error_of(e.y, reach), error_of(e.w, reach)};
+  out.error = row_errors(e, reach);
   const VF error_w = out.error.w;
   Rectangles bounds = no_rectangles();
   VF least_w = hn::Set(f, kInfinity), most_w = hn::Neg(least_w), nearest = most_w;

@@ -37,8 +37,8 @@ const coverages = ['centres', 'area'] as const;
 /** How fine and for which places an OcclusionBuffer answers. */
 export interface OcclusionOptions {
   /** `area`, any place on the image, unless told otherwise: antialiasing, jitter, upscaling, another size of canvas; or
-   * `centres` of pixels alone, where a canvas without antialiasing takes its one sample: more is hidden, and meshes take a
-   * half to a third as long. */
+   * `centres` of pixels alone, where a canvas without antialiasing takes its one sample: more is hidden, and meshes take
+   * about half as long. */
   coverage?: (typeof coverages)[number];
   /** Pixels of the view along a side of one of the buffer's: 1, 2 or 4. */
   scale?: number;
