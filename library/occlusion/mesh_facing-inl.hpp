@@ -14,6 +14,14 @@
 #include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/depth_raster-inl.hpp"
 
+// What is called from two places is inlined in both, but not in WebAssembly, which a page's readers load.
+#undef SIGHTLINE_INLINE_IN_BOTH
+#if HWY_TARGET == HWY_WASM
+#define SIGHTLINE_INLINE_IN_BOTH HWY_NOINLINE inline
+#else
+#define SIGHTLINE_INLINE_IN_BOTH HWY_INLINE
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
@@ -110,8 +118,8 @@ struct Candidates {
   VF nearness[3], nearest;  // found where some are drawn
 };
 
-HWY_INLINE Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
-                                    std::size_t lane) {
+SIGHTLINE_INLINE_IN_BOTH Candidates candidates_of(DepthTiles& tiles, const OccluderTopology& mesh,
+                                                  std::size_t group, std::size_t lane) {
   const F f;
   const EyeProjection& e = tiles.projection;
   Candidates c;
@@ -214,7 +222,8 @@ HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, std:
 // Where a pixel's margin counts, what the others of a mesh ask of a vector of triangles. Those seen edge on
 // are as if they were not there: the mesh ends at them. Returns those of which know_cut() has more to say, a
 // bit each: what lies out of view counts, since no pixel reaches it.
-HWY_INLINE std::uint32_t store_facing(DepthTiles& tiles, const Candidates& c, const TrianglePlanes& planes) {
+SIGHTLINE_INLINE_IN_BOTH std::uint32_t store_facing(DepthTiles& tiles, const Candidates& c,
+                                                    const TrianglePlanes& planes) {
   const F f;
   MeshScratch& s = *tiles.mesh;
   const std::size_t first = c.group * kGroup + c.lane;
