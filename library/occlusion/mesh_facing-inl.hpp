@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/depth_raster-inl.hpp"
@@ -207,7 +208,7 @@ HWY_NOINLINE inline ExactCorners exact_corners(const EyeProjection& e, const Occ
   return out;
 }
 
-// Of those of a group that the near plane cuts, which count where a pixel's margin does.
+// Of those of a group that the near plane cuts, a bit each, which count where a pixel's margin does.
 HWY_NOINLINE void know_cut(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
                            std::uint32_t cut) {
   float* facing = &tiles.mesh->facing[group * kGroup];
@@ -246,8 +247,7 @@ SIGHTLINE_INLINE_IN_BOTH std::uint32_t store_facing(DepthTiles& tiles, const Can
 HWY_INLINE void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
                             std::span<const Candidates> vectors, std::span<const TrianglePlanes> planes) {
   MeshScratch& s = *tiles.mesh;
-  if (s.known[group] == s.turn) return;
-  s.known[group] = s.turn;
+  if (std::exchange(s.known[group], s.turn) == s.turn) return;
   std::uint32_t cut = 0;
   for (std::size_t v = 0; v < vectors.size(); ++v) cut |= store_facing(tiles, vectors[v], planes[v]);
   if (cut != 0) know_cut(tiles, mesh, group, cut);
@@ -257,8 +257,7 @@ HWY_INLINE void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, std
 void know_facing(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
   const F f;
   MeshScratch& s = *tiles.mesh;
-  if (s.known[group] == s.turn) return;
-  s.known[group] = s.turn;
+  if (std::exchange(s.known[group], s.turn) == s.turn) return;
   std::uint32_t cut = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(f)) {
     Candidates c = candidates_of(tiles, mesh, group, lane);
@@ -287,7 +286,8 @@ inline std::span<const std::uint32_t> around_group(const DepthTiles& tiles, cons
   return std::span(mesh.beside).subspan(its.first_beside, its.end_beside - its.first_beside);
 }
 
-// Finds which way triangles turn that a group's own ask for. All but its own are asked for first.
+// Finds which way triangles turn that a group's own ask for. Memory is asked for all of them before the first
+// is read.
 HWY_INLINE void know_around(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group) {
   const std::span<const std::uint32_t> others = around_group(tiles, mesh, group);
   for (const std::uint32_t other : others) {
