@@ -33,18 +33,22 @@ function(sightline_part name)
   sightline_target(sightline_${name})
   target_compile_options(sightline_${name} PRIVATE -fno-exceptions -fno-rtti -fvisibility=hidden)
   target_compile_definitions(sightline_${name} PRIVATE SIGHTLINE_BUILD)
-  # Where there is a shared library each source begins with what it exports, whatever CMAKE_DISABLE_PRECOMPILE_HEADERS
-  # says; the first part parses that for all.
+  # The first part parses for all what most sources include; where there is a shared library each source begins with
+  # what it exports, whatever CMAKE_DISABLE_PRECOMPILE_HEADERS says.
   get_property(shared_is_possible GLOBAL PROPERTY TARGET_SUPPORTS_SHARED_LIBS)
   if(shared_is_possible)
     set_target_properties(sightline_${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS OFF)
-    get_property(parts GLOBAL PROPERTY sightline_parts)
-    if(parts)
-      list(GET parts 0 first)
-      sightline_precompile(sightline_${name} LIKE ${first})
-    else()
-      sightline_precompile(sightline_${name} ${PROJECT_SOURCE_DIR}/bindings/c/exports.hpp <bit> <cmath> <glm/glm.hpp>)
-    endif()
+    set(exports ${PROJECT_SOURCE_DIR}/bindings/c/exports.hpp)
+  else()
+    # For sources that are compiled for size: what else clang compares is the same for all.
+    target_compile_options(sightline_${name} PRIVATE "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-validate-pch>")
+  endif()
+  get_property(parts GLOBAL PROPERTY sightline_parts)
+  if(parts)
+    list(GET parts 0 first)
+    sightline_precompile(sightline_${name} LIKE ${first})
+  else()
+    sightline_precompile(sightline_${name} ${exports} <algorithm> <bit> <cmath> <vector> <glm/glm.hpp>)
   endif()
   # Highway includes a source again for each vector target: it has to stand alone.
   set_target_properties(sightline_${name} PROPERTIES UNITY_BUILD OFF)
@@ -75,5 +79,5 @@ function(sightline_precompile name)
     target_precompile_headers(${name} PRIVATE ${ARGN})
   endif()
   # For ccache: the same header gives the same bytes.
-  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+  target_compile_options(${name} PRIVATE "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
 endfunction()
