@@ -1,6 +1,9 @@
 #include <sightline/frustum.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "library/frustum/frustum_cull.cpp"
@@ -22,7 +25,9 @@ using VF = hn::Vec<F>;
 
 using geometry::BoxSpan;
 using geometry::SphereSpan;
+using geometry::HWY_NAMESPACE::bits_of;
 using geometry::HWY_NAMESPACE::lowest;
+using geometry::HWY_NAMESPACE::packed;
 using geometry::HWY_NAMESPACE::spread;
 using Points = geometry::HWY_NAMESPACE::Points<VF>;
 using WidePlane = geometry::HWY_NAMESPACE::WidePlane<VF>;
@@ -30,6 +35,7 @@ using WidePlane = geometry::HWY_NAMESPACE::WidePlane<VF>;
 // What is looked at together: a cache line of each array.
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kVectors = (kGroup + hn::MaxLanes(F()) - 1) / hn::MaxLanes(F());
+constexpr std::size_t kRun = 8;  // groups
 
 // The vector from element i on of an array.
 struct Whole {
@@ -54,7 +60,8 @@ struct Part {
 // Writes the indices of what no plane has behind it, lying as deep as deepest(at) tells of the vector that
 // `at` reads. sides(at, than) and others(at, than) are the lowest() of some planes' distances. A group that
 // the first planes reject is done with: next to none where ids lie anyhow, most where neighbours have
-// neighbouring ids, so that the branch is foreseen.
+// neighbouring ids, so that the branch is foreseen. Where an index is written hangs on all before it: of a
+// run of groups it is found first what is kept, none waiting for another, and then written.
 template <class Deepest, class Sides, class Others>
 HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY_RESTRICT out,
                             const Deepest& deepest, const Sides& sides, const Others& others) {
@@ -73,15 +80,8 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
     }
     return kept;
   };
-  // Large arrays start alike within a cache line: from the next line on no load crosses two.
-  const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
-  std::size_t i = std::min(count, (lanes - behind_line) % lanes);
-  std::size_t kept = some(0, i, 0);
-  auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
-  const auto step = hn::Set(u, static_cast<std::uint32_t>(kGroup));
-  for (; i + kGroup <= count; i += kGroup) {
-    const auto group_ids = first_ids;
-    first_ids = hn::Add(first_ids, step);
+  // A bit each of a group that is kept.
+  const auto left_of = [&](std::size_t i) HWY_ATTR -> std::uint32_t {
     VF low[kVectors], deep[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) {
       const Whole at{i + v * lanes};
@@ -90,11 +90,33 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
     }
     auto gone = hn::Lt(low[0], deep[0]);
     for (std::size_t v = 1; v < kVectors; ++v) gone = hn::And(gone, hn::Lt(low[v], deep[v]));
-    if (hn::AllTrue(f, gone)) continue;
+    if (hn::AllTrue(f, gone)) return 0;
+    std::uint32_t left = 0;
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const auto left = hn::Not(hn::Lt(others(Whole{i + v * lanes}, low[v]), deep[v]));
-      const auto ids = hn::Add(group_ids, hn::Set(u, static_cast<std::uint32_t>(v * lanes)));
-      kept += geometry::HWY_NAMESPACE::store_kept(u, ids, hn::RebindMask(u, left), out + kept);
+      const auto behind = hn::Lt(others(Whole{i + v * lanes}, low[v]), deep[v]);
+      left |= bits_of(f, hn::Not(behind)) << v * lanes;
+    }
+    return left;
+  };
+  // Large arrays start alike within a cache line: from the next line on no load crosses two.
+  const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
+  std::size_t i = std::min(count, (lanes - behind_line) % lanes);
+  std::size_t kept = some(0, i, 0);
+  auto ids = hn::Iota(u, static_cast<std::uint32_t>(i));
+  const auto step = hn::Set(u, static_cast<std::uint32_t>(lanes));
+  while (i + kRun * kGroup <= count) {
+    std::array<std::uint16_t, kRun> left;
+    for (std::uint16_t& its : left) {
+      its = static_cast<std::uint16_t>(left_of(i));
+      i += kGroup;
+    }
+    for (const std::uint16_t its : left) {
+      for (std::size_t v = 0; v < kVectors; ++v) {
+        const std::uint32_t bits = its >> v * lanes & ((1u << lanes) - 1);
+        hn::StoreU(packed(u, ids, bits), u, out + kept);
+        kept += static_cast<std::size_t>(std::popcount(bits));
+        ids = hn::Add(ids, step);
+      }
     }
   }
   return some(i, count, kept);
