@@ -91,4 +91,5 @@ PYBIND11_MODULE(sightline, m) {
   add_rays(m);
   add_pvs(m);
   expect_constructed(m);
+  refuse_wrong_calls_in_a_sentence(m);
 }

@@ -73,6 +73,9 @@ void add_frustum(pybind11::module_& m);
 void add_rays(pybind11::module_& m);
 void add_pvs(pybind11::module_& m);
 
+/// Of all that was added: a call that no signature fits raises a TypeError of one sentence. Last.
+void refuse_wrong_calls_in_a_sentence(const pybind11::module_& m);
+
 }  // namespace sightline::python
 
 /// Objects that others hold, too. Python may have reserved one and never constructed it: refused here as it

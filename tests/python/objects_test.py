@@ -60,5 +60,44 @@ class Unconstructed(Case):
         self.assertEqual(len(world), 0)
 
 
+class WrongCalls(Case):
+    """A call that no signature fits is refused in one sentence: what, where, what was expected."""
+
+    def test_says_which_argument_and_what_was_expected(self):
+        world, view, culler = sightline.World(), sightline.camera(), sightline.Culler()
+        for sentence, call in {
+            "World(): expected no arguments, got 1": lambda: sightline.World(3),
+            "Culler.cull(): argument 'world': expected sightline.World, got int": lambda: culler.cull(1, view),
+            "Culler.cull(): argument 'views' is missing": lambda: culler.cull(world),
+            "Culler.cull(): argument 'levels': expected sightline.Levels, got str":
+                lambda: culler.cull(world, view, levels="fine"),
+            "World.insert(): there is no argument 'things'": lambda: world.insert(things=[]),
+            "World.insert(): argument 'boxes' is given twice": lambda: world.insert([], boxes=[]),
+            "camera(): argument 'fov': expected float, got str": lambda: sightline.camera(fov="wide"),
+            "camera(): a number is out of range: 'width' = " + str(2**70): lambda: sightline.camera(width=2**70),
+            "CullView.min_area: expected float, got str":
+                lambda: setattr(sightline.CullView(view), "min_area", "small"),
+            "CullView.view: expected sightline.View, got NoneType":
+                lambda: setattr(sightline.CullView(view), "view", None),
+        }.items():
+            with self.subTest(sentence):
+                with self.assertRaises(TypeError) as caught:
+                    call()
+                self.assertEqual(str(caught.exception), sentence)
+
+    def test_never_in_more_than_a_line(self):
+        called = 0
+        for scope in [sightline, *CLASSES]:
+            for name, member in list(vars(scope).items()):
+                if not callable(member) or member is sightline.Refused or name.startswith("_") and name != "__init__":
+                    continue
+                with self.subTest(scope=scope.__name__, member=name):
+                    with self.assertRaises((TypeError, ValueError)) as caught:
+                        member(*[object()] * 40)
+                    self.assertNotIn("\n", str(caught.exception))
+                    called += 1
+        self.assertGreater(called, 100)
+
+
 if __name__ == "__main__":
     unittest.main()
