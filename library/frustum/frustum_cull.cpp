@@ -102,20 +102,24 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
   const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
   std::size_t i = std::min(count, (lanes - behind_line) % lanes);
   std::size_t kept = some(0, i, 0);
-  auto ids = hn::Iota(u, static_cast<std::uint32_t>(i));
-  const auto step = hn::Set(u, static_cast<std::uint32_t>(lanes));
+  auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
+  const auto vector = hn::Set(u, static_cast<std::uint32_t>(lanes)),
+             group = hn::Set(u, static_cast<std::uint32_t>(kGroup));
   while (i + kRun * kGroup <= count) {
     std::array<std::uint16_t, kRun> left;
     for (std::uint16_t& its : left) {
       its = static_cast<std::uint16_t>(left_of(i));
       i += kGroup;
     }
-    for (const std::uint16_t its : left) {
+    for (const std::uint32_t its : left) {
+      auto ids = first_ids;
+      first_ids = hn::Add(first_ids, group);
+      if (its == 0) continue;
       for (std::size_t v = 0; v < kVectors; ++v) {
         const std::uint32_t bits = its >> v * lanes & ((1u << lanes) - 1);
         hn::StoreU(packed(u, ids, bits), u, out + kept);
         kept += static_cast<std::size_t>(std::popcount(bits));
-        ids = hn::Add(ids, step);
+        ids = hn::Add(ids, vector);
       }
     }
   }
