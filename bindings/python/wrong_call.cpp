@@ -1,6 +1,7 @@
 // A call that no signature fits, refused in one sentence where pybind11 writes a list.
 #include <algorithm>
 #include <map>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,7 @@ struct Signature {
 
 Parameter parameter_of(std::string_view text) {
   const std::size_t type = text.find(": "), value = text.find(" = ");
+  if (type == text.npos) return {std::string(text), "object", true};
   Parameter out{std::string(text.substr(0, type)),
                 std::string(text.substr(std::min(type + 2, text.size()), value - type - 2)),
                 value != text.npos, text.ends_with(" = None")};
@@ -71,8 +73,8 @@ Signature::Signature(std::string_view text) {
 bool fits(const Parameter& parameter, PyObject* value) {
   const std::string& type = parameter.type;
   if (type == "object" || (parameter.may_be_none && value == Py_None)) return true;
-  if (type == "float") return PyNumber_Check(value) && !PyComplex_Check(value);
-  if (type == "int") return PyIndex_Check(value);
+  if (type == "float") return PyNumber_Check(value) && !PyComplex_Check(value) && !PySequence_Check(value);
+  if (type == "int") return PyIndex_Check(value) && !PySequence_Check(value);
   if (type == "bool") return PyBool_Check(value) || type_of(value).starts_with("bool");
   if (type == "str") return PyUnicode_Check(value);
   for (const py::handle base : py::reinterpret_borrow<py::tuple>(Py_TYPE(value)->tp_mro))
@@ -136,15 +138,22 @@ std::string sentence_of(std::string_view message, PyObject* function, PyObject* 
   return what + "(): " + complaint(signature, args, kwargs, !signature.of.empty());
 }
 
-PyObject* call_or_say(PyObject* function, PyObject* args, PyObject* kwargs) {
+// Python calls it: nothing may be thrown.
+PyObject* call_or_say(PyObject* function, PyObject* args, PyObject* kwargs) noexcept {
   PyObject* const result = call(function, args, kwargs);
   if (result || !PyErr_ExceptionMatches(PyExc_TypeError)) return result;
-  py::error_already_set error;
-  const std::string sentence = sentence_of(std::string(py::str(error.value())), function, args, kwargs);
-  if (sentence.empty())
-    error.restore();
-  else
-    PyErr_SetString(PyExc_TypeError, sentence.c_str());
+  try {
+    py::error_already_set error;
+    const std::string sentence = sentence_of(std::string(py::str(error.value())), function, args, kwargs);
+    if (sentence.empty())
+      error.restore();
+    else
+      PyErr_SetString(PyExc_TypeError, sentence.c_str());
+  } catch (py::error_already_set& its) {  // what is given has no text
+    its.restore();
+  } catch (const std::bad_alloc&) {
+    PyErr_NoMemory();
+  }
   return nullptr;
 }
 

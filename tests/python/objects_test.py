@@ -2,6 +2,7 @@
 import inspect
 import unittest
 
+import numpy as np
 import sightline
 from support import Case
 
@@ -74,6 +75,8 @@ class WrongCalls(Case):
             "World.insert(): there is no argument 'things'": lambda: world.insert(things=[]),
             "World.insert(): argument 'boxes' is given twice": lambda: world.insert([], boxes=[]),
             "camera(): argument 'fov': expected float, got str": lambda: sightline.camera(fov="wide"),
+            "camera(): argument 'near': expected float, got ndarray": lambda: sightline.camera(near=np.zeros((3, 3))),
+            "camera(): argument 'width': expected int, got ndarray": lambda: sightline.camera(width=np.zeros(3, int)),
             "camera(): a number is out of range: 'width' = " + str(2**70): lambda: sightline.camera(width=2**70),
             "CullView.min_area: expected float, got str":
                 lambda: setattr(sightline.CullView(view), "min_area", "small"),
@@ -84,6 +87,17 @@ class WrongCalls(Case):
                 with self.assertRaises(TypeError) as caught:
                     call()
                 self.assertEqual(str(caught.exception), sentence)
+
+    def test_or_what_was_raised_when_it_was_asked_what_was_given(self):
+        class Nameless:
+            def __index__(self):
+                return 2**70
+
+            def __str__(self):
+                raise KeyError("no text")
+
+        with self.assertRaisesRegex(KeyError, "no text"):
+            sightline.camera(width=Nameless())
 
     def test_never_in_more_than_a_line(self):
         called = 0
