@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "library/frustum/frustum_cull.cpp"
@@ -105,8 +106,9 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
   auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
   const auto vector = hn::Set(u, static_cast<std::uint32_t>(lanes)),
              group = hn::Set(u, static_cast<std::uint32_t>(kGroup));
-  while (i + kRun * kGroup <= count) {
-    std::array<std::uint16_t, kRun> left;
+  while (i + kGroup <= count) {
+    std::array<std::uint16_t, kRun> all;
+    const auto left = std::span(all).first(std::min(kRun, (count - i) / kGroup));
     for (std::uint16_t& its : left) {
       its = static_cast<std::uint16_t>(left_of(i));
       i += kGroup;
