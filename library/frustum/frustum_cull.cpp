@@ -58,6 +58,20 @@ struct Part {
   }
 };
 
+// Writes those of a group's indices whose bits are set, and returns how many.
+HWY_INLINE std::size_t store_group(std::uint32_t those, hn::Vec<U> first_ids, ObjectId* HWY_RESTRICT out) {
+  const U u;
+  const std::size_t lanes = hn::Lanes(u);
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const std::uint32_t bits = those >> v * lanes & ((1u << lanes) - 1);
+    const auto ids = hn::Add(first_ids, hn::Set(u, static_cast<std::uint32_t>(v * lanes)));
+    hn::StoreU(packed(u, ids, bits), u, out + kept);
+    kept += static_cast<std::size_t>(std::popcount(bits));
+  }
+  return kept;
+}
+
 // Writes the indices of what no plane has behind it, lying as deep as deepest(at) tells of the vector that
 // `at` reads. sides(at, than) and others(at, than) are the lowest() of some planes' distances. A group that
 // the first planes reject is done with: next to none where ids lie anyhow, most where neighbours have
@@ -104,8 +118,7 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
   std::size_t i = std::min(count, (lanes - behind_line) % lanes);
   std::size_t kept = some(0, i, 0);
   auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
-  const auto vector = hn::Set(u, static_cast<std::uint32_t>(lanes)),
-             group = hn::Set(u, static_cast<std::uint32_t>(kGroup));
+  const auto group = hn::Set(u, static_cast<std::uint32_t>(kGroup));
   while (i + kGroup <= count) {
     std::array<std::uint16_t, kRun> all;
     const auto left = std::span(all).first(std::min(kRun, (count - i) / kGroup));
@@ -113,16 +126,9 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
       its = static_cast<std::uint16_t>(left_of(i));
       i += kGroup;
     }
-    for (const std::uint32_t its : left) {
-      auto ids = first_ids;
+    for (const std::uint16_t its : left) {
+      if (its != 0) kept += store_group(its, first_ids, out + kept);
       first_ids = hn::Add(first_ids, group);
-      if (its == 0) continue;
-      for (std::size_t v = 0; v < kVectors; ++v) {
-        const std::uint32_t bits = its >> v * lanes & ((1u << lanes) - 1);
-        hn::StoreU(packed(u, ids, bits), u, out + kept);
-        kept += static_cast<std::size_t>(std::popcount(bits));
-        ids = hn::Add(ids, vector);
-      }
     }
   }
   return some(i, count, kept);
