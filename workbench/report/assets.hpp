@@ -6,7 +6,7 @@
 namespace sightline::report {
 
 extern const std::string_view kChartScript;   ///< Chart.js, as installed on the machine that built this
-extern const std::string_view kLegendScript;  ///< legend.js
+extern const std::string_view kSharedScript;  ///< charts.js
 extern const std::string_view kPageStyle;     ///< page.css
 extern const std::string_view kPageScript;    ///< page.js
 

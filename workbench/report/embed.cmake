@@ -1,8 +1,8 @@
-# cmake -DOUT=assets.cpp -DCHART=… -DLEGEND=… -DSTYLE=… -DSCRIPT=… -P embed.cmake: files as C++ string views.
+# cmake -DOUT=assets.cpp -DCHART=… -DSHARED=… -DSTYLE=… -DSCRIPT=… -P embed.cmake: files as C++ string views.
 # A string literal may be limited in length, an array is not.
 set(text "#include \"workbench/report/assets.hpp\"\n\nnamespace sightline::report {\nnamespace {\n")
 set(views "")
-foreach(pair "kChartScript=${CHART}" "kLegendScript=${LEGEND}" "kPageStyle=${STYLE}" "kPageScript=${SCRIPT}")
+foreach(pair "kChartScript=${CHART}" "kSharedScript=${SHARED}" "kPageStyle=${STYLE}" "kPageScript=${SCRIPT}")
   string(REGEX MATCH "^([^=]+)=(.+)$" matched "${pair}")
   set(name ${CMAKE_MATCH_1})
   file(READ "${CMAKE_MATCH_2}" hex HEX)

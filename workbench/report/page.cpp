@@ -254,7 +254,7 @@ std::string make_page(const PageContent& content) {
   }
   page += "</div>\n" + footer_html(comparison) + "</main>\n";
   page += "<script type=\"application/json\" id=\"data\">" + data_json(comparison) + "</script>\n<script>\n";
-  page.append(kChartScript).append("\n</script>\n<script>\n").append(kLegendScript).append(kPageScript);
+  page.append(kChartScript).append("\n</script>\n<script>\n").append(kSharedScript).append(kPageScript);
   return page + "</script></body></html>\n";
 }
 

@@ -17,7 +17,7 @@
     Chart.defaults.borderColor = colour("--rule");
   }
 
-  function line(id, y, series, logarithmic) {
+  function line(id, y, series) {
     return legend(new Chart(document.getElementById(id), {
       type: "line",
       data: {
@@ -32,8 +32,7 @@
         plugins: { legend: { display: false } },
         scales: {
           x: { title: { display: true, text: "view" }, ticks: { maxTicksLimit: 12 }, grid: { display: false } },
-          y: { title: { display: true, text: y }, type: logarithmic ? "logarithmic" : "linear",
-               ticks: { maxTicksLimit: 7 } },
+          y: { title: { display: true, text: y }, ...logarithmicAxis },
         },
       },
     }));
@@ -58,10 +57,10 @@
     themed();
     const each = field => data.methods.map((m, i) => ({ label: m, values: field[i], colour: of(i), dash: dash(i) }));
     charts = [
-      line("cull-time", "milliseconds", each(data.cull_ms), true),
+      line("cull-time", "milliseconds", each(data.cull_ms)),
       line("kept", "objects", each(data.kept).concat(
-        [{ label: "visible in truth", values: data.truly_visible, colour: colour("--ink"), width: 2.5 }]), true),
-      ...(data.frame_ms.length ? [line("frame-time", "milliseconds", each(data.frame_ms), true)] : []),
+        [{ label: "visible in truth", values: data.truly_visible, colour: colour("--ink"), width: 2.5 }])),
+      ...(data.frame_ms.length ? [line("frame-time", "milliseconds", each(data.frame_ms))] : []),
       bars("triangles", "triangles a view, mean", data.triangles),
       bars("draw-calls", "draw calls a view, mean", data.draw_calls),
     ];

@@ -23,8 +23,7 @@ for (const canvas of document.querySelectorAll("canvas[data-chart]")) {
       plugins: { legend: { display: false } },
       scales: {
         x: { title: { display: chart.x !== "", text: chart.x }, grid: { display: false } },
-        y: { type: chart.logarithmic ? "logarithmic" : "linear", beginAtZero: !chart.logarithmic,
-             title: { display: chart.y !== "", text: chart.y } },
+        y: { title: { display: chart.y !== "", text: chart.y }, ...(chart.logarithmic ? logarithmicAxis : { beginAtZero: true }) },
       },
     },
   }));

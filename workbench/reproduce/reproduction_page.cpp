@@ -140,7 +140,7 @@ void write_reproduction(const std::string& folder, const Reproduction& reproduct
       page += "<details><summary>The figures</summary>" + report::html(table) + "</details>\n";
   }
   page.append("</main>\n<script>").append(report::kChartScript).append("</script>\n<script>");
-  page.append(report::kLegendScript).append(kReproductionScript).append("</script></body></html>\n");
+  page.append(report::kSharedScript).append(kReproductionScript).append("</script></body></html>\n");
   io::write_file(std::filesystem::path(folder) / "index.html", page);
 }
 

@@ -1,4 +1,16 @@
-// A chart's legend, for every page that has charts.
+// What every page that has charts shares: their legend and their logarithmic axis.
+
+// Of its lines the powers of ten; where fewer than two of these are in sight, also twice and five times those, or all:
+// each has its label, without which a line says nothing.
+const logarithmicAxis = {
+  type: "logarithmic",
+  afterBuildTicks(axis) {
+    const first = tick => Math.round(10 * tick.value / 10 ** Math.floor(Math.log10(tick.value) + 1e-9)) / 10;
+    const few = [[1], [1, 2, 5]].map(leading => axis.ticks.filter(tick => leading.includes(first(tick))));
+    axis.ticks = few.find(ticks => ticks.length > 1) ?? axis.ticks;
+  },
+  ticks: { callback: value => new Intl.NumberFormat(undefined, { maximumSignificantDigits: 3 }).format(value) },
+};
 
 // A piece of a line, as the chart draws it.
 function stroke(set) {

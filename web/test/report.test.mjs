@@ -1,0 +1,56 @@
+// What the axes of charts say, in the pages of the workbench.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import vm from 'node:vm';
+
+const source = (path) => readFileSync(new URL(`../../workbench/${path}`, import.meta.url), 'utf8');
+const shared = source('report/charts.js');
+
+// The vertical axes of the charts that a page's script asks for.
+function axesOf(script, elements) {
+  const axes = [];
+  class Chart {
+    static defaults = { font: {} };
+    constructor(canvas, config) {
+      axes.push(config.options.scales.y);
+    }
+    destroy() {}
+  }
+  vm.runInNewContext(`${shared}\nlegend = (chart) => chart;\n${source(script)}`, {
+    Chart,
+    document: { getElementById: () => elements[0], querySelector: () => ({}), documentElement: {}, body: {},
+      querySelectorAll: (what) => what.startsWith('canvas') ? elements : [] },
+    getComputedStyle: () => ({ getPropertyValue: () => '' }),
+    matchMedia: () => ({ matches: false, addEventListener() {} }),
+    addEventListener() {},
+  });
+  return axes.filter((axis) => axis.type === 'logarithmic');
+}
+
+const values = [[1, 600]];
+const report = axesOf('report/page.js', [{ textContent: JSON.stringify({ methods: ['none'], views: [0, 1], cull_ms: values,
+  frame_ms: values, kept: values, truly_visible: [1, 2], triangles: [1], draw_calls: [1] }) }]);
+const reproduction = axesOf('reproduce/reproduction.js', [true, false].map((logarithmic) => (
+  { dataset: { chart: JSON.stringify({ logarithmic, x: '', y: '', labels: ['a'], series: [{ name: 'ours', values: [1] }] }) } })));
+
+function left(axis, ticks) {
+  const its = { ticks: ticks.map((value) => ({ value })) };
+  axis.afterBuildTicks(its);
+  return its.ticks.map((tick) => tick.value);
+}
+
+test('a line of a logarithmic axis is a power of ten, with its label', () => {
+  assert.equal(report.length, 3);
+  assert.equal(reproduction.length, 1);
+  const decades = [0.01, 0.1, 1, 10, 100], ticks = decades.flatMap((decade) => [1, 2, 3, 4, 5, 6, 7, 8, 9].map((k) => k * decade));
+  for (const axis of [...report, ...reproduction]) {
+    assert.deepEqual(left(axis, ticks), decades);
+    assert.deepEqual(decades.map((value) => Number(axis.ticks.callback(value).replace(',', '.'))), decades);
+  }
+});
+
+test('a short logarithmic axis has lines, too', () => {
+  assert.deepEqual(left(report[0], [2, 3, 4, 5, 6, 7, 8, 9, 10, 15]), [2, 5, 10]);
+  assert.deepEqual(left(report[0], [6, 7, 8, 9]), [6, 7, 8, 9]);
+});
