@@ -103,7 +103,7 @@ public:
   /// after a cull. Listing objects in the same order each frame is fastest. Errors: bad_argument, bad_box,
   /// stale_handle. Cost: linear, some 10 ns an object that moves every frame, some 200 ns one that seldom
   /// does. Allocates: where objects gather, or move, as never before; some 28 bytes for each object that
-  /// moves every frame.
+  /// moves every frame, and 4 an object of the world where a sixteenth of it is listed in no order.
   Status move(Strided<const Handle> handles, const BoxView& boxes);
   /// Takes the objects out.
   /// Errors: bad_argument; stale_handle, also for one that is listed twice. Cost: linear. Allocates: a

@@ -80,6 +80,10 @@ struct BoxReader {
   /// Whether the boxes lie as one array a coordinate about `origin`, so that they can be read where they are.
   static bool lies_in_arrays(const BoxView& view, const WorldPoint& origin, geometry::BoxSpan& out) noexcept;
   static bool lies_in_arrays(const SphereView& view, geometry::SphereSpan& out) noexcept;
+  /// Whether they are given by minimum and maximum in single precision, so that a copy is as good.
+  static bool are_float_corners(const BoxView& view) noexcept {
+    return !view.doubles_ && view.form_ == BoxView::corners;
+  }
   /// The same as structs, one after another.
   static bool lies_as_structs(const BoxView& view, const WorldPoint& origin,
                               std::span<const Box>& out) noexcept;

@@ -412,7 +412,9 @@ private:
   static void make_rows(Pool& pool, std::size_t lanes);
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
-  void come_to_page(ObjectId object);
+  void come_to_page(ObjectId object), file_new_pages();
+  std::uint32_t write_in_page_of(std::uint32_t page, std::span<const ObjectId> objects, const Box* boxes,
+                                 const Box& within) noexcept;
   void free_mover_chunk(std::uint32_t chunk);
   [[nodiscard]] static bool is_page(const Chunk& chunk) noexcept {
     return chunk.previous != kNone;
@@ -428,10 +430,7 @@ private:
   bool file_rested(std::uint32_t chunk, std::uint32_t& budget);
   void note_moved(Chunk& mover, std::uint32_t slot) noexcept;
   void rest_grown();
-  [[nodiscard]] bool keeps_movers() const noexcept {
-    return size_ >= kFewestForMovers;
-  }
-  static constexpr std::size_t kFewestForMovers = 1024;
+  [[nodiscard]] bool keeps_movers() const noexcept;
 
   std::uint32_t add_group(std::uint32_t node);
   void put_in_group(std::uint32_t chunk, std::uint32_t group, const Box& bounds);
@@ -488,7 +487,8 @@ private:
   std::vector<std::uint32_t> pages_;  // the chunk of ids i * kCapacity … of each page i, or none
   // Where the lanes of the first page begin; the others' follow in order, and all are kept for them.
   std::uint32_t page_lane_ = kNone, kept_pages_ = 0;
-  std::vector<std::uint32_t> stale_;  // chunks whose summaries wait for settle_columns()
+  std::vector<std::uint32_t> new_pages_;  // which wait for flush()
+  std::vector<std::uint32_t> stale_;      // chunks whose summaries wait for settle_columns()
   std::uint32_t mover_node_ = kNone, mover_group_ = kNone;
   std::size_t grown_hand_ = 0, mover_hand_ = 0;  // where rest() goes on
   Locations own_locations_;

@@ -7,6 +7,7 @@
 #include "library/geometry/ask_ahead.hpp"
 #include "library/geometry/box_math.hpp"
 #include "library/world/chunk_map.hpp"
+#include "library/world/chunk_runs.hpp"
 
 namespace sightline::world {
 
@@ -38,6 +39,11 @@ Box ChunkMap::widened(const Box& b) noexcept {
   constexpr float kSlack = 0.125f;
   const float by = kSlack * longest_side(b);
   return {{b.min.x - by, b.min.y - by, b.min.z - by}, {b.max.x + by, b.max.y + by, b.max.z + by}};
+}
+
+bool ChunkMap::keeps_movers() const noexcept {
+  constexpr std::size_t kFewest = 1024;
+  return size_ >= kFewest;
 }
 
 void ChunkMap::move_loosely(ObjectId object, const Box& box, Moving& moving) {
@@ -217,6 +223,7 @@ std::uint32_t ChunkMap::open_page(ObjectId object) {
   if (pages_[page] != kNone) return pages_[page];
   const std::uint32_t added = pages_[page] =
       add_mover_chunk(page < kept_pages_ ? lane_after(page_lane_, page) : kNone);
+  new_pages_.push_back(page);
   Chunk& c = chunks_[added];
   c.previous = page, c.count = kCapacity;
   std::fill_n(ids(c), kCapacity, kNoObject);
@@ -255,50 +262,59 @@ void ChunkMap::come_to_page(ObjectId object) {
 
 std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const Box* boxes, const Box& within,
                                       std::uint32_t sector, bool many, std::uint32_t& came) {
-  ++changes_[kMovers];
-  std::uint32_t at = kNone;
-  Chunk* c = nullptr;
-  const ObjectId* stand = nullptr;
-  std::size_t row = 0;
-  float* to = nullptr;
-  bool full = false;
-  Box bounds;
-  const auto enter = [&](std::uint32_t page) {
-    at = page, full = false, stand = nullptr;
-    if (page >= pages_.size() || pages_[page] == kNone) return;
-    c = &chunks_[pages_[page]], bounds = intersected(c->bounds, within);
-    stand = ids(*c), to = lanes(*c, 0), row = step(*c), full = c->live == kCapacity;
+  const auto stands_in_page = [&](ObjectId object) {
+    const std::uint32_t page = object / kCapacity;
+    return page < pages_.size() && pages_[page] != kNone &&
+           ids(chunks_[pages_[page]])[object % kCapacity] == object;
   };
-  for (std::uint32_t i = 0; i < objects.size(); ++i) {
-    const std::uint32_t page = objects[i] / kCapacity, slot = objects[i] % kCapacity;
-    if (page != at) enter(page);
-    if (!full && (stand == nullptr || stand[slot] != objects[i])) {
+  ++changes_[kMovers];
+  std::uint32_t i = 0;
+  while (i < objects.size()) {
+    const std::uint32_t page = objects[i] / kCapacity;
+    const std::uint32_t written = write_in_page_of(page, objects.subspan(i), boxes + i, within);
+    i += written;
+    if (i == objects.size() || (written > 0 && objects[i] / kCapacity != page)) continue;
+    // The next one does not stand in its page, or leaves the bounds of it.
+    if (!holds(within, boxes[i])) return i;
+    if (!stands_in_page(objects[i])) {
       const Location& place = (*locations_)[objects[i]];
-      if (place.sector != sector || !(many || place.moves()) || !holds(within, boxes[i])) return i;
+      if (place.sector != sector || !(many || place.moves())) return i;
       come_to_page(objects[i]);
       ++came;
-      enter(page);
     }
-    const Box box = boxes[i];
-    if (!holds(bounds, box)) {
-      if (!holds(within, box)) return i;
-      c->bounds = widened(united(c->bounds, box)), bounds = intersected(c->bounds, within);
-      make_dirty(pages_[page]);
-    }
-    const std::array<float, 6> values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
-    for (std::uint32_t side = 0; side < 6; ++side) to[side * row + slot] = values[side];
-    note_moved(*c, slot);
+    Chunk& c = chunks_[pages_[page]];
+    if (holds(c.bounds, boxes[i])) continue;
+    c.bounds = widened(united(c.bounds, boxes[i]));
+    make_dirty(pages_[page]);
   }
-  return static_cast<std::uint32_t>(objects.size());
+  return i;
+}
+
+// Writes the boxes of objects while they stand in this page and need no more of its bounds.
+std::uint32_t ChunkMap::write_in_page_of(std::uint32_t page, std::span<const ObjectId> objects,
+                                         const Box* boxes, const Box& within) noexcept {
+  if (page >= pages_.size() || pages_[page] == kNone) return 0;
+  // For the page after this one.
+  const bool goes_on = objects.back() > objects.front() && objects.back() - objects.front() < 32 * kCapacity;
+  if (goes_on && page + 1 < pages_.size() && pages_[page + 1] != kNone) ask_ahead(&chunks_[pages_[page + 1]]);
+  Chunk& c = chunks_[pages_[page]];
+  return write_in_page({c.bounds, within, page * kCapacity, c.live == kCapacity ? nullptr : ids(c),
+                        lanes(c, 0), step(c), c.moved.data(), woken_},
+                       objects, boxes);
 }
 
 void ChunkMap::prefetch_pages(std::span<const ObjectId> objects) const noexcept {
+  const Pool& pool = pools_[kMovers];
+  const bool all_full = movers() == size_;
   for (const ObjectId object : objects) {
-    const std::uint32_t page = object / kCapacity, slot = object % kCapacity;
-    if (page >= pages_.size() || pages_[page] == kNone) continue;
-    const Chunk& c = chunks_[pages_[page]];
-    ask_ahead(&c), ask_ahead(ids(c) + slot);
-    for (std::uint32_t side = 0; side < 6; ++side) ask_ahead(lanes(c, side) + slot);
+    const std::uint32_t page = object / kCapacity;
+    if (page >= kept_pages_ || pages_[page] == kNone) continue;
+    // As the page's chunk says, which is not here yet.
+    const std::size_t lane = lane_after(page_lane_, page) + object % kCapacity;
+    const float* const box = pool.lanes.data() + pool.begin(lane);
+    ask_ahead(&chunks_[pages_[page]]);
+    for (std::size_t side = 0; side < 6; ++side) ask_ahead(box + side * pool.row);
+    if (!all_full) ask_ahead(pool.ids.data() + lane);
   }
 }
 
@@ -324,8 +340,20 @@ void ChunkMap::add_mover(ObjectId object, const Box& box) {
   make_dirty(chunk);
 }
 
+// Groups have new pages in the order of their lanes, in whichever their objects came: who culls them reads
+// memory from the front to the back.
+void ChunkMap::file_new_pages() {
+  std::sort(new_pages_.begin(), new_pages_.end());
+  for (const std::uint32_t page : new_pages_) {
+    const std::uint32_t chunk = pages_[page];
+    if (chunk != kNone && chunks_[chunk].group == kNone) put_in_group(chunk, kNone, chunks_[chunk].bounds);
+  }
+  new_pages_.clear();
+}
+
 void ChunkMap::flush() {
   leave_now();
+  file_new_pages();
   // In three steps, each when the one before has arrived.
   constexpr std::size_t kGroup = 8, kChunk = 16;
   for (std::size_t i = 0; i < dirty_.size(); ++i) {

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include "library/geometry/ask_ahead.hpp"
+#include "library/geometry/box_math.hpp"
 #include "library/geometry/simd-inl.hpp"
 #include "library/world/chunk_map.hpp"
 #include "library/world/chunk_runs.hpp"
@@ -103,6 +105,62 @@ std::uint32_t write_run(const MoverRun& run, std::uint32_t& slot, const ObjectId
   return i;
 }
 
+// Whether boxes lie within two.
+#if HWY_TARGET == HWY_SCALAR  // which has no vectors of four
+class WithinBoth {
+public:
+  WithinBoth(const Box& a, const Box& b) : box_(geometry::intersected(a, b)) {}
+  HWY_INLINE bool operator()(const Box& box) const { return geometry::holds(box_, box); }
+
+private:
+  Box box_;
+};
+#else
+class WithinBoth {
+public:
+  WithinBoth(const Box& a, const Box& b)
+      : low_(hn::Max(from_min_x(a), from_min_x(b))), high_(hn::Min(from_min_z(a), from_min_z(b))) {}
+  HWY_INLINE bool operator()(const Box& box) const {
+    const F4 f;
+    const auto above = hn::Or(hn::Ge(from_min_x(box), low_), hn::Not(hn::FirstN(f, 3))),
+               below = hn::Or(hn::Le(from_min_z(box), high_), hn::FirstN(f, 1));
+    return hn::AllTrue(f, hn::And(above, below));
+  }
+
+private:
+  using F4 = hn::FixedTag<float, 4>;
+  // Of the first four and the last four coordinates three are asked for, the minima and the maxima.
+  static HWY_INLINE hn::Vec<F4> from_min_x(const Box& box) { return hn::LoadU(F4(), &box.min.x); }
+  static HWY_INLINE hn::Vec<F4> from_min_z(const Box& box) { return hn::LoadU(F4(), &box.min.z); }
+  hn::Vec<F4> low_, high_;
+};
+#endif
+
+std::uint32_t write_in_page(const PageRun& run, const ObjectId* objects, const Box* boxes,
+                            std::uint32_t count) {
+  const WithinBoth within(run.bounds, run.within);
+  const ObjectId first = run.first;
+  const ObjectId* const ids = run.ids;
+  float* const low = run.boxes;
+  float* const high = run.boxes + 3 * run.row;
+  const std::size_t row = run.row;
+  std::array<std::uint64_t, 2> moved{};
+  std::uint32_t i = 0;
+  for (; i < count; ++i) {
+    const std::uint32_t slot = objects[i] - first;
+    if (slot >= ChunkMap::kCapacity || (ids && ids[slot] != objects[i]) || !within(boxes[i])) break;
+    const Box& box = boxes[i];
+    low[slot] = box.min.x, low[row + slot] = box.min.y, low[2 * row + slot] = box.min.z;
+    high[slot] = box.max.x, high[row + slot] = box.max.y, high[2 * row + slot] = box.max.z;
+    moved[slot / 64] |= std::uint64_t{1} << slot % 64;
+  }
+  for (std::size_t word = 0; word < moved.size(); ++word) {
+    run.woken += hwy::PopCount(moved[word] & ~run.moved[word]);
+    run.moved[word] |= moved[word];
+  }
+  return i;
+}
+
 std::uint32_t take_out(ObjectId* objects, std::uint32_t count, const std::uint32_t* bits,
                        std::uint32_t words) {
   const U u;
@@ -155,7 +213,7 @@ float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
 
 // Six floats a box, and three further on stands what is no less; 48 of them repeat the order in vectors.
 bool are_sound(const float* values, std::size_t boxes, float reach) {
-  constexpr std::size_t kStep = 48;
+  constexpr std::size_t kStep = 48, kBlock = 32 * kStep;
   const F f;
   const hn::RebindToSigned<F> i32;
   const std::size_t lanes = hn::Lanes(f), count = 6 * boxes;
@@ -167,6 +225,7 @@ bool are_sound(const float* values, std::size_t boxes, float reach) {
   auto least = hn::Zero(f);
   std::size_t i = 0;
   for (; i + kStep + 3 <= count; i += kStep) {
+    if (i % kBlock == 0) geometry::read_lines(values + i, std::min(kBlock, count - i) * sizeof(float));
     for (std::size_t k = 0; k < kStep; k += lanes) {
       const auto low = hn::LoadU(f, values + i + k), high = hn::LoadU(f, values + i + k + 3);
       greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low), magnitude));
@@ -214,9 +273,16 @@ HWY_EXPORT(are_sound);
 HWY_EXPORT(known_handles);
 HWY_EXPORT(lay_out);
 HWY_EXPORT(take_out);
+HWY_EXPORT(write_in_page);
 
 std::uint32_t take_out(ObjectId* objects, std::uint32_t count, std::span<const std::uint32_t> bits) noexcept {
   return HWY_DYNAMIC_DISPATCH(take_out)(objects, count, bits.data(), static_cast<std::uint32_t>(bits.size()));
+}
+
+std::uint32_t write_in_page(const PageRun& run, std::span<const ObjectId> objects,
+                            const Box* boxes) noexcept {
+  return HWY_DYNAMIC_DISPATCH(write_in_page)(run, objects.data(), boxes,
+                                             static_cast<std::uint32_t>(objects.size()));
 }
 
 bool boxes_are_sound(std::span<const Box> boxes) noexcept {

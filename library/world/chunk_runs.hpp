@@ -22,6 +22,20 @@ struct MoverRun {
   bool past_cache;       ///< whole vectors need not stay in the cache
 };
 
+/// A page of movers.
+struct PageRun {
+  const Box &bounds, &within;  ///< in both of which boxes lie that are written
+  ObjectId first;              ///< the object whose place is the first
+  const ObjectId* ids;         ///< who stands there; null where all do
+  float* boxes;                ///< its minimum x; the other sides `row` floats apart
+  std::size_t row;
+  std::uint64_t* moved;  ///< a bit a slot
+  std::size_t& woken;    ///< counts those whose bit was not set
+};
+
+/// Writes the boxes of objects while each stands in its place of the page and lies within bounds. Returns how
+/// many did.
+std::uint32_t write_in_page(const PageRun& run, std::span<const ObjectId> objects, const Box* boxes) noexcept;
 /// Makes holes of the objects whose bits are set, of `count` that are readable up to the next multiple of 16.
 /// Returns how many it found.
 std::uint32_t take_out(ObjectId* objects, std::uint32_t count, std::span<const std::uint32_t> bits) noexcept;

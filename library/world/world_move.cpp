@@ -26,6 +26,34 @@ public:
         moving_(moving),
         past_cache_(boxes.size() > kPastCache) {}
 
+  void run() {
+    if (handles_.size() == 0) return;
+    newcomers_ = moving_.many ? newcomers() : 0;
+    begin_sector(s_.objects[handles_[0].index].sector);
+    const bool scattered = moving_.many && map_->keeps_pages() && ScatteredMoves::can_copy(boxes_) &&
+                           ScatteredMoves::are_scattered(handles_);
+    scattered ? move_sorted() : move_all();
+  }
+
+private:
+  // As many at once as gives each page some.
+  void move_sorted() {
+    const Strided<const Handle> handles = handles_;
+    const BoxView boxes = boxes_;
+    const std::size_t at_once = s_.objects.size() / 8;
+    ScatteredMoves& sorted = s_.scattered_moves();
+    for (std::size_t first = 0; first < handles.size(); first += at_once) {
+      sorted.sort(handles, boxes, first, std::min(at_once, handles.size() - first), s_.objects.size());
+      handles_ = sorted.handles(), boxes_ = BoxView(sorted.boxes(), boxes.origin());
+      world_first_ = kNoBlock;
+      move_all();
+    }
+  }
+
+  void move_all() {
+    for (std::size_t first = 0; first < handles_.size(); first += kBlock) move(first);
+  }
+
   void move(std::size_t first) {
     first_ = first;
     const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
@@ -57,7 +85,6 @@ public:
     }
   }
 
-private:
   [[nodiscard]] bool runs() const { return run_chunk_ != ChunkMap::kNone && patience_ == 0; }
   std::uint32_t move_run(std::uint32_t i, std::uint32_t count) {
     const std::uint32_t moved =
@@ -87,20 +114,29 @@ private:
     s_.touch(sector);
     if (sector == sector_ && map_ == s_.sectors[sector].map.get()) return;
     sector_ = sector, map_ = s_.sectors[sector].map.get();
-    map_->expect_moves(moving_.many, moving_.many ? newcomers() : 0);
+    map_->expect_moves(moving_.many, newcomers_);
     run_chunk_ = ChunkMap::kNone;
   }
 
   // The same where movers stand in pages, of the sector that the last block began in. False, with nothing
   // done, where this one begins elsewhere.
   bool move_by_id(std::uint32_t count) {
-    const std::span<const ObjectId> ids(ids_.data(), count);
     const Box* const boxes = structs(count);
-    ask_for_pages();
     if (std::exchange(came_, 0) > 0) ask_for_next();
-    for (std::uint32_t i = 0; i < count; ++i) {
+    // What lies close together is fetched by itself.
+    const std::uint32_t part = lie_apart(count) ? kPart : count;
+    for (std::uint32_t first = 0; first < count; first += part) {
+      if (part == kPart) ask_for_pages(first_ + first + kPart);
+      if (!move_by_id(boxes, first, std::min(first + part, count))) return false;
+    }
+    return true;
+  }
+
+  bool move_by_id(const Box* boxes, std::uint32_t first, std::uint32_t end) {
+    const std::span<const ObjectId> ids(ids_.data(), end);
+    for (std::uint32_t i = first; i < end; ++i) {
       i += map_->move_in_pages(ids.subspan(i), boxes + i, kInSector, sector_, moving_.many, came_);
-      if (i == count) break;
+      if (i == end) break;
       if (i == 0 && s_.objects[ids[0]].sector != sector_) return false;
       ++came_;
       s_.objects[ids[i]].sector == sector_&& geometry::holds(kInSector, boxes[i])
@@ -124,16 +160,16 @@ private:
     return {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}};
   }
 
-  // For the next block. What lies closer is fetched by itself.
-  void ask_for_pages() const {
+  [[nodiscard]] bool lie_apart(std::uint32_t count) const {
     constexpr std::size_t kDense = 32;  // ids an object
-    const std::size_t next = first_ + kBlock;
-    if (next >= handles_.size()) return;
-    const std::size_t count = std::min(kBlock, handles_.size() - next);
-    const ObjectId first = handles_[next].index, last = handles_[next + count - 1].index;
-    if (first <= last && last - first < kDense * count) return;
-    std::array<ObjectId, kBlock> ids;
-    for (std::size_t i = 0; i < count; ++i) ids[i] = handles_[next + i].index;
+    return ids_[count - 1] < ids_[0] || ids_[count - 1] - ids_[0] >= kDense * count;
+  }
+
+  // For some objects to come.
+  void ask_for_pages(std::size_t at) const {
+    std::array<ObjectId, kPart> ids;
+    const std::size_t count = std::min<std::size_t>(kPart, handles_.size() - std::min(at, handles_.size()));
+    for (std::size_t i = 0; i < count; ++i) ids[i] = handles_[at + i].index;
     map_->prefetch_pages({ids.data(), count});
   }
 
@@ -223,9 +259,10 @@ private:
   }
 
   WorldState& s_;
-  const Strided<const Handle>& handles_;
-  const BoxView& boxes_;
+  Strided<const Handle> handles_;
+  BoxView boxes_;
   Moving& moving_;
+  std::size_t newcomers_ = 0;                         // about how many of all stand still
   static constexpr std::size_t kPastCache = 400'000;  // boxes of 24 bytes
   bool past_cache_;
   std::size_t first_ = 0;
@@ -236,6 +273,8 @@ private:
                                  {kJustInside, kJustInside, kJustInside}};
   // A run that ends at once was not worth looking for: then some objects are moved one by one.
   static constexpr std::uint32_t kWorthARun = 4, kFruitless = 16;
+  // So many objects in pages far apart are asked for while as many before them are moved.
+  static constexpr std::uint32_t kPart = 16;
   std::uint32_t patience_ = 0;
   std::uint32_t sector_ = ChunkMap::kNone;
   ChunkMap* map_ = nullptr;
@@ -247,10 +286,16 @@ private:
   geometry::BoxBlock block_;
   std::array<Box, kBlock> laid_out_;
   std::array<WorldBox, kBlock> world_boxes_;
-  std::size_t world_first_ = static_cast<std::size_t>(-1);  // of which block
+  static constexpr auto kNoBlock = static_cast<std::size_t>(-1);
+  std::size_t world_first_ = kNoBlock;  // of which block
 };
 
 }  // namespace
+
+ScatteredMoves& WorldState::scattered_moves() {
+  if (!scattered) scattered = std::make_unique<ScatteredMoves>();
+  return *scattered;
+}
 
 bool WorldState::begin_frame() {
   if (!culled.load(std::memory_order_relaxed)) return false;
@@ -282,8 +327,7 @@ void WorldState::move(const Strided<const Handle>& handles, const BoxView& boxes
   Moving moving{tick, kManyOf * count >= size, allowance};
   moving.allowance += static_cast<std::uint32_t>(count / kOftenOf);
   if (new_frame) moving.allowance = static_cast<std::uint32_t>(count / kOftenOf) + kFewestAtRest;
-  BlockMover mover(*this, handles, boxes, moving);
-  for (std::size_t first = 0; first < count; first += kBlock) mover.move(first);
+  BlockMover(*this, handles, boxes, moving).run();
   hwy::FlushStream();  // what went past the cache is there before anybody on another thread is told to look
   allowance = moving.allowance;
   for (const std::uint32_t t : touched) {

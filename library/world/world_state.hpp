@@ -12,6 +12,7 @@
 #include "library/world/chunk_map.hpp"
 #include "library/world/columns.hpp"
 #include "library/world/levels.hpp"
+#include "library/world/scattered_moves.hpp"
 #include "library/world/world_occluders.hpp"
 
 namespace sightline::world {
@@ -82,8 +83,11 @@ struct WorldState {
   std::size_t awake_hand = 0;        ///< where let_rest() goes on
   static constexpr std::uint32_t kFewestAtRest = 64;
 
+  std::unique_ptr<ScatteredMoves> scattered;  ///< null: moves always came in some order, or few
+
   /// Made if there are none.
   WorldOccluders& own_occluders();
+  ScatteredMoves& scattered_moves();
   std::uint32_t sector_at(const SectorCell& cell);
   /// To be called of every sector whose objects change.
   void touch(std::uint32_t sector);

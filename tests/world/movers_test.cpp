@@ -114,6 +114,15 @@ public:
     test::expect_right(world_, culler_, twin_, views, 0.02);
   }
 
+  // To within what sectors round them by.
+  void expect_boxes() {
+    for (const Handle handle : standing_) {
+      const WorldBox is = world_.box(handle), &was = twin_[handle.index];
+      ASSERT_NEAR(is.min.x, was.min.x, 1e-3) << handle.index;
+      ASSERT_NEAR(is.max.z, was.max.z, 1e-3) << handle.index;
+    }
+  }
+
   void cull() {
     std::vector<ObjectId> visible(cull_capacity(world_));
     (void)test::cull(culler_, world_, test::cull_views(std::array{WorldView{*make_view({}, 64, 64), {}}}),
@@ -296,6 +305,26 @@ TEST(Movers, ThoseThatMoveInNoOrderStandInPages) {
     crowd.expect_right();
     crowd.move(0, 1, 1);
     EXPECT_FALSE(keeps_pages(crowd.world()));
+  }
+}
+
+// Many listed in no order are moved in that of their pages, some at a time; of one listed twice the last
+// counts.
+TEST(Movers, OfThoseListedTwiceInNoOrderTheLastCounts) {
+  for (const Box& around : {kOneSector, kTwoSectors}) {
+    Crowd crowd(36, around);
+    crowd.insert(6000);
+    for (int frame = 0; frame < 12; ++frame) {
+      crowd.shuffle();
+      crowd.move(0, crowd.size() / 2, 2);
+      crowd.move(0, crowd.size() + 2000, 2);
+      crowd.expect_boxes();
+      crowd.cull();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_TRUE(keeps_pages(crowd.world()));
+    expect_sound(crowd.world());
+    crowd.expect_right();
   }
 }
 
