@@ -293,6 +293,7 @@ std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const B
 // Writes the boxes of objects while they stand in this page and need no more of its bounds.
 std::uint32_t ChunkMap::write_in_page_of(std::uint32_t page, std::span<const ObjectId> objects,
                                          const Box* boxes, const Box& within) noexcept {
+  if (!kHasPages) return 0;
   if (page >= pages_.size() || pages_[page] == kNone) return 0;
   // For the page after this one.
   const bool goes_on = objects.back() > objects.front() && objects.back() - objects.front() < 32 * kCapacity;
@@ -343,6 +344,7 @@ void ChunkMap::add_mover(ObjectId object, const Box& box) {
 // Groups have new pages in the order of their lanes, in whichever their objects came: who culls them reads
 // memory from the front to the back.
 void ChunkMap::file_new_pages() {
+  if (!kHasPages) return;
   std::sort(new_pages_.begin(), new_pages_.end());
   for (const std::uint32_t page : new_pages_) {
     const std::uint32_t chunk = pages_[page];

@@ -28,10 +28,10 @@ public:
 
   void run() {
     if (handles_.size() == 0) return;
-    newcomers_ = moving_.many ? newcomers() : 0;
+    newcomers_ = ChunkMap::kHasPages && moving_.many ? newcomers() : 0;
     begin_sector(s_.objects[handles_[0].index].sector);
-    const bool scattered = moving_.many && map_->keeps_pages() && ScatteredMoves::can_copy(boxes_) &&
-                           ScatteredMoves::are_scattered(handles_);
+    const bool scattered = ChunkMap::kHasPages && moving_.many && map_->keeps_pages() &&
+                           ScatteredMoves::can_copy(boxes_) && ScatteredMoves::are_scattered(handles_);
     scattered ? move_sorted() : move_all();
   }
 
