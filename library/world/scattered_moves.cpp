@@ -7,7 +7,15 @@
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_map.hpp"
 
+#ifndef __wasm__  // where movers have no pages
 namespace sightline::world {
+
+std::span<const Handle> ScatteredMoves::handles() const noexcept {
+  return handles_;
+}
+std::span<const Box> ScatteredMoves::boxes() const noexcept {
+  return boxes_;
+}
 
 using geometry::kBlock;
 
@@ -54,3 +62,4 @@ void ScatteredMoves::sort(const Strided<const Handle>& handles, const BoxView& b
 }
 
 }  // namespace sightline::world
+#endif

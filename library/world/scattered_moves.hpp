@@ -21,13 +21,15 @@ public:
   /// Copies moves first … first + count - 1, of ids below `ids`.
   void sort(const Strided<const Handle>& handles, const BoxView& boxes, std::size_t first, std::size_t count,
             std::size_t ids);
-  [[nodiscard]] std::span<const Handle> handles() const noexcept { return handles_; }
-  [[nodiscard]] std::span<const Box> boxes() const noexcept { return boxes_; }
+  [[nodiscard]] std::span<const Handle> handles() const noexcept;
+  [[nodiscard]] std::span<const Box> boxes() const noexcept;
 
 private:
+#ifndef __wasm__                     // where movers have no pages
   std::vector<std::uint32_t> next_;  // of each page's moves where the next one goes
   std::vector<Handle> handles_;
   std::vector<Box> boxes_;
+#endif
 };
 
 }  // namespace sightline::world
