@@ -225,7 +225,8 @@ bool are_sound(const float* values, std::size_t boxes, float reach) {
   auto least = hn::Zero(f);
   std::size_t i = 0;
   for (; i + kStep + 3 <= count; i += kStep) {
-    if (ChunkMap::kHasPages && i % kBlock == 0) geometry::read_lines(values + i, std::min(kBlock, count - i) * sizeof(float));
+    if (ChunkMap::kHasPages && i % kBlock == 0)
+      geometry::read_lines(values + i, std::min(kBlock, count - i) * sizeof(float));
     for (std::size_t k = 0; k < kStep; k += lanes) {
       const auto low = hn::LoadU(f, values + i + k), high = hn::LoadU(f, values + i + k + 3);
       greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low), magnitude));
