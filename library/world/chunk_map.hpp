@@ -412,7 +412,8 @@ private:
   static void make_rows(Pool& pool, std::size_t lanes);
   std::uint32_t open_mover_chunk();
   std::uint32_t open_page(ObjectId object);
-  void come_to_page(ObjectId object), file_new_pages();
+  void come_to_page(ObjectId object);
+  void file_new_pages();
   std::uint32_t write_in_page_of(std::uint32_t page, std::span<const ObjectId> objects, const Box* boxes,
                                  const Box& within) noexcept;
   void free_mover_chunk(std::uint32_t chunk);
@@ -428,7 +429,6 @@ private:
   void tighten_grown(std::uint32_t chunk);
   bool rest_movers(std::uint32_t chunk, std::uint32_t& budget);
   bool file_rested(std::uint32_t chunk, std::uint32_t& budget);
-  void note_moved(Chunk& mover, std::uint32_t slot) noexcept;
   void rest_grown();
   [[nodiscard]] bool keeps_movers() const noexcept;
 

@@ -97,10 +97,6 @@ void ChunkMap::move_mover(std::uint32_t chunk, std::uint32_t slot, const Box& bo
     make_dirty(chunk);
   }
   write_box(c, slot, box);
-  note_moved(c, slot);
-}
-
-void ChunkMap::note_moved(Chunk& c, std::uint32_t slot) noexcept {
   std::uint64_t& word = c.moved[slot / 64];
   woken_ += ~word >> slot % 64 & 1;
   word |= std::uint64_t{1} << slot % 64;
@@ -293,8 +289,7 @@ std::uint32_t ChunkMap::move_in_pages(std::span<const ObjectId> objects, const B
 // Writes the boxes of objects while they stand in this page and need no more of its bounds.
 std::uint32_t ChunkMap::write_in_page_of(std::uint32_t page, std::span<const ObjectId> objects,
                                          const Box* boxes, const Box& within) noexcept {
-  if (!kHasPages) return 0;
-  if (page >= pages_.size() || pages_[page] == kNone) return 0;
+  if (!kHasPages || page >= pages_.size() || pages_[page] == kNone) return 0;
   // For the page after this one.
   const bool goes_on = objects.back() > objects.front() && objects.back() - objects.front() < 32 * kCapacity;
   if (goes_on && page + 1 < pages_.size() && pages_[page + 1] != kNone) ask_ahead(&chunks_[pages_[page + 1]]);

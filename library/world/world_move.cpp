@@ -30,9 +30,12 @@ public:
     if (handles_.size() == 0) return;
     newcomers_ = ChunkMap::kHasPages && moving_.many ? newcomers() : 0;
     begin_sector(s_.objects[handles_[0].index].sector);
-    const bool scattered = ChunkMap::kHasPages && moving_.many && map_->keeps_pages() &&
-                           ScatteredMoves::can_copy(boxes_) && ScatteredMoves::are_scattered(handles_);
-    scattered ? move_sorted() : move_all();
+    if constexpr (ChunkMap::kHasPages) {
+      if (moving_.many && map_->keeps_pages() && ScatteredMoves::can_copy(boxes_) &&
+          ScatteredMoves::are_scattered(handles_))
+        return move_sorted();
+    }
+    move_all();
   }
 
 private:

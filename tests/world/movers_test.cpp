@@ -79,9 +79,14 @@ public:
                         at.z + side(old.min.z, old.max.z)}});
       handles.push_back(handle);
     }
-    ASSERT_TRUE(world_.move(handles, BoxView(boxes)));
+    Boxes arrays;
+    for (const Box& box : boxes) arrays.push_back(box);
+    ASSERT_TRUE(world_.move(handles, in_arrays_ ? arrays.view() : BoxView(boxes)));
     for (std::size_t i = 0; i < handles.size(); ++i) twin_[handles[i].index] = wide(boxes[i]);
   }
+
+  // Whether boxes are given as an array a coordinate, or as structs.
+  void give_arrays(bool arrays) { in_arrays_ = arrays; }
 
   // Lists them in another order.
   void shuffle() {
@@ -136,6 +141,7 @@ public:
 private:
   Random random_;
   Box around_;
+  bool in_arrays_ = false;
   World world_;
   Culler culler_;
   std::map<ObjectId, WorldBox> twin_;
@@ -316,6 +322,7 @@ TEST(Movers, OfThoseListedTwiceInNoOrderTheLastCounts) {
     crowd.insert(6000);
     for (int frame = 0; frame < 12; ++frame) {
       crowd.shuffle();
+      crowd.give_arrays(frame % 2 == 1);
       crowd.move(0, crowd.size() / 2, 2);
       crowd.move(0, crowd.size() + 2000, 2);
       crowd.expect_boxes();
