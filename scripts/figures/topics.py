@@ -45,7 +45,7 @@ def more_each(row, plain):
 
 def moving(quick):
     """A world that moves beside flat arrays: means over 600 frames, or 60, and the world's slowest frame."""
-    rows = google_benchmark("movers", 1, 0.01, f"^{'short' if quick else 'movers'}/.*/by_id")
+    rows = google_benchmark("movers", 1, 0.01, f"^{'short' if quick else 'movers'}/")
     return compare_with(rows, lambda name: name.removesuffix("world") + "flat" if name.endswith("/world") else
                         name.removesuffix("worst_frame") + "world" if name.endswith("/worst_frame") else None)
 
