@@ -41,7 +41,7 @@ int run_compare(const CompareOptions& options) {
   measure.moving = options.moving;
   measure.limit = options.limit;
   const auto device = device_of(options);
-  if (device) measure.repeats = 5, measure.finals = 15;
+  if (device) measure.repeats = 5, measure.finals = 10;
   Scene scene = load_scene(options.scene);
   set_raster_state(scene, options.faces);
   attach_pvs(scene, options.pvs);

@@ -8,6 +8,7 @@
 #include <sightline/workbench/error.hpp>
 
 #include "workbench/measure/mover.hpp"
+#include "workbench/measure/turns.hpp"
 #include "workbench/submission/draw_list.hpp"
 
 namespace sightline::measure {
@@ -76,23 +77,36 @@ void take(Samples& samples, const device::FrameTimes& times, bool drawn, device:
   if (drawn) samples.frame.push_back(times.frame_ms);
 }
 
+/// Whose turns they are, and what changes between them.
+struct Contest {
+  Bench& bench;
+  std::optional<Limit> limit;
+  Mover mover;
+};
+
 /// Subjects of one view by turns, each of which keeps its last answer.
-void take_times(Bench& bench, std::span<const std::size_t> who, const View& view, std::size_t turn,
-                const MeasureOptions& options, Mover& mover, std::span<Samples> samples) {
+void take_times(Contest& contest, std::span<const std::size_t> who, const View& view, std::size_t view_index,
+                const MeasureOptions& options, std::span<Samples> samples) {
   using Timed = device::Timed;
+  auto& [bench, limit, mover] = contest;
+  if (limit) limit->look(view);
   const auto subjects = bench.subjects();
   const bool drawn = bench.renderer() != nullptr;
+  Turns turns(who.size(), 1 + view_index);
   const std::size_t whole_frames = options.warm_up + options.repeats,
                     frames = whole_frames + (drawn ? options.timed_passes : 0);
   for (std::size_t repeat = 0; repeat < frames; ++repeat) {
     const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
     if (options.moving > 0) bench.update(mover.move());
-    for (std::size_t k = 0; k < who.size(); ++k) {
-      const std::size_t m = who[(k + turn + repeat) % who.size()];
-      const bool counts = repeat >= options.warm_up;
+    const bool counts = repeat >= options.warm_up;
+    for (const std::size_t k : turns.next()) {
+      const std::size_t m = who[k];
       // Where objects move, every frame is another answer.
       const bool enough = !drawn && options.moving == 0 && samples[m].spent > options.patience_ms;
       if (enough && (!counts || !samples[m].cpu.empty())) continue;
+      // Where objects move, a frame without moves would be another one.
+      if (drawn && counts && timed == Timed::frame && options.moving == 0)
+        bench.run(subjects[m], view, timed);
       const device::FrameTimes times = bench.run(subjects[m], view, timed);
       samples[m].spent += times.record_ms;
       if (counts) take(samples[m], times, drawn, timed);
@@ -121,18 +135,17 @@ Row row_of(Bench& bench, Subject& subject, const View& view, std::size_t index, 
   return row;
 }
 
-/// Eight, then the quicker four, then two, each round as long as the one before.
-void run_finals(Bench& bench, MeasureOptions options, Mover& mover,
-                std::vector<std::vector<Samples>>& samples, Comparison& result) {
+/// Eight, then the quicker four, then two, each round as long as the one before; the limit in all of them.
+void run_finals(Contest& contest, MeasureOptions options, std::vector<std::vector<Samples>>& samples,
+                Comparison& result) {
   options.timed_passes = 0;
   for (std::size_t most = kMostFinalists; most >= 2; most /= 2) {
-    std::vector<std::size_t> who = finalists(result);
-    who.resize(std::min(who.size(), most));
+    const std::vector<std::size_t> who = finalists(result, most);
     if (who.size() < 2) return;
     options.repeats = options.finals * kMostFinalists / most;
     for (std::size_t v = 0; v < samples.size(); ++v) {
       const View view = or_throw(make_view(result.cameras[v], options.width, options.height));
-      take_times(bench, who, view, v, options, mover, samples[v]);
+      take_times(contest, who, view, v, options, samples[v]);
       for (const std::size_t m : who) {
         Row& row = result.rows[v * result.methods.size() + m];
         row.cull = timing_of(samples[v][m].cpu), row.frame = timing_of(samples[v][m].frame);
@@ -143,7 +156,7 @@ void run_finals(Bench& bench, MeasureOptions options, Mover& mover,
 
 }  // namespace
 
-std::vector<std::size_t> finalists(const Comparison& so_far) {
+std::vector<std::size_t> finalists(const Comparison& so_far, std::size_t most) {
   constexpr double kClose = 1.3;  // a few frames among many methods' tell no closer
   const std::size_t methods = so_far.methods.size();
   std::vector<double> frame(methods);
@@ -156,17 +169,20 @@ std::vector<std::size_t> finalists(const Comparison& so_far) {
   std::vector<std::size_t> order(methods);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t m) { return frame[m]; });
-  const double most = kClose * frame[order.front()];
-  std::erase_if(order, [&](std::size_t m) { return !(frame[m] <= most) || std::isinf(frame[m]); });
-  order.resize(std::min(order.size(), kMostFinalists));
+  const double slowest = kClose * frame[order.front()];
+  std::erase_if(order, [&](std::size_t m) { return !(frame[m] <= slowest) || std::isinf(frame[m]); });
+  order.resize(std::min(order.size(), most));
+  const auto limit = std::ranges::find(so_far.methods, kLimit);
+  if (!order.empty() && limit != so_far.methods.end())
+    order.push_back(static_cast<std::size_t>(limit - so_far.methods.begin()));
   return order;
 }
 
 Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOptions& options,
                    const Progress& progress) {
   if (options.limit && options.moving > 0) throw Error("--limit: expected objects that do not move");
-  std::optional<Limit> limit;
-  if (options.limit) limit.emplace(bench);
+  Contest contest{bench, {}, Mover(bench.scene(), options.moving, 1)};
+  if (options.limit) contest.limit.emplace(bench);
   Comparison result;
   result.scene = bench.scene().name;
   result.raster_state = bench.scene().raster_state;
@@ -176,19 +192,17 @@ Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOp
   result.width = options.width, result.height = options.height;
   result.cameras = path.cameras;
   for (const Subject& subject : bench.subjects()) result.methods.push_back(subject.name);
-  Mover mover(bench.scene(), options.moving, 1);
   std::vector<std::size_t> all(result.methods.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::vector samples(path.cameras.size(), std::vector<Samples>(all.size()));
   for (std::size_t v = 0; v < path.cameras.size(); ++v) {
     const View view = or_throw(make_view(path.cameras[v], options.width, options.height));
-    if (limit) limit->look(view);
-    take_times(bench, all, view, v, options, mover, samples[v]);
+    take_times(contest, all, view, v, options, samples[v]);
     for (const std::size_t m : all)
       result.rows.push_back(row_of(bench, bench.subjects()[m], view, v, samples[v][m]));
     if (progress) progress(v + 1, path.cameras.size());
   }
-  if (bench.renderer() && options.finals > 0) run_finals(bench, options, mover, samples, result);
+  if (bench.renderer() && options.finals > 0) run_finals(contest, options, samples, result);
   return result;
 }
 

@@ -46,13 +46,13 @@ struct Comparison {
 struct MeasureOptions {
   std::uint32_t width = 1280, height = 720;
   std::size_t warm_up = 2;  ///< frames of each method and view that are not counted
-  std::size_t repeats = 9;  ///< that are
+  std::size_t repeats = 9;  ///< turns that are
   /// On the CPU: a method that has taken longer in a view is not repeated, only counted once.
   double patience_ms = 200;
   /// On a device: frames of each method and view that tell what their passes took on the GPU, and nothing
   /// else: they are the slower for it.
   std::size_t timed_passes = 5;
-  /// On a device: frames more of each view of the eight that may be the quickest, by turns among themselves;
+  /// On a device: turns more in each view of the eight that may be the quickest, among themselves and kLimit;
   /// twice as many of the quicker half, and four times of the two that are left.
   std::size_t finals = 0;
   double moving = 0;  ///< share of the objects that move before every frame
@@ -63,14 +63,17 @@ struct MeasureOptions {
 
 inline constexpr std::string_view kLimit = "(limit)";
 
-/// For each view, all methods by turns in an order that rotates, so that drift of the machine hits all alike;
-/// then the oracle. The finals come last. Throws Error for a camera that makes no view and for an impossible
-/// visible set.
+/// For each view, all methods by turns in an order that is drawn anew each round, so that drift of the
+/// machine hits all alike; then the oracle. On a device a turn is two frames, of which the second counts: the
+/// first finds the caches full of what the others left there, as no frame of a program with one method does.
+/// Where objects move, it is one. The finals come last. Throws Error for a camera that makes no view and for
+/// an impossible visible set.
 Comparison compare(Bench& bench, const camera::CameraPath& path, const MeasureOptions& options,
                    const Progress& progress = {});
 
-/// Who may be the quickest, quickest first: of the methods that lost nothing and promise so, up to eight
-/// whose frames came close, as places in `methods`. Of a comparison whose frames were drawn.
-std::vector<std::size_t> finalists(const Comparison& so_far);
+/// Who may be the quickest, quickest first: of the methods that lost nothing and promise so, up to `most`
+/// whose frames came close, as places in `methods`; and kLimit behind them, so that what is held beside it
+/// ran beside it. Of a comparison whose frames were drawn.
+std::vector<std::size_t> finalists(const Comparison& so_far, std::size_t most);
 
 }  // namespace sightline::measure

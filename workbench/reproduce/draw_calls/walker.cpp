@@ -1,11 +1,9 @@
 #include "workbench/reproduce/draw_calls/walker.hpp"
 
 #include <chrono>
-#include <numeric>
-#include <utility>
 
 #include "workbench/measure/timing.hpp"
-#include "workbench/scene/random.hpp"
+#include "workbench/measure/turns.hpp"
 
 namespace sightline::reproduce {
 
@@ -49,13 +47,9 @@ std::vector<Walker::Times> draw_by_turns(std::span<Walker* const> walkers, devic
     std::vector<double> frame, cull, record;
   };
   std::vector<Samples> samples(walkers.size());
-  std::vector<std::size_t> order(walkers.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  scene::Random random(1 + turn);
+  measure::Turns turns(walkers.size(), 1 + turn);
   for (std::size_t round = 0; round < rounds; ++round) {
-    for (std::size_t k = 0; k < walkers.size(); ++k) {
-      std::swap(order[k], order[k + random.below(static_cast<std::uint32_t>(walkers.size() - k))]);
-      const std::size_t w = order[k];
+    for (const std::size_t w : turns.next()) {
       walkers[w]->draw(renderer, view);
       const Walker::Times times = walkers[w]->draw(renderer, view);
       samples[w].frame.push_back(times.frame_ms);
