@@ -21,7 +21,8 @@ std::int64_t cell_of(double low, double high) {
   return static_cast<std::int64_t>(std::floor((0.5 * low + 0.5 * high) / kSectorSide + 0.5));
 }
 
-// As many of the handles as there is room for copies, side by side: where they stand, or else copied.
+}  // namespace
+
 std::span<const Handle> side_by_side(const Strided<const Handle>& handles, std::size_t first,
                                      std::span<Handle> copies) noexcept {
   const bool packed = handles.stride() == sizeof(Handle) &&
@@ -30,8 +31,6 @@ std::span<const Handle> side_by_side(const Strided<const Handle>& handles, std::
   for (std::size_t i = 0; i < copies.size(); ++i) copies[i] = handles[first + i];
   return copies;
 }
-
-}  // namespace
 
 SectorCell sector_cell(const WorldBox& b) noexcept {
   return {cell_of(b.min.x, b.max.x), cell_of(b.min.y, b.max.y), cell_of(b.min.z, b.max.z)};

@@ -60,7 +60,7 @@ private:
   void move(std::size_t first) {
     first_ = first;
     const auto count = static_cast<std::uint32_t>(std::min(kBlock, boxes_.size() - first));
-    for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first + i].index;
+    read_ids(count);
     if (map_ != nullptr && map_->keeps_pages() && move_by_id(count)) return;
     if (std::exchange(alone_, 0) > 0) ask_for_next();
     // A run that goes on needs nothing else of memory, not even to be told its sector.
@@ -85,6 +85,16 @@ private:
       ++alone_;
       if (!geometry::kAsksByReading) ask_ahead(first + i);
       move_one(i++, inside);
+    }
+  }
+
+  void read_ids(std::uint32_t count) {
+    if constexpr (!ChunkMap::kHasPages) {
+      for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first_ + i].index;
+    } else {
+      std::array<Handle, kBlock> copies;
+      const std::span<const Handle> handles = side_by_side(handles_, first_, std::span(copies).first(count));
+      for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles[i].index;
     }
   }
 

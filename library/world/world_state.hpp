@@ -114,6 +114,9 @@ struct WorldState {
   void let_rest();
 };
 
+/// As many of the handles as there is room for copies, side by side: where they stand, or else copied.
+std::span<const Handle> side_by_side(const Strided<const Handle>& handles, std::size_t first,
+                                     std::span<Handle> copies) noexcept;
 /// Whether all handles name objects of the world.
 Status check_handles(const World& world, const Strided<const Handle>& handles) noexcept;
 /// The object's box as stored.
