@@ -110,11 +110,27 @@ HWY_INLINE std::size_t cull_in_order(const ChunkMap::ChunkView& run, const Secto
   return kept;
 }
 
+// Asks for the boxes of those of a group's chunks of movers, from `first` on and before `end`, that do not
+// lie behind the one before: there processors do not foresee what is read next.
+HWY_INLINE void ask_for_boxes(const EntryGroup& at, std::uint32_t first, std::uint32_t end) {
+  for (std::uint32_t i = first; i < std::min(end, at.group.count); ++i) {
+    if (i > 0 && at.group.first_lane[i] == at.group.first_lane[i - 1] + ChunkMap::kCapacity) continue;
+    const ChunkMap::ChunkView chunk = at.map.chunk(at.group, i);
+    for (std::size_t side = 0; side < 6; ++side) {
+      for (std::uint32_t lane = 0; lane < chunk.count; lane += 16) hwy::Prefetch(chunk.side(side) + lane);
+    }
+    prefetch_ids(chunk);
+  }
+}
+
 // The chunks of movers in a group, run by run. They nearly always cross all planes: all are asked.
 HWY_NOINLINE std::size_t cull_movers(const EntryGroup& at, const ChunkBits& bits, PassCounts& counts,
                                      ObjectId* HWY_RESTRICT out) {
+  constexpr std::uint32_t kAhead = 2;  // chunks
   std::size_t kept = 0;
-  for (std::uint32_t i = 0; i < at.group.count;) {
+  for (std::uint32_t i = 0, asked = 0; i < at.group.count;) {
+    ask_for_boxes(at, asked, i + 1 + kAhead);
+    asked = std::max(asked, i + 1 + kAhead);
     ChunkMap::ChunkView run = at.map.chunk(at.group, i);
     if ((bits.crossing >> i & 1) == 0) {
       if (bits.kept >> i & 1) kept += copy_objects(run, out + kept);
