@@ -88,6 +88,7 @@ private:
     }
   }
 
+  // Of handles that lie side by side whole vectors at once, where that is worth its code.
   void read_ids(std::uint32_t count) {
     if constexpr (!ChunkMap::kHasPages) {
       for (std::uint32_t i = 0; i < count; ++i) ids_[i] = handles_[first_ + i].index;

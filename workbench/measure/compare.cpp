@@ -91,22 +91,20 @@ void take_times(Contest& contest, std::span<const std::size_t> who, const View& 
   auto& [bench, limit, mover] = contest;
   if (limit) limit->look(view);
   const auto subjects = bench.subjects();
-  const bool drawn = bench.renderer() != nullptr;
+  // Where objects move, every frame is another answer.
+  const bool drawn = bench.renderer() != nullptr, still = options.moving == 0;
   Turns turns(who.size(), 1 + view_index);
   const std::size_t whole_frames = options.warm_up + options.repeats,
                     frames = whole_frames + (drawn ? options.timed_passes : 0);
   for (std::size_t repeat = 0; repeat < frames; ++repeat) {
     const Timed timed = repeat < whole_frames ? Timed::frame : Timed::passes;
-    if (options.moving > 0) bench.update(mover.move());
+    if (!still) bench.update(mover.move());
     const bool counts = repeat >= options.warm_up;
     for (const std::size_t k : turns.next()) {
       const std::size_t m = who[k];
-      // Where objects move, every frame is another answer.
-      const bool enough = !drawn && options.moving == 0 && samples[m].spent > options.patience_ms;
+      const bool enough = !drawn && still && samples[m].spent > options.patience_ms;
       if (enough && (!counts || !samples[m].cpu.empty())) continue;
-      // Where objects move, a frame without moves would be another one.
-      if (drawn && counts && timed == Timed::frame && options.moving == 0)
-        bench.run(subjects[m], view, timed);
+      if (drawn && still && counts && timed == Timed::frame) bench.run(subjects[m], view, timed);
       const device::FrameTimes times = bench.run(subjects[m], view, timed);
       samples[m].spent += times.record_ms;
       if (counts) take(samples[m], times, drawn, timed);

@@ -13,6 +13,7 @@
 
 #include "workbench/measure/machine.hpp"
 #include "workbench/measure/timing.hpp"
+#include "workbench/measure/turns.hpp"
 #include "workbench/methods/ray_pvs/break_time.hpp"
 #include "workbench/methods/ray_pvs/device_rays.hpp"
 #include "workbench/methods/ray_pvs/nearest_box.hpp"
@@ -101,9 +102,9 @@ public:
   void run(std::size_t repeats, RayPvsModel& out) {
     draw_frame(renderer_, view_, frame_);
     for (Contestant& contestant : contestants_) contestant.cast(scene_.bounds, grid_, hits_[0]);
+    measure::Turns turns(kRayMethodCount, 1);
     for (std::size_t round = 0; round < repeats; ++round) {
-      for (std::size_t turn = 0; turn < kRayMethodCount; ++turn) {
-        const std::size_t m = (round + turn) % kRayMethodCount;
+      for (const std::size_t m : turns.next()) {
         const methods::DeviceRayTimes ready = contestants_[m].cast(scene_.bounds, grid_, hits_[m]);
         const FirstTime first = first_set(m);
         const std::array times{ready.cpu,   ready.upload, ready.compute, ready.read_back,
