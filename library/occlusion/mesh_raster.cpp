@@ -34,9 +34,9 @@ struct Piece {
   // edge(triangle, k) for each edge of the polygon.
   template <class Visit>
   HWY_INLINE void for_edges(const Visit& edge) const {
-    for (std::size_t i = first; i < first + count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k)
-        if (!(inner[k] >> i & 1)) edge(i, k);
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::uint32_t outer = bits() & ~inner[k]; outer != 0; outer &= outer - 1)
+        edge(static_cast<std::size_t>(std::countr_zero(outer)), k);
     }
   }
 };
@@ -161,11 +161,16 @@ HWY_INLINE bool move_behind(const DepthTiles& tiles, const ReadyTriangles& ready
 HWY_NOINLINE bool make_polygon(const DepthTiles& tiles, const ReadyTriangles& ready, const Piece& piece,
                                bool by_lines, float apart, Convex& out, float& nearest) {
   if (!makes_one(ready, piece, by_lines)) return false;
+  // Which triangle has the least or the most is hard to guess, so nothing branches on it.
   const auto least = [&](const std::array<float, 16>& of) {
-    return *std::ranges::min_element(std::span(of).subspan(piece.first, piece.count));
+    float out = of[piece.first];
+    for (std::size_t i = 1; i < piece.count; ++i) out = std::min(out, of[piece.first + i]);
+    return out;
   };
   const auto most = [&](const std::array<float, 16>& of) {
-    return *std::ranges::max_element(std::span(of).subspan(piece.first, piece.count));
+    float out = of[piece.first];
+    for (std::size_t i = 1; i < piece.count; ++i) out = std::max(out, of[piece.first + i]);
+    return out;
   };
   nearest = most(ready.nearest);
   if (!move_behind(tiles, ready, piece, apart, nearest, out)) return false;
