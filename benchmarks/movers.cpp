@@ -47,7 +47,7 @@ public:
   explicit Race(const Protocol& protocol) : protocol_(protocol), ids_(protocol.objects) {
     const Boxes& all = case_of(1'000'000).flat;
     flat_.reserve(protocol.objects);
-    for (std::size_t i = 0; i < protocol.objects; ++i) flat_.push_back(all[i]);
+    for (std::size_t i = 0; i < protocol.objects; ++i) flat_.push_back(all[i]), stand_.push_back(all[i]);
     handles_.resize(protocol.objects);
     or_throw(world_.insert(flat_.view(), handles_));
     visible_.resize(cull_capacity(world_)), flat_visible_.resize(protocol.objects + kCullPadding);
@@ -103,14 +103,15 @@ private:
 
   void draw_boxes() {
     for (std::size_t i = 0; i < moves_.ids.size(); ++i) {
-      const Box b = flat_[moves_.ids[i]];
+      Box& b = stand_[moves_.ids[i]];
       Vec3 by{random_.between(-1, 1), 0, random_.between(-1, 1)};
       if (protocol_.where == Where::anywhere) {
         const Vec3 to = random_.inside({{-kReach, -50, -kReach}, {kReach, 50, kReach}});
         by = {to.x - b.min.x, to.y - b.min.y, to.z - b.min.z};
       }
-      moves_.boxes[i] = {{b.min.x + by.x, b.min.y + by.y, b.min.z + by.z},
-                         {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
+      b = {{b.min.x + by.x, b.min.y + by.y, b.min.z + by.z},
+           {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
+      moves_.boxes[i] = b;
     }
   }
 
@@ -120,6 +121,8 @@ private:
   Protocol protocol_;
   scene::Random random_{5};
   View view_ = looking(0.3f, tenth_of_view());
+  // Where a simulation has its objects: drawn from the peer's arrays, moves would bring those into the cache.
+  std::vector<Box> stand_;
   Boxes flat_;
   World world_;
   Culler culler_;
