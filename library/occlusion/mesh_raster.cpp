@@ -41,6 +41,19 @@ struct Piece {
   }
 };
 
+// The least and the most of a piece's triangles. Which one has it is hard to guess, so nothing branches on
+// that.
+HWY_INLINE float least_of(const Piece& piece, const std::array<float, 16>& values) {
+  float out = values[piece.first];
+  for (std::size_t i = 1; i < piece.count; ++i) out = std::min(out, values[piece.first + i]);
+  return out;
+}
+HWY_INLINE float most_of(const Piece& piece, const std::array<float, 16>& values) {
+  float out = values[piece.first];
+  for (std::size_t i = 1; i < piece.count; ++i) out = std::max(out, values[piece.first + i]);
+  return out;
+}
+
 // Of the group the piece that triangle i leads.
 HWY_INLINE Piece piece_at(const OccluderTopology::Group& group, std::size_t i) {
   return {i, 1 + static_cast<std::size_t>(std::countr_one(group.follows >> (i + 1))), group.inner};
@@ -63,8 +76,7 @@ HWY_INLINE void add_edge(const ReadyTriangles& ready, std::size_t i, std::size_t
 
 // Moves the edges of a piece inwards that are drawn tight, as if nothing went on there.
 HWY_NOINLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece, Convex tight) {
-  const auto its = std::span(ready.inset).subspan(piece.first, piece.count);
-  const float inset = *std::ranges::max_element(its);
+  const float inset = most_of(piece, ready.inset);
   tight.left += inset, tight.right -= inset, tight.top += inset, tight.bottom -= inset;
   tight.edges = 0;
   piece.for_edges([&](std::size_t i, std::size_t k) {
@@ -86,9 +98,7 @@ constexpr float kLeastDeeper = 1e-2f;
 HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim,
                                    const Piece& piece, const Convex& tight, const TileRange& range,
                                    TileList<1>& list) {
-  const auto slants = std::span(rim.slant).subspan(piece.first, piece.count);
-  const float own = std::fabs(tight.across) + std::fabs(tight.down),
-              slant = *std::ranges::max_element(slants),
+  const float own = std::fabs(tight.across) + std::fabs(tight.down), slant = most_of(piece, rim.slant),
               deeper = tiles.around() * std::max(0.0f, slant - own);
   const bool again = deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]);
   Bands bands;
@@ -161,22 +171,11 @@ HWY_INLINE bool move_behind(const DepthTiles& tiles, const ReadyTriangles& ready
 HWY_NOINLINE bool make_polygon(const DepthTiles& tiles, const ReadyTriangles& ready, const Piece& piece,
                                bool by_lines, float apart, Convex& out, float& nearest) {
   if (!makes_one(ready, piece, by_lines)) return false;
-  // Which triangle has the least or the most is hard to guess, so nothing branches on it.
-  const auto least = [&](const std::array<float, 16>& of) {
-    float out = of[piece.first];
-    for (std::size_t i = 1; i < piece.count; ++i) out = std::min(out, of[piece.first + i]);
-    return out;
-  };
-  const auto most = [&](const std::array<float, 16>& of) {
-    float out = of[piece.first];
-    for (std::size_t i = 1; i < piece.count; ++i) out = std::max(out, of[piece.first + i]);
-    return out;
-  };
-  nearest = most(ready.nearest);
+  nearest = most_of(piece, ready.nearest);
   if (!move_behind(tiles, ready, piece, apart, nearest, out)) return false;
   out.across = ready.across[piece.first], out.down = ready.down[piece.first];
-  out.left = least(ready.left), out.right = most(ready.right);
-  out.top = least(ready.top), out.bottom = most(ready.bottom);
+  out.left = least_of(piece, ready.left), out.right = most_of(piece, ready.right);
+  out.top = least_of(piece, ready.top), out.bottom = most_of(piece, ready.bottom);
   out.by_lines = by_lines;
   piece.for_edges([&](std::size_t i, std::size_t k) { add_edge(ready, i, k, out); });
   return true;
