@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <string>
@@ -24,6 +25,7 @@ namespace {
 enum class Where { nearby, anywhere };
 enum class Whom { same, anew };         // each frame
 enum class Order { by_id, by_chance };  // in which they are listed
+enum class Form { corners, centre_half, doubles };
 
 struct Protocol {
   std::size_t objects = 1'000'000, moved = 0;
@@ -31,14 +33,44 @@ struct Protocol {
   Whom whom = Whom::same;
   Order order = Order::by_id;
   int frames = 600;
+  Form form = Form::corners;  // in which the world is given them
   auto operator<=>(const Protocol&) const = default;
 };
+
+// An object as engines have it.
+template <class Number>
+struct Thing {
+  std::array<Number, 3> centre, half;
+  Handle handle;
+
+  // No smaller than the box, whatever is rounded.
+  static Thing of(const Box& b, Handle handle) {
+    const auto middle = [](float low, float high) { return (Number{low} + Number{high}) / 2; };
+    const auto size = [](float low, float high) {
+      constexpr auto kRounding = static_cast<Number>(1e-6);
+      return (Number{high} - Number{low}) / 2 + kRounding * (std::fabs(low) + std::fabs(high));
+    };
+    return {{middle(b.min.x, b.max.x), middle(b.min.y, b.max.y), middle(b.min.z, b.max.z)},
+            {size(b.min.x, b.max.x), size(b.min.y, b.max.y), size(b.min.z, b.max.z)},
+            handle};
+  }
+};
+
+template <class Number>
+Status move_things(World& world, const std::vector<Thing<Number>>& things) {
+  const auto& first = things[0];
+  return world.move(
+      Strided<const Handle>(&first.handle, things.size(), sizeof first),
+      BoxView::centre_half(first.centre.data(), first.half.data(), sizeof first, things.size()));
+}
 
 // Who moves, and where to.
 struct Moves {
   std::vector<ObjectId> ids;
   std::vector<Handle> handles;
   std::vector<Box> boxes;
+  std::vector<Thing<float>> things;
+  std::vector<Thing<double>> double_things;
 };
 
 // One world and its flat peer, frame after frame.
@@ -64,7 +96,7 @@ public:
     std::pair<double, double> out;
     const auto of_world = [&] {
       out.first = milliseconds([&] {
-        or_throw(world_.move(moves_.handles, BoxView(moves_.boxes)));
+        or_throw(move_world());
         cull_world();
       });
     };
@@ -113,6 +145,21 @@ private:
            {b.max.x + by.x, b.max.y + by.y, b.max.z + by.z}};
       moves_.boxes[i] = b;
     }
+    if (protocol_.form == Form::centre_half) draw_things(moves_.things);
+    if (protocol_.form == Form::doubles) draw_things(moves_.double_things);
+  }
+
+  template <class Number>
+  void draw_things(std::vector<Thing<Number>>& things) {
+    things.clear();
+    for (std::size_t i = 0; i < moves_.ids.size(); ++i)
+      things.push_back(Thing<Number>::of(moves_.boxes[i], moves_.handles[i]));
+  }
+
+  Status move_world() {
+    if (protocol_.form == Form::centre_half) return move_things(world_, moves_.things);
+    if (protocol_.form == Form::doubles) return move_things(world_, moves_.double_things);
+    return world_.move(moves_.handles, BoxView(moves_.boxes));
   }
 
   void cull_world() { count_ = culler_.cull(world_, CullView{.view = {view_, {}}}, visible_)->count; }
@@ -198,6 +245,14 @@ void add_shares(const std::string& name, Protocol protocol) {
   }
 }
 
+void add_forms(const std::string& name, int frames) {
+  for (const auto& [given, form] :
+       {std::pair{"/centre_half", Form::centre_half}, {"/doubles", Form::doubles}}) {
+    for (const Share& share : {kShares[2], kShares[4]})
+      add(name + given + "/" + share.percent, {.moved = share.moved, .frames = frames, .form = form});
+  }
+}
+
 // Those that begin with "short" run fewer frames.
 const bool registered = [] {
   for (const auto& [length, frames] : {std::pair<std::string, int>{"movers", 600}, {"short", 60}}) {
@@ -210,6 +265,7 @@ const bool registered = [] {
       add(length + "/all_of_100000" + listed, {100'000, 100'000, Where::nearby, Whom::same, order, frames});
     }
   }
+  add_forms("forms", 600), add_forms("short_forms", 60);
   return true;
 }();
 

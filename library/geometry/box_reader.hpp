@@ -36,6 +36,14 @@ struct SphereSpan {
 /// How many boxes or spheres are laid out at a time.
 inline constexpr std::size_t kBlock = 64;
 
+/// Whether boxes of every form are read by code of its own; not where each byte of it is loaded by whoever
+/// opens a web page.
+#ifdef __wasm__
+inline constexpr bool kEveryFormIsQuick = false;
+#else
+inline constexpr bool kEveryFormIsQuick = true;
+#endif
+
 /// One array a coordinate, on the stack.
 struct BoxBlock {
   alignas(64) std::array<std::array<float, kBlock>, 6> values;
@@ -77,6 +85,9 @@ struct BoxReader {
   /// Boxes first … first + count - 1, rounded outwards or inwards.
   static void read(const BoxView& view, std::size_t first, std::size_t count, WorldBox* out,
                    bool outwards) noexcept;
+  /// Whether boxes first … first + count - 1 surely are valid, at a quick look: it does not say so where one
+  /// reaches nearly as far as it may.
+  static bool surely_valid(const BoxView& view, std::size_t first, std::size_t count) noexcept;
   /// Whether the boxes lie as one array a coordinate about `origin`, so that they can be read where they are.
   static bool lies_in_arrays(const BoxView& view, const WorldPoint& origin, geometry::BoxSpan& out) noexcept;
   static bool lies_in_arrays(const SphereView& view, geometry::SphereSpan& out) noexcept;

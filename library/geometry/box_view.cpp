@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "library/geometry/box_blocks.hpp"
 #include "library/geometry/box_reader.hpp"
 #include "library/geometry/mutant.h"
 #include "library/geometry/rounding.hpp"
@@ -71,6 +72,39 @@ void read_boxes(const Source& from, bool outwards, WorldBox* out) {
   read(from, out);
 }
 
+// Whether all boxes are numbers and no less at their maxima, and reach no further than `most` on each axis.
+template <class Number, bool centred>
+bool are_valid(Source from, const std::array<Number, 3>& most) {
+  bool valid = true;
+  for (std::size_t i = 0; i < from.count; ++i, from.offset += from.stride) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = load<Number>(from.coordinates[axis], from.offset),
+                 b = load<Number>(from.coordinates[axis + 3], from.offset);
+      const bool ordered = centred ? b >= 0 : a <= b, above = centred || a >= -most[axis],
+                 below = (centred ? std::fabs(a) + b : b) <= most[axis];
+      valid = valid & ordered & above & below;
+    }
+  }
+  return valid;
+}
+
+template <class Number>
+bool are_valid(const Source& from, bool centred) {
+  // Less than what is allowed by more than rounding can make of it.
+  constexpr double kSurely = 0.9 * kWorldReach;
+  const auto most = [](double origin) { return static_cast<Number>(kSurely - std::fabs(origin)); };
+  const std::array<Number, 3> of{most(from.origin.x), most(from.origin.y), most(from.origin.z)};
+  return centred ? are_valid<Number, true>(from, of) : are_valid<Number, false>(from, of);
+}
+
+template <class Number>
+void load_block(const Source& from, GivenBlock<Number>& block) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < from.count; ++i)
+      block.values[k][i] = load<Number>(from.coordinates[k], from.offset + i * from.stride);
+  }
+}
+
 }  // namespace
 
 Box geometry::relative_box(const WorldBox& b, const WorldPoint& o) noexcept {
@@ -130,6 +164,12 @@ void BoxReader::read(const BoxView& view, std::size_t first, std::size_t count, 
   read(from, outwards, out);
 }
 
+bool BoxReader::surely_valid(const BoxView& view, std::size_t first, std::size_t count) noexcept {
+  const Source from{view.coordinates_, first * view.stride_, view.stride_, count, view.origin_};
+  const bool centred = view.form_ == BoxView::centre_and_half;
+  return view.doubles_ ? are_valid<double>(from, centred) : are_valid<float>(from, centred);
+}
+
 bool BoxReader::lies_in_arrays(const BoxView& view, const WorldPoint& origin, BoxSpan& out) noexcept {
   if (view.doubles_ || view.form_ != BoxView::corners || view.stride_ != sizeof(float) || view.count_ == 0 ||
       view.origin_ != origin || !std::ranges::all_of(view.coordinates_, aligned<float>))
@@ -169,10 +209,22 @@ bool BoxReader::lies_as_structs(const SphereView& view, std::span<const Sphere>&
 
 BoxSpan BoxReader::lay_out(const BoxView& view, std::size_t first, std::size_t count,
                            const WorldPoint& origin, BoxBlock& out) noexcept {
-  if (!view.doubles_ && view.form_ == BoxView::corners && view.origin_ == origin) {
+  if (are_float_corners(view) && view.origin_ == origin) {
     for (std::size_t k = 0; k < 6; ++k) {
       for (std::size_t i = 0; i < count; ++i)
         out.values[k][i] = load<float>(view.coordinates_[k], (first + i) * view.stride_);
+    }
+    return out.span(count);
+  }
+  if constexpr (kEveryFormIsQuick) {
+    const Source from{view.coordinates_, first * view.stride_, view.stride_, count, view.origin_};
+    const BlockForm form{view.form_ == BoxView::centre_and_half, view.origin_, origin};
+    GivenBlock<float> floats;
+    GivenBlock<double> doubles;
+    if (view.doubles_) {
+      load_block(from, doubles), geometry::lay_out(doubles, form, count, out);
+    } else {
+      load_block(from, floats), geometry::lay_out(floats, form, count, out);
     }
     return out.span(count);
   }

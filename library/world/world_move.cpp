@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "library/geometry/ask_ahead.hpp"
@@ -201,12 +202,11 @@ private:
     if (BoxReader::lies_as_structs(boxes_, origin, structs))
       return lay_out_structs(structs.subspan(first_, count), block_) < kInside;
     BoxReader::lay_out(boxes_, first_, count, origin, block_);
-    float most = 0;
-    for (std::size_t side = 0; side < 6; ++side) {
-      const float sign = side < 3 ? -1.0f : 1.0f;
-      for (std::uint32_t i = 0; i < count; ++i) most = std::max(most, sign * block_.values[side][i]);
+    unsigned outside = 0;
+    for (const auto& side : block_.values) {
+      for (std::uint32_t i = 0; i < count; ++i) outside |= unsigned{!(std::fabs(side[i]) < kInside)};
     }
-    return most < kInside;
+    return outside == 0;
   }
 
   // What objects need is asked for in three steps, each when the one before has arrived.

@@ -50,6 +50,13 @@ def moving(quick):
                         name.removesuffix("worst_frame") + "world" if name.endswith("/worst_frame") else None)
 
 
+def forms(quick):
+    """The same out of structs that have a centre and a half size; the flat arrays are given minima and maxima."""
+    rows = google_benchmark("movers", 1, 0.01, f"^{'short_' if quick else ''}forms/")
+    return compare_with([row for row in rows if not row.case.endswith("/worst_frame")],
+                        lambda name: name.removesuffix("world") + "flat" if name.endswith("/world") else None)
+
+
 def instances(quick):
     """10⁹ objects in instances of worlds beside a plain world of those that a view may see."""
     rows = google_benchmark("instances", 3, 0.02 if quick else 0.2, counters=(("GiB", "GiB", 1),))
@@ -380,6 +387,6 @@ def web(quick):
     return rows
 
 
-TOPICS = {"world": world, "columns": columns, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "frustum": frustum,
+TOPICS = {"world": world, "columns": columns, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "forms": forms, "frustum": frustum,
           "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "shadows": shadows, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}

@@ -2,9 +2,12 @@
 #include <sightline/boxes.hpp>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "library/geometry/box_reader.hpp"
@@ -109,6 +112,132 @@ TEST(BoxView, RoundsOutwardsOrInwardsAndByNoMoreThanItMust) {
     ASSERT_LE(static_cast<long double>(inner.max.y), static_cast<long double>(in.max.y) - origin.y);
   }
   EXPECT_GT(inexact, 1000);
+}
+
+// Boxes of numbers of all sizes, as one form gives them.
+template <class Number>
+struct Given {
+  std::vector<std::array<Number, 6>> numbers;
+  bool centred;
+
+  Given(Random& random, std::size_t count, bool of_centres) : numbers(count), centred(of_centres) {
+    const auto number = [&](float most) {
+      const Number n = random.between(-1, 1) * std::exp(random.between(-40, most));
+      return sizeof(Number) == sizeof(double) ? n * (1 + static_cast<Number>(1e-12) * random.below(99)) : n;
+    };
+    for (auto& box : numbers) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Number at = number(20), size = std::fabs(number(10));
+        box[axis] = at, box[axis + 3] = centred ? size : at + size;
+      }
+    }
+  }
+  [[nodiscard]] BoxView view(const WorldPoint& origin) const {
+    const Number *a = numbers[0].data(), *b = a + 3;
+    const std::size_t stride = sizeof numbers[0], count = numbers.size();
+    if constexpr (sizeof(Number) == sizeof(float))
+      return centred ? BoxView::centre_half(a, b, stride, count, origin)
+                     : BoxView::min_max(a, b, stride, count, origin);
+    else
+      return centred ? BoxView::centre_half(a, b, stride, count) : BoxView::min_max(a, b, stride, count);
+  }
+};
+
+Box box_of(const geometry::BoxSpan& b, std::size_t i) {
+  return {{b.min_x[i], b.min_y[i], b.min_z[i]}, {b.max_x[i], b.max_y[i], b.max_z[i]}};
+}
+
+template <class Number>
+void expect_laid_out_as_read(Random& random, const WorldPoint& from, const WorldPoint& to) {
+  for (const bool centred : {false, true}) {
+    for (std::size_t count = 1; count <= geometry::kBlock; count += 3) {
+      const Given<Number> given(random, count + 2, centred);
+      const BoxView view = given.view(from);
+      geometry::BoxBlock block;
+      const geometry::BoxSpan laid_out = BoxReader::lay_out(view, 2, count, to, block);
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(box_of(laid_out, i), geometry::relative_box(view[2 + i], to))
+            << sizeof(Number) << ' ' << centred << ' ' << i << " of " << count;
+    }
+  }
+}
+
+TEST(BoxView, LaysEveryFormOutAsItReadsItForEverySimdTarget) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    Random random(3);
+    for (const WorldPoint& to : {WorldPoint{}, WorldPoint{3200, -6400, 0}, WorldPoint{1e9, 0.1, -1e-9}}) {
+      expect_laid_out_as_read<double>(random, {}, to);
+      expect_laid_out_as_read<float>(random, {}, to);
+      expect_laid_out_as_read<float>(random, {5e6, 0.3, -7}, to);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+// About one origin nothing is moved there and back: what is asked for is as small as floats can say.
+TEST(BoxView, LaysCentresOutNoWiderThanItMust) {
+  Random random(4);
+  const Given<float> given(random, geometry::kBlock, true);
+  const WorldPoint origin{1e9, 0.1, -3200};
+  geometry::BoxBlock block;
+  const geometry::BoxSpan laid_out =
+      BoxReader::lay_out(given.view(origin), 0, geometry::kBlock, origin, block);
+  for (std::size_t i = 0; i < geometry::kBlock; ++i) {
+    const long double centre = given.numbers[i][0], half = given.numbers[i][3];
+    ASSERT_LE(laid_out.min_x[i], centre - half);
+    ASSERT_GE(laid_out.max_x[i], centre + half);
+    ASSERT_GE(std::nextafter(laid_out.min_x[i], INFINITY), centre - half);
+    ASSERT_LE(std::nextafter(laid_out.max_x[i], -INFINITY), centre + half);
+  }
+}
+
+template <class Number>
+void expect_sure_only_of_valid(Random& random) {
+  const std::array<Number, 10> odd{0,
+                                   -0.0,
+                                   -1,
+                                   std::numeric_limits<Number>::quiet_NaN(),
+                                   std::numeric_limits<Number>::infinity(),
+                                   -std::numeric_limits<Number>::infinity(),
+                                   static_cast<Number>(kWorldReach),
+                                   static_cast<Number>(-kWorldReach),
+                                   static_cast<Number>(1.01 * kWorldReach),
+                                   static_cast<Number>(-0.95 * kWorldReach)};
+  for (const WorldPoint& origin : {WorldPoint{}, WorldPoint{0, kWorldReach, -5}, WorldPoint{NAN, 0, 0}}) {
+    for (const bool centred : {false, true}) {
+      for (int round = 0; round < 300; ++round) {
+        Given<Number> given(random, 5, centred);
+        const bool usual = round % 3 == 0;
+        if (!usual) given.numbers[random.below(5)][random.below(6)] = odd[random.below(odd.size())];
+        const BoxView view = given.view(origin);
+        bool valid = true;
+        for (std::size_t i = 0; i < view.size(); ++i) valid = valid && geometry::is_valid(view[i]);
+        const bool sure = BoxReader::surely_valid(view, 0, view.size());
+        ASSERT_LE(sure, valid) << sizeof(Number) << ' ' << centred << ' ' << round;
+        if (usual && origin == WorldPoint{}) ASSERT_TRUE(sure);
+      }
+    }
+  }
+}
+
+TEST(BoxView, IsSureOfNoBoxThatIsNotValid) {
+  Random random(5);
+  expect_sure_only_of_valid<float>(random);
+  expect_sure_only_of_valid<double>(random);
+}
+
+// No box, rather than one turned inside out.
+TEST(BoxView, LaysNoBoxOutOfANegativeHalfSize) {
+  const std::array<float, 6> numbers{0, 0, 0, 1, -1, NAN};
+  for (const WorldPoint& origin : {WorldPoint{}, WorldPoint{3200, 0, 0}}) {
+    geometry::BoxBlock block;
+    const Box box = box_of(
+        BoxReader::lay_out(BoxView::centre_half(&numbers[0], &numbers[3], 24, 1), 0, 1, origin, block), 0);
+    EXPECT_EQ(box.max.x - box.min.x, 2);
+    for (const float none : {box.min.y, box.max.y, box.min.z, box.max.z}) EXPECT_TRUE(std::isnan(none));
+  }
 }
 
 TEST(BoxView, FloatsNextToADouble) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "support/random_views.hpp"
@@ -86,6 +87,42 @@ TEST(WorldRefusals, FindsTheOneBadBoxOfManyAndWhatIsWrongWithIt) {
   }
   EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{0, 0, 0}, {-0.0f, -0.0f, -0.0f}}))) << "zeros are equal";
   EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{-9e10f, 0, 0}, {9e10f, 0, 0}})));
+}
+
+// The same of boxes in structs of the caller's.
+template <class Number>
+void expect_one_bad_box(bool centred) {
+  struct Thing {
+    Number name, first[3], second[3];
+  };
+  constexpr std::size_t kBoxes = 130;
+  const auto nan = std::numeric_limits<Number>::quiet_NaN(), over = static_cast<Number>(1.1 * kWorldReach);
+  World world;
+  std::vector<Handle> handles(kBoxes);
+  ASSERT_TRUE(world.insert(std::vector<Box>(kBoxes, {{0, 0, 0}, {1, 1, 1}}), handles));
+  for (std::size_t at = 0; at < kBoxes; ++at) {
+    for (std::size_t side = 0; side < 6; ++side) {
+      const Number least = side < 3 ? (centred ? nan : Number{4}) : Number{-1};
+      for (const Number value : {nan, over, least}) {
+        std::vector<Thing> things(kBoxes, {0, {0, 0, 0}, {1, 1, 1}});
+        (side < 3 ? things[at].first : things[at].second)[side % 3] = value;
+        const Number *first = things[0].first, *second = things[0].second;
+        const Status moved =
+            world.move(handles, centred ? BoxView::centre_half(first, second, sizeof(Thing), kBoxes)
+                                        : BoxView::min_max(first, second, sizeof(Thing), kBoxes));
+        ASSERT_EQ(moved.code(), StatusCode::bad_box) << at << ' ' << side << ' ' << value;
+        ASSERT_EQ(moved.index(), at);
+      }
+    }
+  }
+  for (const Handle handle : handles) EXPECT_EQ(world.box(handle), (WorldBox{{0, 0, 0}, {1, 1, 1}}));
+}
+
+TEST(WorldRefusals, FindsTheOneBadBoxOfEveryForm) {
+  for (const bool centred : {false, true}) {
+    expect_one_bad_box<float>(centred);
+    expect_one_bad_box<double>(centred);
+  }
 }
 
 // The same of handles, one after another or apart.
