@@ -46,10 +46,13 @@ inline sightline_status refuse(const char* message) noexcept {
   return keep({StatusCode::bad_argument, message});
 }
 
-/// Whether there can be `count` elements at `first`, as far as a pointer tells.
+/// More bytes no program has: processors of 64 bits give it 2⁵⁶ at most, others half of what they count.
+inline constexpr std::size_t kMostBytes = static_cast<std::size_t>(-1) >> (sizeof(std::size_t) == 8 ? 8 : 1);
+
+/// Whether there can be `count` elements of so many numbers at `first`, as far as a pointer tells.
 template <class T>
-bool can_hold(const T* first, std::size_t count) noexcept {
-  return count == 0 || (first && count <= static_cast<std::size_t>(-1) / 2 / sizeof(T));
+bool can_hold(const T* first, std::size_t count, std::size_t numbers = 1) noexcept {
+  return count == 0 || (first && count <= kMostBytes / (numbers * sizeof(T)));
 }
 
 /// Bytes of a struct's first version, whose last member was `last`. Later ones stand behind it.

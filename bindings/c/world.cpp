@@ -71,8 +71,6 @@ Status stale() {
   return {StatusCode::stale_handle, "world: the handle names no object that stands"};
 }
 
-constexpr std::size_t kMostFloats = static_cast<std::size_t>(-1) / 64;
-
 sightline_status add(sightline_world& world, const Occluder& occluder, std::span<const Sphere> spheres,
                      uint32_t* name) {
   const Result<OccluderId> added = world.world.add_occluder(occluder, spheres);
@@ -182,8 +180,7 @@ sightline_status sightline_world_add_occluder(sightline_world* world, const sigh
 
 sightline_status sightline_world_add_solids(sightline_world* world, const float* boxes, size_t box_count,
                                             const float* spheres, size_t sphere_count, uint32_t* name) {
-  if (!world || !name || !can_hold(boxes, box_count) || box_count > kMostFloats ||
-      !can_hold(spheres, sphere_count) || sphere_count > kMostFloats)
+  if (!world || !name || !can_hold(boxes, box_count, 6) || !can_hold(spheres, sphere_count, 4))
     return refuse("add_solids: a pointer is NULL, or a count more than memory holds");
   Occluder occluder;
   std::vector<Sphere> balls;

@@ -129,8 +129,8 @@ public:
   /// 1 ns a tile. Allocates: until it has seen its largest mesh, for each job.
   Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
-  /// Whether some place on the image may see the box. False is certain; of a box that is not finite, true.
-  /// Cost: 30 ns.
+  /// Whether some place on the image may see the box, about the view's origin. False is certain; of a box
+  /// that is not finite, true. Cost: 30 ns.
   [[nodiscard]] bool may_see(const Box& box) const noexcept;
   /// The same for many: visible[i] is 1 or 0, for as many as there are boxes.
   /// Errors: bad_argument for boxes that are not sound; buffer_too_small. Cost: linear, some 10 ns a box; an

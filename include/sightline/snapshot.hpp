@@ -36,7 +36,8 @@ struct SnapshotSink {
 Status save(const World& world, const SnapshotSink& sink);
 
 /// A whole world out of the bytes that save() wrote: handles, columns and orders are those of the saved one,
-/// and it behaves as that would, but that objects which moved are filed anew.
+/// and it behaves as that would, but that objects which moved are filed anew: of boxes that lie outside a
+/// frustum by no more than rounding may make of it, one may keep some that the other leaves out.
 /// Errors: bad_file for what is damaged, truncated, of another version or no such file; index() is the byte
 /// where the damaged part begins. Safe with any bytes that nobody changes meanwhile. Cost: linear, some 15
 /// ns an object. Threads: any. Allocates: as World::insert, no more than 20 times the bytes.

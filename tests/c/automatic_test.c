@@ -93,7 +93,7 @@ static void refusals(void) {
   const sightline_status many = sizeof(size_t) > 4 ? SIGHTLINE_TOO_MANY : SIGHTLINE_BAD_ARGUMENT;
   EXPECT(sightline_world_add_surface(world, corners, 0xffffffffu, ids, 3, NULL, 0, &name) == many);
   EXPECT_REFUSED(sightline_world_add_surface(world, corners, 3, ids, 3, &on, (size_t)-1 / 4, &name),
-                 SIGHTLINE_BAD_MESH, (size_t)-1 / 4);
+                 SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
   EXPECT(sightline_world_set_occluders(world, &first, &placement, 1) == SIGHTLINE_BAD_ARGUMENT);
   placement = sightline_occluder_placement_of(SIGHTLINE_NO_OCCLUDER, NULL), placement.reserved = 1;
   EXPECT_REFUSED(sightline_world_set_occluders(world, &first, &placement, 1), SIGHTLINE_BAD_ARGUMENT, 0);

@@ -53,8 +53,10 @@ TEST(StructSize, CountsThatNoMemoryHoldsAreFound) {
   EXPECT_TRUE(can_hold<double>(nullptr, 0));
   EXPECT_FALSE(can_hold<double>(nullptr, 1));
   EXPECT_FALSE(can_hold(&number, static_cast<std::size_t>(-1)));
-  EXPECT_FALSE(can_hold(&number, static_cast<std::size_t>(-1) / 8));
-  EXPECT_TRUE(can_hold(&number, static_cast<std::size_t>(-1) / 16));
+  EXPECT_FALSE(can_hold(&number, kMostBytes / 8 + 1));
+  EXPECT_TRUE(can_hold(&number, kMostBytes / 8));
+  EXPECT_FALSE(can_hold(&number, kMostBytes / 8, 2));
+  EXPECT_TRUE(can_hold(&number, kMostBytes / 16, 2));
 }
 
 }  // namespace
