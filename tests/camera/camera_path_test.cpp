@@ -36,6 +36,22 @@ std::string refusal_of(const std::string& text) {
   return "accepted";
 }
 
+std::string nested(int depth) {
+  return std::string(static_cast<std::size_t>(depth), '[') +
+         std::string(static_cast<std::size_t>(depth), ']');
+}
+
+// Neither as deep as a stack is not, nor a member at a time among all others.
+TEST(PathFile, RefusesWhatIsDeepOrHasManyMembers) {
+  const std::string deep = nested(500'000);
+  EXPECT_THAT(refusal_of(R"({"views": )" + deep + R"(, "b": 1})"), HasSubstr("\"b\""));
+  EXPECT_THAT(refusal_of(R"({"views": [)" + deep + "]}"), HasSubstr("view 0"));
+  EXPECT_THAT(refusal_of(R"({"views": [{"eye": )" + deep + R"(, "up": 1}]})"), HasSubstr("\"eye\""));
+  std::string many = R"({"views": [])";
+  for (int i = 0; i < 300'000; ++i) many += ",\"" + std::to_string(i) + "\":0";
+  EXPECT_THAT(refusal_of(many + "}"), HasSubstr("unknown member"));
+}
+
 TEST(PathFile, ComesBackToTheBit) {
   const Scene scene = generate_world("regular?columns=4&rows=4");
   const std::vector<Camera> cameras = random_cameras(scene, 200, 1);

@@ -103,6 +103,13 @@ TEST(Replay, RefusesWhatIsNone) {
     refused(text.replace(at, std::string(from).size(), to));
   }
   EXPECT_THROW(static_cast<void>(load_replay(folder / "missing.json", nowhere)), Error);
+  // As deep as a stack is not.
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  for (const char* name : {"\"lost\": ", "\"size\": ", "\"views\": ", "\"samples\": "}) {
+    const std::size_t at = whole.find(name) + std::string(name).size();
+    io::write_file(folder / "wrong.json", whole.substr(0, at) + deep + ", \"was\": " + whole.substr(at));
+    EXPECT_THROW(static_cast<void>(load_replay(folder / "wrong.json", nowhere)), Error) << name;
+  }
 }
 
 }  // namespace

@@ -16,7 +16,10 @@
 namespace sightline::camera {
 namespace {
 
-using Json = nlohmann::ordered_json;
+// What is written keeps its order. What is read has its members sorted: in the other form each is looked for
+// among all, and moved by copies as deep as it is.
+using OrderedJson = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr std::size_t kMaxViews = 100'000;
 constexpr std::size_t kMaxBytes = 64 << 20;
@@ -31,8 +34,8 @@ double shortest(float value) {
   return std::stod(fmt::format("{}", value));
 }
 
-Json vector_json(const Vec3& v) {
-  return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)});
+OrderedJson vector_json(const Vec3& v) {
+  return OrderedJson::array({shortest(v.x), shortest(v.y), shortest(v.z)});
 }
 
 /// The fewest digits of degrees that come back as the same radians.
@@ -46,9 +49,10 @@ double shortest_degrees(float radians) {
 }
 
 /// The eye in the world. What was added to 0 keeps its float's few digits.
-Json world_json(const Vec3& v, const WorldPoint& origin) {
+OrderedJson world_json(const Vec3& v, const WorldPoint& origin) {
   const auto coordinate = [](float of, double from) { return from == 0 ? shortest(of) : from + of; };
-  return Json::array({coordinate(v.x, origin.x), coordinate(v.y, origin.y), coordinate(v.z, origin.z)});
+  return OrderedJson::array(
+      {coordinate(v.x, origin.x), coordinate(v.y, origin.y), coordinate(v.z, origin.z)});
 }
 
 /// Reads the members of one view, naming view and member where one is wrong.
@@ -161,8 +165,8 @@ Camera read_camera(const std::string& where, const Json& view, const WorldPoint&
 
 }  // namespace
 
-Json camera_json(const Camera& camera, const WorldPoint& origin) {
-  Json view;
+OrderedJson camera_json(const Camera& camera, const WorldPoint& origin) {
+  OrderedJson view;
   view["eye"] = world_json(camera.eye, origin);
   view["forward"] = vector_json(camera.forward);
   view["up"] = vector_json(camera.up);
@@ -174,7 +178,7 @@ Json camera_json(const Camera& camera, const WorldPoint& origin) {
     view["far"] = shortest(camera.far_plane);
   }
   view["orthographic_height"] = shortest(camera.orthographic_height);
-  view["shift"] = Json::array({shortest(camera.shift_x), shortest(camera.shift_y)});
+  view["shift"] = OrderedJson::array({shortest(camera.shift_x), shortest(camera.shift_y)});
   view["reversed"] = camera.depth == Depth::reversed;
   return view;
 }
@@ -193,7 +197,10 @@ std::vector<Camera> parse_path(const std::string& source, const std::string& tex
   }
   for (const auto& [key, value] : document.items())
     if (key != "views") throw Error(source + ": unknown member \"" + key + "\", expected \"views\" alone");
-  const Json& views = document["views"];
+  return read_views(source, document["views"], origin);
+}
+
+std::vector<Camera> read_views(const std::string& source, const Json& views, const WorldPoint& origin) {
   if (views.empty() || views.size() > kMaxViews) {
     throw Error(fmt::format("{}: {} views, expected 1 to {}", source, views.size(), kMaxViews));
   }
@@ -209,8 +216,8 @@ std::vector<Camera> load_path(const std::filesystem::path& file, const WorldPoin
 }
 
 void save_path(const std::filesystem::path& file, std::span<const Camera> cameras, const WorldPoint& origin) {
-  Json document;
-  document["views"] = Json::array();
+  OrderedJson document;
+  document["views"] = OrderedJson::array();
   for (const Camera& camera : cameras) document["views"].push_back(camera_json(camera, origin));
   io::write_file(file, document.dump(1) + "\n");
 }

@@ -25,6 +25,10 @@ nlohmann::ordered_json camera_json(const Camera& camera, const WorldPoint& origi
 std::vector<Camera> parse_path(const std::string& source, const std::string& text,
                                const WorldPoint& origin = {});
 
+/// The same of the array "views" of a document that was read already.
+std::vector<Camera> read_views(const std::string& source, const nlohmann::json& views,
+                               const WorldPoint& origin = {});
+
 std::vector<Camera> load_path(const std::filesystem::path& file, const WorldPoint& origin = {});
 
 void save_path(const std::filesystem::path& file, std::span<const Camera> cameras,

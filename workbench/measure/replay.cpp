@@ -21,7 +21,7 @@ namespace sightline::measure {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostMoves = 1'000'000;
@@ -37,6 +37,10 @@ bool is_one(const Json& value) {
   return true;
 }
 
+[[noreturn]] void throw_wrong(const char* name, const std::string& file) {
+  throw Error(fmt::format("{}: \"{}\" is missing or of another type than a replay has", file, name));
+}
+
 // A member of the type asked for; says which one is missing or another.
 template <class Value>
 Value member(const Json& document, const char* name, const std::string& file) {
@@ -45,7 +49,14 @@ Value member(const Json& document, const char* name, const std::string& file) {
     if (found != document.end() && is_one<Value>(*found)) return found->template get<Value>();
   } catch (const Json::exception&) {
   }
-  throw Error(fmt::format("{}: \"{}\" is missing or of another type than a replay has", file, name));
+  throw_wrong(name, file);
+}
+
+// One that has others, where it stands: it may be as deep as a stack is not.
+const Json& part(const Json& document, const char* name, Json::value_t type, const std::string& file) {
+  const auto found = document.find(name);
+  if (found == document.end() || found->type() != type) throw_wrong(name, file);
+  return *found;
 }
 
 std::size_t raster_state_of(const std::string& name, const std::string& file) {
@@ -59,20 +70,20 @@ std::size_t raster_state_of(const std::string& name, const std::string& file) {
 
 void save_replay(const std::filesystem::path& file, const Replay& replay) {
   const LostObject& lost = replay.lost;
-  Json document{{"scene", replay.scene},
-                {"pvs", replay.pvs},
-                {"method", replay.method},
-                {"device", replay.device},
-                {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
-                {"moving", replay.moving},
-                {"samples", replay.samples},
-                {"moves", lost.moves},
-                {"size", {lost.width, lost.height}},
-                {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
-                {"views", Json::array()}};
+  nlohmann::ordered_json document{{"scene", replay.scene},
+                                  {"pvs", replay.pvs},
+                                  {"method", replay.method},
+                                  {"device", replay.device},
+                                  {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
+                                  {"moving", replay.moving},
+                                  {"samples", replay.samples},
+                                  {"moves", lost.moves},
+                                  {"size", {lost.width, lost.height}},
+                                  {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
+                                  {"views", nlohmann::ordered_json::array()}};
   if (lost.before) document["views"].push_back(camera::camera_json(*lost.before, lost.origin));
   document["views"].push_back(camera::camera_json(lost.camera, lost.origin));
-  io::write_file(file, document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::write_file(file, document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 Replay load_replay(const std::filesystem::path& path,
@@ -100,19 +111,19 @@ Replay load_replay(const std::filesystem::path& path,
   if (replay.samples > 64) throw Error(file + ": expected at most 64 \"samples\"");
   if (!(replay.moving >= 0 && replay.moving <= 1) || lost.moves > kMostMoves)
     throw Error(fmt::format("{}: expected \"moving\" from 0 to 1 and at most {} moves", file, kMostMoves));
-  const auto size = member<std::vector<Json>>(document, "size", file);
+  const Json& size = part(document, "size", Json::value_t::array, file);
   const auto is_length = [](const Json& side) {
     return is_one<std::uint32_t>(side) && side >= 1 && side <= kMostPixels;
   };
   if (size.size() != 2 || !std::ranges::all_of(size, is_length))
     throw Error(fmt::format("{}: expected \"size\" to be two whole numbers from 1 to {}", file, kMostPixels));
   lost.width = size[0].get<std::uint32_t>(), lost.height = size[1].get<std::uint32_t>();
-  const Json what = member<Json>(document, "lost", file);
+  const Json& what = part(document, "lost", Json::value_t::object, file);
   lost.object = member<ObjectId>(what, "object", file);
   lost.pixels = member<std::uint64_t>(what, "pixels", file);
   lost.origin = origin_of(replay);
-  const Json views{{"views", member<Json>(document, "views", file)}};
-  const std::vector<Camera> cameras = camera::parse_path(file, views.dump(), lost.origin);
+  const std::vector<Camera> cameras =
+      camera::read_views(file, part(document, "views", Json::value_t::array, file), lost.origin);
   if (cameras.size() > 2) throw Error(file + ": expected one view, or two of which the last one lost");
   lost.camera = cameras.back();
   if (cameras.size() == 2) lost.before = cameras.front();
