@@ -166,6 +166,25 @@ TEST(PageFolder, HoldsAllThatIsNotFinishedItself) {
   EXPECT_EQ(beside(), 1);
 }
 
+TEST(PageFolder, ReplacesAPageAndNothingElse) {
+  const TemporaryFolder folder;
+  const auto put = [&](const std::string& picture) {
+    PageFolder page(folder / "page");
+    io::write_file(page.path() / "index.html", kPageMark + ("<img src=\"" + picture + "\">"));
+    io::write_file(page.path() / picture, "seen");
+    page.commit();
+  };
+  put("old.png");
+  std::filesystem::create_directory(folder / "page/mine");
+  for (const char* name : {"page/notes.txt", "page/mine/old.png", "page/photo.png"})
+    io::write_file(folder / name, "mine");
+  put("new.png");
+  EXPECT_FALSE(std::filesystem::exists(folder / "page/old.png"));
+  EXPECT_EQ(io::read_file(folder / "page/new.png", 100), "seen");
+  for (const char* name : {"page/notes.txt", "page/mine/old.png", "page/photo.png"})
+    EXPECT_EQ(io::read_file(folder / name, 100), "mine") << name;
+}
+
 TEST(Snapshot, OutcomesAddUpAndAgreeWithTheTruth) {
   Material m;
   const View compared = *make_view(m.snapshot.camera, m.comparison.width, m.comparison.height);

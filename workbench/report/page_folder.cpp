@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include <sightline/workbench/error.hpp>
 
@@ -16,11 +18,28 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kPage = "index.html";
+
 bool is_page(const fs::path& folder) {
-  std::ifstream page(folder / "index.html", std::ios::binary);
+  std::ifstream page(folder / kPage, std::ios::binary);
   std::string head(1024, '\0');
   page.read(head.data(), static_cast<std::streamsize>(head.size()));
   return head.find(kPageMark) != std::string::npos;
+}
+
+// The pictures of the page in a folder: those that it names. What else lies there is somebody else's.
+std::vector<fs::path> pictures_of(const fs::path& folder) {
+  std::ifstream page(folder / kPage, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  std::vector<fs::path> pictures;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    const fs::path name = entry.path().filename(), kind = name.extension();
+    if ((kind == ".png" || kind == ".svg") && entry.symlink_status(failed).type() == fs::file_type::regular &&
+        text.find('"' + name.string() + '"') != std::string::npos)
+      pictures.push_back(entry.path());
+  }
+  return pictures;
 }
 
 constexpr std::string_view kBegins = ".sightline-", kEnds = ".tmp";
@@ -64,16 +83,18 @@ PageFolder::PageFolder(const fs::path& target) {
 
 void PageFolder::commit() {
   std::error_code failed;
-  for (const fs::directory_entry& old : fs::directory_iterator(target_))
-    if (!is_unfinished(old)) fs::remove_all(old.path(), failed);
+  if (is_page(target_)) {
+    for (const fs::path& picture : pictures_of(target_)) fs::remove(picture, failed);
+    fs::remove(target_ / kPage, failed);
+  }
   const auto move = [&](const fs::path& file) {
     if (!failed) fs::rename(file, target_ / file.filename(), failed);
   };
   // The page comes last: where it stands, its pictures do.
   for (const fs::directory_entry& file : fs::directory_iterator(path())) {
-    if (file.path().filename() != "index.html") move(file.path());
+    if (file.path().filename() != kPage) move(file.path());
   }
-  move(path() / "index.html");
+  move(path() / kPage);
   if (failed)
     throw Error(fmt::format("{}: the page cannot be put there: {}", target_.string(), failed.message()));
   if (made_target_) made_target_->keep();

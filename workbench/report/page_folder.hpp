@@ -12,7 +12,8 @@ namespace sightline::report {
 inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"Sightline\">";
 
 /// Files are written to path(), a folder under a temporary name in the target; commit() puts them in the
-/// place of all else there. Without it nothing is left behind, and what stood in the target stays.
+/// place of an earlier page and the pictures that it names. Without it nothing is left behind, and what stood
+/// in the target stays, as what is no page's always does.
 class PageFolder {
 public:
   /// Throws Error where the folder cannot be made, or the target holds anything but an earlier page.
