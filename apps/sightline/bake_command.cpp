@@ -162,9 +162,9 @@ void attach_pvs(Scene& scene, const std::string& file) {
 }
 
 void add_bake(CLI::App& app, int& exit) {
-  CLI::App& command = *app.add_subcommand(
-      "bake",
-      "Bake the visible set of each cell of a grid; goes on where it was killed; mpirun shares it out");
+  CLI::App& command = *app.add_subcommand("bake",
+                                          "Bake the visible set of each cell of a grid; goes on where it was "
+                                          "killed, with FILE.pvs.part.0 beside it; mpirun shares it out");
   auto options = std::make_shared<BakeOptions>();
   command.add_option("SCENE", options->scene, kSceneHelp)->required();
   command.add_option("-o,--output", options->file, "the file to write")

@@ -4,12 +4,14 @@
 
 #include <fstream>
 
+#include <sightline/workbench/error.hpp>
 #include <sightline/workbench/method.hpp>
 #include <sightline/workbench/worlds.hpp>
 
 #include "support/temporary_folder.hpp"
 #include "workbench/bake/pvs_file.hpp"
 #include "workbench/io/files.hpp"
+#include "workbench/io/text_file.hpp"
 #include "workbench/oracle/embree_judge.hpp"
 #include "workbench/oracle/loss.hpp"
 #include "workbench/scene/random.hpp"
@@ -64,6 +66,34 @@ TEST(Bake, GivesTheSameBytesHoweverOftenItIsKilled) {
   EXPECT_EQ(io::read_file(again), io::read_file(once));
 }
 
+TEST(Bake, LeavesWhatIsNotItsOwnAlone) {
+  const Scene scene = forest();
+  const test::TemporaryFolder folder;
+  const auto result = folder / "a.pvs", own = folder / "a.pvs.part.0", other = folder / "a.pvs.part.7";
+  io::write_file(folder / "precious", "mine");
+  const auto refuses = [&] { EXPECT_THROW(bake(scene, kCoarse, result, {}), Error); };
+  std::filesystem::create_symlink(folder / "precious", own);
+  refuses();
+  std::filesystem::remove(own);
+  io::write_file(own, "mine");
+  refuses();
+  EXPECT_EQ(io::read_file(own, 100), "mine");
+  std::filesystem::remove(own);
+  // The journal of a bake with other options, which took its time.
+  CellOptions others = kCoarse;
+  others.seed += 1;
+  EXPECT_FALSE(
+      bake(scene, others, result, {}, 0, [](std::size_t done, std::size_t) { return done < 3; }).finished);
+  const std::string before = io::read_file(own, 1 << 20);
+  refuses();
+  EXPECT_EQ(io::read_file(own, 1 << 20), before);
+  std::filesystem::rename(own, other);
+  EXPECT_TRUE(bake(scene, kCoarse, result, {}).finished);
+  EXPECT_FALSE(std::filesystem::exists(own));
+  EXPECT_EQ(io::read_file(other, 1 << 20), before);
+  EXPECT_EQ(io::read_file(folder / "precious", 100), "mine");
+}
+
 TEST(Bake, EstimatesBeforeItStartsWhatItThenDoesAtLeast) {
   const Scene scene = forest();
   const test::TemporaryFolder folder;
@@ -84,19 +114,6 @@ TEST(Bake, EstimatesBeforeItStartsWhatItThenDoesAtLeast) {
   EXPECT_EQ(calls, 1u);
   EXPECT_GT(static_cast<double>(result.rays),
             static_cast<double>(done) * 3 / kCoarse.target * kCoarse.rays);  // the rays it reckons with
-}
-
-TEST(Bake, OfOtherOptionsDoesNotGoOnWithTheJournal) {
-  const Scene scene = forest();
-  const test::TemporaryFolder folder;
-  CellOptions other = kCoarse;
-  other.seed = 2;
-  const std::filesystem::path file = folder / "a.pvs", fresh = folder / "b.pvs";
-  bake(scene, other, file, {}, 0, [](std::size_t done, std::size_t) { return done < 5; });
-  const BakeResult result = bake(scene, kCoarse, file, {});
-  EXPECT_EQ(result.resumed, 0u);
-  bake(scene, kCoarse, fresh, {});
-  EXPECT_EQ(io::read_file(file), io::read_file(fresh));
 }
 
 TEST(Bake, LosesLittleFromAnywhereInTheCells) {

@@ -102,10 +102,10 @@ std::uint64_t read_journals(const std::filesystem::path& file, const std::filesy
   return whole;
 }
 
-void remove_journals(const std::filesystem::path& file) {
+void remove_journals(const std::filesystem::path& file, std::uint64_t key) {
   for (const auto& journal : journals_of(file)) {
     std::error_code ignored;
-    std::filesystem::remove(journal, ignored);
+    if (is_journal(journal, key)) std::filesystem::remove(journal, ignored);
   }
 }
 
@@ -201,7 +201,7 @@ BakeResult bake(const Scene& scene, const CellOptions& options, const std::files
   if (done.size() != cells.size()) return result;
   unpack(done, cells);
   write_pvs_file(cells, file);
-  remove_journals(file);
+  remove_journals(file, key);
   result.finished = true;
   result.cells = std::move(cells);
   return result;

@@ -1,5 +1,9 @@
 #include "workbench/bake/journal.hpp"
 
+#include <array>
+#include <cstring>
+#include <fstream>
+
 #include <sightline/workbench/error.hpp>
 
 #include "library/pvs/checksum.hpp"
@@ -20,12 +24,22 @@ std::uint64_t record_checksum(std::uint32_t cell, std::span<const std::byte> set
 
 }  // namespace
 
+bool is_journal(const std::filesystem::path& file, std::uint64_t key) {
+  std::error_code failed;
+  if (std::filesystem::symlink_status(file, failed).type() != std::filesystem::file_type::regular)
+    return false;
+  // A kill may have cut it off within the key.
+  std::array<char, kKey> head{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), head.size());
+  return std::memcmp(head.data(), &key, static_cast<std::size_t>(in.gcount())) == 0;
+}
+
 std::uint64_t read_journal(const std::filesystem::path& file, std::uint64_t key, std::size_t cell_count,
                            PackedCells& done) {
-  std::error_code none;
-  if (!std::filesystem::exists(file, none)) return 0;
+  if (!is_journal(file, key)) return 0;
   const std::vector<std::byte> bytes = io::read_file(file);
-  if (bytes.size() < kKey || io::read_at<std::uint64_t>(bytes, 0) != key) return 0;
+  if (bytes.size() < kKey) return 0;
   std::size_t at = kKey;
   while (io::fits(at, kRecord, bytes.size())) {
     const auto cell = io::read_at<std::uint32_t>(bytes, at),
@@ -42,6 +56,12 @@ std::uint64_t read_journal(const std::filesystem::path& file, std::uint64_t key,
 
 Journal::Journal(const std::filesystem::path& file, std::uint64_t key, std::uint64_t whole) : path_(file) {
   std::error_code failed;
+  if (std::filesystem::symlink_status(file, failed).type() != std::filesystem::file_type::not_found &&
+      !is_journal(file, key))
+    throw Error(
+        file.string() +
+        ": is not this bake's, expected a bake of the same scene with the same options to go on with, "
+        "or none: remove it, or choose another name for the result");
   if (whole > 0) std::filesystem::resize_file(file, whole, failed);
   file_.reset(std::fopen(file.c_str(), whole > 0 && !failed ? "ab" : "wb"));
   if (!file_) throw Error(file.string() + ": cannot be written");
