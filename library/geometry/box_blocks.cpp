@@ -80,25 +80,19 @@ HWY_INLINE hn::Vec<D> load(const double* from) {
   return hn::Load(D(), from);
 }
 
-// The nearest floats that are not above, or not below.
-HWY_INLINE void store_down(hn::Vec<D> x, float* to) {
+// The nearest floats that are not above.
+HWY_INLINE hn::Vec<hn::Rebind<float, D>> floats_down(hn::Vec<D> x) {
   const hn::Rebind<float, D> f;
   const auto near = hn::DemoteTo(f, x);
-  if (SIGHTLINE_MUTANT(boxes_rounded_to_nearest)) return hn::Store(near, f, to);
+  if (SIGHTLINE_MUTANT(boxes_rounded_to_nearest)) return near;
   const auto wide = hn::PromoteTo(D(), near), below = hn::PromoteTo(D(), next_below(f, near));
-  hn::Store(hn::DemoteTo(f, hn::IfThenElse(hn::Gt(wide, x), below, wide)), f, to);
-}
-HWY_INLINE void store_up(hn::Vec<D> x, float* to) {
-  const hn::Rebind<float, D> f;
-  const auto near = hn::DemoteTo(f, x);
-  if (SIGHTLINE_MUTANT(boxes_rounded_to_nearest)) return hn::Store(near, f, to);
-  const auto wide = hn::PromoteTo(D(), near), above = hn::PromoteTo(D(), next_above(f, near));
-  hn::Store(hn::DemoteTo(f, hn::IfThenElse(hn::Lt(wide, x), above, wide)), f, to);
+  return hn::DemoteTo(f, hn::IfThenElse(hn::Gt(wide, x), below, wide));
 }
 
 template <class Number>
 void lay_out_moved(const GivenBlock<Number>& given, const BlockForm& form, std::size_t count, BoxBlock& out) {
   const D d;
+  const hn::Rebind<float, D> f;
   const std::array<double, 3> from{form.from.x, form.from.y, form.from.z},
       to{form.to.x, form.to.y, form.to.z};
   const bool moved = form.from != WorldPoint{};
@@ -111,8 +105,8 @@ void lay_out_moved(const GivenBlock<Number>& given, const BlockForm& form, std::
         low = sum_down(d, centre, hn::Neg(half)), high = sum_up(d, centre, half);
       }
       if (moved) low = sum_down(d, origin, low), high = sum_up(d, origin, high);
-      store_down(sum_down(d, low, back), &out.values[axis][i]);
-      store_up(sum_up(d, high, back), &out.values[axis + 3][i]);
+      hn::Store(floats_down(sum_down(d, low, back)), f, &out.values[axis][i]);
+      hn::Store(hn::Neg(floats_down(hn::Neg(sum_up(d, high, back)))), f, &out.values[axis + 3][i]);
     }
   }
 }

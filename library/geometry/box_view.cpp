@@ -97,11 +97,12 @@ bool are_valid(const Source& from, bool centred) {
   return centred ? are_valid<Number, true>(from, of) : are_valid<Number, false>(from, of);
 }
 
+// The numbers as they are.
 template <class Number>
-void load_block(const Source& from, GivenBlock<Number>& block) {
+void gather(const Source& from, std::array<std::array<Number, kBlock>, 6>& rows) {
   for (std::size_t k = 0; k < 6; ++k) {
     for (std::size_t i = 0; i < from.count; ++i)
-      block.values[k][i] = load<Number>(from.coordinates[k], from.offset + i * from.stride);
+      rows[k][i] = load<Number>(from.coordinates[k], from.offset + i * from.stride);
   }
 }
 
@@ -209,22 +210,19 @@ bool BoxReader::lies_as_structs(const SphereView& view, std::span<const Sphere>&
 
 BoxSpan BoxReader::lay_out(const BoxView& view, std::size_t first, std::size_t count,
                            const WorldPoint& origin, BoxBlock& out) noexcept {
+  const Source from{view.coordinates_, first * view.stride_, view.stride_, count, view.origin_};
   if (are_float_corners(view) && view.origin_ == origin) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      for (std::size_t i = 0; i < count; ++i)
-        out.values[k][i] = load<float>(view.coordinates_[k], (first + i) * view.stride_);
-    }
+    gather(from, out.values);
     return out.span(count);
   }
   if constexpr (kEveryFormIsQuick) {
-    const Source from{view.coordinates_, first * view.stride_, view.stride_, count, view.origin_};
     const BlockForm form{view.form_ == BoxView::centre_and_half, view.origin_, origin};
     GivenBlock<float> floats;
     GivenBlock<double> doubles;
     if (view.doubles_) {
-      load_block(from, doubles), geometry::lay_out(doubles, form, count, out);
+      gather(from, doubles.values), geometry::lay_out(doubles, form, count, out);
     } else {
-      load_block(from, floats), geometry::lay_out(floats, form, count, out);
+      gather(from, floats.values), geometry::lay_out(floats, form, count, out);
     }
     return out.span(count);
   }

@@ -22,6 +22,7 @@ namespace sightline::measure {
 namespace {
 
 using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;  // to write
 
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kMostMoves = 1'000'000;
@@ -70,20 +71,20 @@ std::size_t raster_state_of(const std::string& name, const std::string& file) {
 
 void save_replay(const std::filesystem::path& file, const Replay& replay) {
   const LostObject& lost = replay.lost;
-  nlohmann::ordered_json document{{"scene", replay.scene},
-                                  {"pvs", replay.pvs},
-                                  {"method", replay.method},
-                                  {"device", replay.device},
-                                  {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
-                                  {"moving", replay.moving},
-                                  {"samples", replay.samples},
-                                  {"moves", lost.moves},
-                                  {"size", {lost.width, lost.height}},
-                                  {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
-                                  {"views", nlohmann::ordered_json::array()}};
+  OrderedJson document{{"scene", replay.scene},
+                       {"pvs", replay.pvs},
+                       {"method", replay.method},
+                       {"device", replay.device},
+                       {"faces", kFaces[static_cast<std::size_t>(replay.raster_state)]},
+                       {"moving", replay.moving},
+                       {"samples", replay.samples},
+                       {"moves", lost.moves},
+                       {"size", {lost.width, lost.height}},
+                       {"lost", {{"object", lost.object}, {"pixels", lost.pixels}}},
+                       {"views", OrderedJson::array()}};
   if (lost.before) document["views"].push_back(camera::camera_json(*lost.before, lost.origin));
   document["views"].push_back(camera::camera_json(lost.camera, lost.origin));
-  io::write_file(file, document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  io::write_file(file, document.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
 }
 
 Replay load_replay(const std::filesystem::path& path,

@@ -188,9 +188,8 @@ std::string footer_html(const measure::Comparison& comparison) {
              "pixel shows it. Kept, tested, draw calls, triangles and excess are means over the views, "
              "losses are sums. ") +
          (comparison.drawn()
-              ? "Times are means of the views' medians; what the GPU culls is timed in frames of its own, "
-                "which "
-                "timing makes longer"
+              ? "Times are means of the views' medians, those of culling on the GPU in slower frames of "
+                "their own"
               : "Times are medians of the views' medians, with the least and the greatest of all repeats") +
          "; methods take turns in one process, warm-up is not counted. Ratios within one run are the result; "
          "absolute times belong to the machine above.</p></footer>\n";
