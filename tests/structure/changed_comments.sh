@@ -6,6 +6,7 @@ cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export CCACHE_DIR=$work/cache
+unset CCACHE_DISABLE
 
 through="$PWD/cmake/through_ccache.sh ccache c++ -MD -Winvalid-pch -Werror"
 cd "$work"
@@ -17,5 +18,6 @@ for comment in first other; do
   $through -x c++-header all.hpp -o all.hpp.gch
   $through -include all.hpp -c source.cpp -o source.o
 done
-[ "$(ccache --print-stats | awk '$1 == "cache_miss" { print $2 }')" = 4 ] # all went through it
+misses=$(ccache --print-stats | awk '$1 == "cache_miss" { print $2 }')
+[ "$misses" = 4 ] || { echo "ccache: expected all four compilations to go through it, it counts $misses" >&2; exit 1; }
 echo "a header whose comments changed is precompiled anew"
