@@ -43,6 +43,10 @@ std::uint32_t take_out(ObjectId* objects, std::uint32_t count, std::span<const s
 Box bounds_of_rows(const float* first, std::size_t step, std::uint32_t count) noexcept;
 /// Lays at most a block of boxes out, an array a coordinate. Returns how far they reach from 0 on any axis.
 float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept;
+/// The same of boxes of any form, about a sector's origin. Returns whether all surely have their centres in
+/// it.
+bool lay_out_in_sector(const BoxView& boxes, std::size_t first, std::size_t count, const WorldPoint& origin,
+                       geometry::BoxBlock& out) noexcept;
 /// Whether all are valid: min <= max within ±kWorldReach.
 [[nodiscard]] bool boxes_are_sound(std::span<const Box> boxes) noexcept;
 /// Of how many handles, from the first on and some at a time, the table of generations, a byte an id, knows

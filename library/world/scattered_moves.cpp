@@ -6,6 +6,7 @@
 
 #include "library/geometry/box_reader.hpp"
 #include "library/world/chunk_map.hpp"
+#include "library/world/chunk_runs.hpp"
 
 #ifndef __wasm__  // where movers have no pages
 namespace sightline::world {
@@ -28,12 +29,9 @@ bool ScatteredMoves::are_scattered(const Strided<const Handle>& handles) noexcep
   return back > kFew;
 }
 
-bool ScatteredMoves::can_copy(const BoxView& boxes) noexcept {
-  return BoxReader::are_float_corners(boxes);
-}
-
-void ScatteredMoves::sort(const Strided<const Handle>& handles, const BoxView& boxes, std::size_t first,
-                          std::size_t count, std::size_t ids) {
+bool ScatteredMoves::sort(const Strided<const Handle>& handles, const BoxView& boxes, const WorldPoint& about,
+                          std::size_t first, std::size_t count, std::size_t ids) {
+  const bool float_corners = BoxReader::are_float_corners(boxes);
   const auto page = [](const Handle& handle) { return handle.index / ChunkMap::kCapacity; };
   next_.assign(ids / ChunkMap::kCapacity + 1, 0);
   handles_.resize(count), boxes_.resize(count);
@@ -49,16 +47,17 @@ void ScatteredMoves::sort(const Strided<const Handle>& handles, const BoxView& b
       handles_[to[i]] = handle;
     }
     std::span<const Box> structs;
-    if (BoxReader::lies_as_structs(boxes, boxes.origin(), structs)) {
+    if (BoxReader::lies_as_structs(boxes, about, structs)) {
       for (std::size_t i = 0; i < some; ++i) boxes_[to[i]] = structs[first + at + i];
       continue;
     }
     geometry::BoxBlock block;
-    BoxReader::lay_out(boxes, first + at, some, boxes.origin(), block);
+    if (!lay_out_in_sector(boxes, first + at, some, about, block) && !float_corners) return false;
     const auto& v = block.values;
     for (std::size_t i = 0; i < some; ++i)
       boxes_[to[i]] = {{v[0][i], v[1][i], v[2][i]}, {v[3][i], v[4][i], v[5][i]}};
   }
+  return true;
 }
 
 }  // namespace sightline::world

@@ -15,12 +15,12 @@ class ScatteredMoves {
 public:
   /// Whether neighbours in the list stand here and there, by some of them.
   [[nodiscard]] static bool are_scattered(const Strided<const Handle>& handles) noexcept;
-  /// Whether boxes can be copied as they are.
-  [[nodiscard]] static bool can_copy(const BoxView& boxes) noexcept;
 
-  /// Copies moves first … first + count - 1, of ids below `ids`.
-  void sort(const Strided<const Handle>& handles, const BoxView& boxes, std::size_t first, std::size_t count,
-            std::size_t ids);
+  /// Copies moves first … first + count - 1, of ids below `ids`, with boxes about this point: the one that
+  /// they are given about in single precision, or else a sector's origin. False, with nothing of use, where a
+  /// box may not have its centre in that sector.
+  bool sort(const Strided<const Handle>& handles, const BoxView& boxes, const WorldPoint& about,
+            std::size_t first, std::size_t count, std::size_t ids);
   [[nodiscard]] std::span<const Handle> handles() const noexcept;
   [[nodiscard]] std::span<const Box> boxes() const noexcept;
 

@@ -18,6 +18,9 @@ using geometry::kBlock;
 
 namespace {
 
+// What lies in it surely has its centre in the sector.
+constexpr auto kInside = static_cast<float>(kSectorSide / 2);
+
 class BlockMover {
 public:
   BlockMover(WorldState& state, const Strided<const Handle>& handles, const BoxView& boxes, Moving& moving)
@@ -32,23 +35,32 @@ public:
     newcomers_ = ChunkMap::kHasPages && moving_.many ? newcomers() : 0;
     begin_sector(s_.objects[handles_[0].index].sector);
     if constexpr (ChunkMap::kHasPages) {
-      if (moving_.many && map_->keeps_pages() && ScatteredMoves::can_copy(boxes_) &&
+      // In single precision boxes are as good about the point that they are given about, or where all is in
+      // one sector.
+      const bool float_corners = BoxReader::are_float_corners(boxes_);
+      if (moving_.many && map_->keeps_pages() && (float_corners || map_->size() == s_.size) &&
           ScatteredMoves::are_scattered(handles_))
-        return move_sorted();
+        return move_sorted(float_corners ? boxes_.origin() : s_.sectors[sector_].origin);
     }
     move_all();
   }
 
 private:
   // As many at once as gives each page some.
-  void move_sorted() {
+  // The point by value: those of sectors move as sectors come.
+  void move_sorted(WorldPoint about) {
     const Strided<const Handle> handles = handles_;
     const BoxView boxes = boxes_;
     const std::size_t at_once = s_.objects.size() / 8;
     ScatteredMoves& sorted = s_.scattered_moves();
     for (std::size_t first = 0; first < handles.size(); first += at_once) {
-      sorted.sort(handles, boxes, first, std::min(at_once, handles.size() - first), s_.objects.size());
-      handles_ = sorted.handles(), boxes_ = BoxView(sorted.boxes(), boxes.origin());
+      const std::size_t count = std::min(at_once, handles.size() - first);
+      if (sorted.sort(handles, boxes, about, first, count, s_.objects.size())) {
+        handles_ = sorted.handles(), boxes_ = BoxView(sorted.boxes(), about);
+      } else {
+        const auto* const at = static_cast<const std::byte*>(handles.data()) + first * handles.stride();
+        handles_ = {at, count, handles.stride()}, boxes_ = boxes.part(first, count);
+      }
       world_first_ = kNoBlock;
       move_all();
     }
@@ -197,16 +209,7 @@ private:
 
   // Returns whether all surely have their centres in the sector.
   bool read_boxes(std::uint32_t count) {
-    const WorldPoint& origin = s_.sectors[sector_].origin;
-    std::span<const Box> structs;
-    if (BoxReader::lies_as_structs(boxes_, origin, structs))
-      return lay_out_structs(structs.subspan(first_, count), block_) < kInside;
-    BoxReader::lay_out(boxes_, first_, count, origin, block_);
-    unsigned outside = 0;
-    for (const auto& side : block_.values) {
-      for (std::uint32_t i = 0; i < count; ++i) outside |= unsigned{!(std::fabs(side[i]) < kInside)};
-    }
-    return outside == 0;
+    return lay_out_in_sector(boxes_, first_, count, s_.sectors[sector_].origin, block_);
   }
 
   // What objects need is asked for in three steps, each when the one before has arrived.
@@ -280,8 +283,6 @@ private:
   static constexpr std::size_t kPastCache = 400'000;  // boxes of 24 bytes
   bool past_cache_;
   std::size_t first_ = 0;
-  // What lies in it surely has its centre in the sector.
-  static constexpr auto kInside = static_cast<float>(kSectorSide / 2);
   static constexpr float kJustInside = kInside - 0.001f;
   static constexpr Box kInSector{{-kJustInside, -kJustInside, -kJustInside},
                                  {kJustInside, kJustInside, kJustInside}};
@@ -305,6 +306,19 @@ private:
 };
 
 }  // namespace
+
+bool lay_out_in_sector(const BoxView& boxes, std::size_t first, std::size_t count, const WorldPoint& origin,
+                       geometry::BoxBlock& out) noexcept {
+  std::span<const Box> structs;
+  if (BoxReader::lies_as_structs(boxes, origin, structs))
+    return lay_out_structs(structs.subspan(first, count), out) < kInside;
+  BoxReader::lay_out(boxes, first, count, origin, out);
+  unsigned outside = 0;
+  for (const auto& side : out.values) {
+    for (std::size_t i = 0; i < count; ++i) outside |= unsigned{!(std::fabs(side[i]) < kInside)};
+  }
+  return outside == 0;
+}
 
 ScatteredMoves& WorldState::scattered_moves() {
   if (!scattered) scattered = std::make_unique<ScatteredMoves>();

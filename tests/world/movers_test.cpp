@@ -7,147 +7,13 @@
 #include <map>
 
 #include "library/world/world_state.hpp"
-#include "support/random_views.hpp"
-#include "support/world_twin.hpp"
-#include "workbench/scene/random.hpp"
+#include "world/crowd.hpp"
 
 namespace sightline {
 namespace {
 
+using namespace test;
 using scene::Random;
-using test::wide;
-
-std::size_t movers_of(const World& world) {
-  std::size_t count = 0;
-  for (const world::Sector& sector : WorldAccess::state(world).sectors)
-    count += sector.map ? sector.map->movers() : 0;
-  return count;
-}
-
-std::size_t sectors_with_pages(const World& world) {
-  std::size_t count = 0;
-  for (const world::Sector& sector : WorldAccess::state(world).sectors)
-    count += sector.map && sector.map->keeps_pages();
-  return count;
-}
-
-bool keeps_pages(const World& world) {
-  return sectors_with_pages(world) > 0;
-}
-
-void expect_sound(const World& world) {
-  for (const world::Sector& sector : WorldAccess::state(world).sectors) {
-    if (!sector.map) continue;
-    const Status sound = sector.map->check();
-    ASSERT_TRUE(sound) << sound.message() << " " << sound.index();
-  }
-}
-
-constexpr Box kOneSector{{-1000, -50, -1000}, {1000, 50, 1000}},
-    kTwoSectors{{-1000, -50, -1000}, {1800, 50, 1000}};
-
-// A world and what stands in it, frame by frame.
-class Crowd {
-public:
-  Crowd(std::uint32_t seed, const Box& around) : random_(seed), around_(around) {}
-
-  void insert(std::size_t count) {
-    std::vector<WorldBox> boxes;
-    for (std::size_t i = 0; i < count; ++i) boxes.push_back(wide(test::random_box(random_, around_)));
-    std::vector<Handle> handles(count);
-    ASSERT_TRUE(world_.insert(boxes, handles));
-    for (std::size_t i = 0; i < count; ++i) {
-      ASSERT_TRUE(twin_.emplace(handles[i].index, boxes[i]).second);
-      standing_.push_back(handles[i]);
-    }
-  }
-
-  // Those from first on, in the order in which they stand in the list; after `round` of it from its begin.
-  void move(std::size_t first, std::size_t count, float by) { move(first, count, by, standing_.size()); }
-  void move(std::size_t first, std::size_t count, float by, std::size_t round) {
-    std::vector<Handle> handles;
-    std::vector<Box> boxes;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Handle handle = standing_[i % round];
-      const WorldBox& old = twin_[handle.index];
-      const auto x = static_cast<float>(old.min.x), y = static_cast<float>(old.min.y),
-                 z = static_cast<float>(old.min.z);
-      const Vec3 at = by > 0 ? Vec3{x + random_.between(-by, by), y, z + random_.between(-by, by)}
-                             : random_.inside(around_);
-      const auto side = [](double low, double high) { return static_cast<float>(high - low); };
-      boxes.push_back({at,
-                       {at.x + side(old.min.x, old.max.x), at.y + side(old.min.y, old.max.y),
-                        at.z + side(old.min.z, old.max.z)}});
-      handles.push_back(handle);
-    }
-    Boxes arrays;
-    for (const Box& box : boxes) arrays.push_back(box);
-    ASSERT_TRUE(world_.move(handles, in_arrays_ ? arrays.view() : BoxView(boxes)));
-    for (std::size_t i = 0; i < handles.size(); ++i) twin_[handles[i].index] = wide(boxes[i]);
-  }
-
-  // Whether boxes are given as an array a coordinate, or as structs.
-  void give_arrays(bool arrays) { in_arrays_ = arrays; }
-
-  // Lists them in another order.
-  void shuffle() {
-    for (std::size_t i = standing_.size(); i > 1; --i)
-      std::swap(standing_[i - 1], standing_[random_.below(static_cast<std::uint32_t>(i))]);
-  }
-
-  // Lists others first, as many, in the order of their ids.
-  void choose(std::size_t count) {
-    shuffle();
-    std::sort(standing_.begin(), standing_.begin() + static_cast<std::ptrdiff_t>(count),
-              [](Handle a, Handle b) { return a.index < b.index; });
-  }
-
-  void remove(std::size_t count) {
-    std::vector<Handle> handles;
-    for (; count > 0 && !standing_.empty(); --count) {
-      std::swap(standing_[random_.below(static_cast<std::uint32_t>(standing_.size()))], standing_.back());
-      handles.push_back(standing_.back());
-      twin_.erase(standing_.back().index);
-      standing_.pop_back();
-    }
-    ASSERT_TRUE(world_.remove(handles));
-  }
-
-  void expect_right() {
-    std::vector<WorldView> views;
-    for (std::size_t v = 1 + random_.below(3); v > 0; --v)
-      views.push_back({test::random_view(random_, around_), {}});
-    test::expect_right(world_, culler_, twin_, views, 0.02);
-  }
-
-  // To within what sectors round them by.
-  void expect_boxes() {
-    for (const Handle handle : standing_) {
-      const WorldBox is = world_.box(handle), &was = twin_[handle.index];
-      ASSERT_NEAR(is.min.x, was.min.x, 1e-3) << handle.index;
-      ASSERT_NEAR(is.max.z, was.max.z, 1e-3) << handle.index;
-    }
-  }
-
-  void cull() {
-    std::vector<ObjectId> visible(cull_capacity(world_));
-    (void)test::cull(culler_, world_, test::cull_views(std::array{WorldView{*make_view({}, 64, 64), {}}}),
-                     visible);
-  }
-
-  [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] std::size_t size() const { return standing_.size(); }
-  Random& random() { return random_; }
-
-private:
-  Random random_;
-  Box around_;
-  bool in_arrays_ = false;
-  World world_;
-  Culler culler_;
-  std::map<ObjectId, WorldBox> twin_;
-  std::vector<Handle> standing_;
-};
 
 TEST(Movers, EqualBruteForceAfterTenThousandRandomOperations) {
   Crowd crowd(31, kTwoSectors);
@@ -323,7 +189,7 @@ TEST(Movers, OfThoseListedAgainInNoOrderTheLastCounts) {
     crowd.insert(6000);
     for (int frame = 0; frame < 12; ++frame) {
       crowd.shuffle();
-      crowd.give_arrays(frame % 2 == 1);
+      crowd.give(kForms[frame % kForms.size()]);
       crowd.move(0, crowd.size() / 2, 2);
       crowd.move(0, crowd.size(), 2, 200);
       crowd.expect_boxes();
@@ -333,6 +199,26 @@ TEST(Movers, OfThoseListedAgainInNoOrderTheLastCounts) {
     EXPECT_TRUE(keeps_pages(crowd.world()));
     expect_sound(crowd.world());
     crowd.expect_right();
+  }
+}
+
+// Sorted in single precision about their sector, as long as all stay in it; then as they are.
+TEST(Movers, ThoseListedInNoOrderMayLeaveTheirSector) {
+  for (const Form form : kForms) {
+    Crowd crowd(46, kOneSector);
+    crowd.give(form);
+    crowd.insert(6000);
+    for (int frame = 0; frame < 6; ++frame) {
+      crowd.shuffle();
+      if (frame == 4) crowd.go({{-1000, -50, -1000}, {2e6f, 50, 1000}});
+      crowd.move(0, crowd.size(), frame < 4 ? 2.0f : 0.0f);
+      EXPECT_EQ(WorldAccess::state(crowd.world()).sector_of_cell.size() > 1, frame >= 4);
+      crowd.expect_boxes();
+      expect_sound(crowd.world());
+      crowd.expect_right();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_TRUE(keeps_pages(crowd.world()));
   }
 }
 
