@@ -61,7 +61,7 @@ public:
   // Prepares a cull of the sectors that the state's views may see.
   LaneChoice begin(const WorldLevels& levels, const CullerState& state, const WorldView& view,
                    const LevelOptions& options, bool faded) {
-    if (cull_ == std::numeric_limits<std::uint16_t>::max()) forget_culls();
+    if (cull_ == std::numeric_limits<std::uint16_t>::max()) renumber_culls();
     const bool any_moved = !options.cut && find_moved(*state.world);
     // Where nothing is remembered no cull is the last.
     const std::uint16_t last = options.cut ? std::uint16_t{0} : cull_;
@@ -125,6 +125,9 @@ private:
     const glm::dvec3 eye = origin + glm::dvec3(glm::inverse(geometry::to_double(view.view.world_to_eye))[3]);
     if (!SIGHTLINE_MUTANT(levels_of_a_standing_eye)) travelled_ += glm::distance(eye, eye_);
     eye_ = eye;
+    // In the length of a path beyond this small steps would be lost.
+    constexpr double kLongestPath = 1e7;
+    if (travelled_ > kLongestPath) travelled_ = 0, ++epochs_;
   }
 
   void make_room(const CullerState& state) {
@@ -197,14 +200,16 @@ private:
     return moved != 0;
   }
 
-  void forget_culls() {
-    std::fill(moved_.begin(), moved_.end(), MovedLevel{});
+  // What was seen at the last cull was seen at the first, all else at none.
+  void renumber_culls() {
+    const auto renumber = [last = cull_](std::uint16_t& cull) { cull = cull == last; };
+    for (MovedLevel& level : moved_) renumber(level.cull);
     for (SectorLevels& sector : sectors_) {
-      sector.cull = 0;
+      renumber(sector.cull);
       for (PoolLevels& pool : sector.pools)
-        for (LaneState& state : pool.states) state.cull = 0;
+        for (LaneState& state : pool.states) renumber(state.cull);
     }
-    cull_ = 0;
+    cull_ = 1;
   }
 
   std::vector<SectorLevels> sectors_;  // by the world's sector

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <span>
+#include <utility>
 
 #include "library/geometry/linear.hpp"
 #include "support/cull.hpp"
@@ -243,33 +244,76 @@ TEST(Levels, OfAWalkAreThoseOfBruteForce) {
   EXPECT_LT(unknown, judged / 100);
 }
 
+// A box about the origin of 50 pixels' size some 43 m away, which has another level where it is smaller.
+class OneBox {
+public:
+  OneBox() {
+    const std::array boxes{Box{{-1, -1, -1}, {1, 1, 1}}};
+    std::array<Handle, 1> handle;
+    EXPECT_TRUE(world_.insert(BoxView(boxes), handle));
+    const std::array sizes{50.0f};
+    const std::array table{*world_.add_levels(sizes)};
+    EXPECT_TRUE(world_.set_levels(handle, std::span<const LevelTableId>(table)));
+    ids_.resize(cull_capacity(world_)), levels_.resize(ids_.size());
+  }
+
+  // From z metres before a place; of what is not seen there 255.
+  std::uint32_t level(Culler& culler, float z, const LevelOptions& options, const WorldPoint& place = {}) {
+    const CullView view{.view = {*make_view({.eye = {0, 0, z}}, 1280, 720), place}};
+    const CullOptions all{.levels = options};
+    return culler.cull(world_, {&view, 1}, all, {ids_, {}, levels_})->count == 1 ? levels_[0] : 255u;
+  }
+
+private:
+  World world_;
+  std::vector<ObjectId> ids_;
+  std::vector<std::uint8_t> levels_;
+};
+
 // A camera that trembles at a limit.
 TEST(Levels, DoNotFlickerWhereTheyAreHeld) {
-  World world;
-  const std::array boxes{Box{{-1, -1, -1}, {1, 1, 1}}};
-  std::array<Handle, 1> handle;
-  ASSERT_TRUE(world.insert(BoxView(boxes), handle));
-  const std::array sizes{50.0f};
-  const std::array table{*world.add_levels(sizes)};
-  ASSERT_TRUE(world.set_levels(handle, std::span<const LevelTableId>(table)));
-  std::vector<ObjectId> ids(cull_capacity(world));
-  std::vector<std::uint8_t> levels(ids.size());
+  OneBox box;
   const auto changes = [&](float hysteresis) {
     Culler culler;
     std::size_t count = 0;
-    std::uint8_t last = 0;
+    std::uint32_t last = 0;
     for (int frame = 0; frame < 100; ++frame) {
-      const float z = 43.2f + (frame % 2 == 0 ? 0.5f : -0.5f);
-      const CullView view{.view = {*make_view({.eye = {0, 0, z}}, 1280, 720), {}}};
-      const CullOptions options{.levels = {.hysteresis = hysteresis}};
-      EXPECT_EQ(culler.cull(world, {&view, 1}, options, {ids, {}, levels})->count, 1u);
-      count += frame > 0 && levels[0] != last;
-      last = levels[0];
+      const std::uint32_t level =
+          box.level(culler, 43.2f + (frame % 2 == 0 ? 0.5f : -0.5f), {.hysteresis = hysteresis});
+      EXPECT_LE(level, 1u);
+      const bool other = level != std::exchange(last, level);
+      count += frame > 0 && other;
     }
     return count;
   };
   EXPECT_EQ(changes(0), 99u);
   EXPECT_LE(changes(0.1f), 1u);
+}
+
+// Culls are counted in 16 bits.
+TEST(Levels, AreHeldForAnyNumberOfCulls) {
+  OneBox box;
+  Culler culler, fresh;
+  const LevelOptions held{.hysteresis = 0.1f};
+  ASSERT_EQ(box.level(fresh, 43.7f, held), 1u);
+  ASSERT_EQ(box.level(culler, 40, held), 0u);
+  for (int cull = 0; cull < 140'000; ++cull) ASSERT_EQ(box.level(culler, 43.7f, held), 0u) << cull;
+}
+
+// However far the eye has come, small steps change them.
+TEST(Levels, FollowAnEyeThatHasComeFar) {
+  OneBox box;
+  Culler culler, fresh;
+  for (int jump = 0; jump < 4000; ++jump)
+    box.level(culler, 40, {.cut = true}, {jump % 2 == 0 ? 9e10 : 0.0, 0, 0});
+  std::size_t changes = 0;
+  std::uint32_t last = 0;
+  for (float z = 40; z < 46; z += 0.005f) {
+    const std::uint32_t level = box.level(culler, z, {});
+    ASSERT_EQ(level, box.level(fresh, z, {.cut = true})) << z;
+    changes += level != std::exchange(last, level);
+  }
+  EXPECT_EQ(changes, 1u);
 }
 
 // With occlusion in one call the objects that are left have the levels that they have without.
