@@ -159,9 +159,11 @@ void add_snapshots(py::module_& m, py::class_<Guarded<World>>& world) {
           py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 3200.0)
       .def("work", &work,
            "Checks one of the wanted sectors and copies it, on any thread; False where none waits.")
-      .def("bring_in", &bring_in,
-           "update() and work() until all that the views touch is in, as far as the budget goes.",
-           py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 0.0)
+      .def(
+          "bring_in", &bring_in,
+          "update() and work() until all that the views touch is in, as far as the budget goes, and nothing\n"
+          "else: `ahead` is not read.",
+          py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 0.0)
       .def("sector", &sector, "bounds, objects, memory, first_byte, state and error of one of them.",
            py::arg("index"))
       .def("stand_out", &stand_out, "bool (n,): whether the object may be one that is out.",

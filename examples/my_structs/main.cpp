@@ -40,7 +40,7 @@ int main() {
 
     const auto drawn = culler.cull(world, {.view = {*camera, {}}}, ids);
     if (!drawn) return std::fprintf(stderr, "%s\n", drawn.error().message()), 2;
-    // Here you draw them: an id is the thing's place, as all were inserted at once into an empty world.
+    // Here you draw them: an id is the thing's place, as all were inserted at once into a new world.
     float nearest = 1e9f;
     for (const std::uint32_t id : std::span(ids).first(drawn->count))
       nearest = std::min(nearest, 10 - things[id].position[2]);

@@ -21,6 +21,6 @@ culler = sightline.Culler()
 for frame in range(3):
     things["position"] += things["speed"] / 60
     world.move(things["handle"], boxes)
-    ids = culler.cull(world, camera)  # ids are rows: all were inserted at once into an empty world
+    ids = culler.cull(world, camera)  # ids are rows: all were inserted at once into a new world
     nearest = 10 - things["position"][ids, 2].max()
     print(f"frame {frame}: draw {len(ids)} of {len(world)} things, the nearest {nearest:.2f} m ahead")

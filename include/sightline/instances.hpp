@@ -141,8 +141,8 @@ struct InstanceCullResult {
   std::uint64_t objects = 0;                    ///< in all ranges together
   std::uint64_t tested = 0;                     ///< objects tested one by one, and instances
   std::uint64_t nodes_visited = 0;              ///< regions, groups and chunks looked at
-  /// Objects that occlusion dropped, as CullResult counts them, but for those of instances that it dropped
-  /// whole.
+  /// Objects that occlusion dropped, as CullResult counts them; an instance that it dropped whole counts as
+  /// one.
   std::uint64_t culled_occlusion = 0;
 };
 

@@ -13,7 +13,7 @@ struct JobSystem {
   void (*run)(void* user, std::uint32_t count, void (*job)(void* data, std::uint32_t index),
               void* data) = nullptr;
   void* user = nullptr;       ///< handed to run
-  std::uint32_t threads = 1;  ///< how many jobs to make; 1 … kMaxJobs
+  std::uint32_t threads = 1;  ///< how many jobs a call makes at most; 1 … kMaxJobs
 };
 /// The most jobs that a call is split into.
 inline constexpr std::uint32_t kMaxJobs = 64;

@@ -78,7 +78,7 @@ public:
 
   /// Takes the boxes, in metres about `origin`, rounded outwards to single precision there.
   /// Errors: bad_argument (not sound, an origin beyond kWorldReach), bad_box, too_many (beyond 2³⁰). Cost: n
-  /// log n, some 300 ns a box. Allocates: about 70 bytes a box.
+  /// log n, some 300 ns a box. Allocates: about 90 bytes a box, and half of that again while it builds.
   Status build(const BoxView& boxes, const WorldPoint& origin = {});
   /// Takes over moved boxes, as many as were built with: the tree stays, its bounds become tight again. Rays
   /// get slower where boxes move far; build anew then. Errors: bad_argument (not sound, another number),
@@ -87,18 +87,20 @@ public:
   /// How many boxes it holds.
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /// Writes, ray by ray, the box that it meets first (kNoObject: none; of equally near ones the lowest) and
-  /// the distance to it in units of its direction (0 where it starts inside; -1 for a miss): the same to the
-  /// bit as testing all. `distances` may be empty. Neighbouring rays that point alike are fastest. Errors:
-  /// buffer_too_small where a span is shorter than `rays`; bad_argument for options out of range. A ray that
-  /// is not finite or has no direction misses. Cost: 20 to 50 ns a ray among thousands of boxes. Threads: one
-  /// at a time, which the caller's jobs help. Allocates: until it has seen as many rays.
+  /// Writes, ray by ray, in metres about the boxes' origin, the box that it meets first (kNoObject: none; of
+  /// equally near ones the lowest) and the distance to it in units of its direction (0 where it starts
+  /// inside; -1 for a miss): the same to the bit as testing all. `distances` may be empty. Neighbouring rays
+  /// that point alike are fastest. Errors: buffer_too_small where a span is shorter than `rays`; bad_argument
+  /// for options out of range. A ray that is not finite or has no direction misses. Cost: 20 to 50 ns a ray
+  /// among thousands of boxes. Threads: one at a time, which the caller's jobs help. Allocates: until it has
+  /// seen as many rays.
   Status cast(std::span<const Ray> rays, std::span<ObjectId> objects, std::span<float> distances = {},
               const JobSystem& jobs = {});
   /// Writes the boxes that at least one of columns × rows rays through the view's image meets first,
   /// ascending, and returns how many: an approximation of what is visible (Ye et al. 2023), closer the more
-  /// rays. `visible` has size() elements. The view sees the world about the boxes' origin. Errors: bad_view;
-  /// bad_argument for no rays or more than 2²⁴; buffer_too_small. Cost, Threads, Allocates: as cast.
+  /// rays. `visible` has size() elements. `view.origin` is the one that the boxes were built with. Errors:
+  /// bad_view; bad_argument for no rays or more than 2²⁴; buffer_too_small. Cost, Threads, Allocates: as
+  /// cast.
   Result<std::size_t> visible_set(const WorldView& view, std::uint32_t columns, std::uint32_t rows,
                                   std::span<ObjectId> visible, const JobSystem& jobs = {});
 

@@ -4,8 +4,9 @@
 //   const sightline::Light sun{.direction = {1, -2, 0.5f}};
 //   const auto map = sightline::shadow_view(sun, camera, {.far_plane = 80}, 2048);
 //   sightline::ShadowCasters casters;
-//   casters.begin(*map, camera, {.far_plane = 80});
-//   culler.cull(world, {{{.view = camera}, {.view = *map, .casters = &casters}}}, {}, {ids, masks});
+//   if (!casters.begin(*map, camera, {.far_plane = 80})) …
+//   const auto drawn = culler.cull(world, {{{.view = camera}, {.view = *map, .casters = &casters}}}, {},
+//   {ids, masks});
 #pragma once
 
 #include <cstddef>

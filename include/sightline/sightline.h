@@ -1,5 +1,5 @@
 /** @file
- * The C API of Sightline: all of the library, usable from C, C++, C#, Rust and whatever else calls C.
+ * The C API of Sightline: the library, usable from C, C++, C#, Rust and whatever else calls C.
  *
  *   sightline_world* world = sightline_world_create();
  *   sightline_box_view boxes = sightline_boxes_centre_half_float(t->position, t->half, sizeof *t, n);
@@ -8,11 +8,10 @@
  *
  * Refusals. A function that can fail returns a status, changes nothing and writes nothing where it fails;
  * sightline_last_error() says why. NULL where a pointer is needed is SIGHTLINE_BAD_ARGUMENT, and so is a
- * count of more than memory can hold. Nothing that is refused allocates. Running out of memory is no status:
- * it ends the process.
+ * count of more than memory can hold. Running out of memory is no status: it ends the process.
  *
- * Objects. What `_create` makes, and what a function hands out through a pointer to a pointer, is the
- * caller's, who gives it to the `_destroy` of its type; every `_destroy` takes NULL.
+ * Objects. What `_create` makes, and an object that a function hands out through a pointer to a pointer, is
+ * the caller's, who gives it to the `_destroy` of its type; every `_destroy` takes NULL.
  *
  * Versions. A struct that begins with `struct_size` is made by the function beside it, which fills in the
  * size and the defaults; members are added at its end. The library takes a struct of an older header, whose

@@ -4,8 +4,8 @@
 //   sightline::World world;
 //   sightline::Result<sightline::WorldStream> stream = sightline::WorldStream::open(mapped_file, world);
 //   std::thread loader([&] { while (!done) if (!stream->work()) wait_a_moment(); });
-//   for (;;) {                                                  // a frame
-//     stream->update({&view, 1}, {.budget = 512u << 20});       // what came, goes and is to come
+//   for (;;) {                                                           // a frame
+//     auto report = stream->update({&view, 1}, {.budget = 512u << 20});  // what came, goes and is to come
 //     culler.cull(world, view, ids);
 //   }
 #pragma once
@@ -122,8 +122,8 @@ public:
   /// Checks one of the wanted sectors and copies it, for the next update() to put in; false where none
   /// waits. Cost: some 5 to 10 ns an object. Threads: any, several at once. Allocates: the sector.
   bool work();
-  /// update() and work() until all that the views touch is in, as far as the budget goes: for the first view,
-  /// or after a cut. Errors, Allocates: as update(). Cost: both.
+  /// update() and work() until all that the views touch is in, as far as the budget goes, and nothing else:
+  /// `ahead` is not read. For the first view, or after a cut. Errors, Allocates: as update(). Cost: both.
   Result<StreamReport> bring_in(std::span<const CullView> views, const StreamOptions& options = {});
 
 private:

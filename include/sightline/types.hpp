@@ -1,5 +1,6 @@
 // The plain aggregates every other header speaks in. No maths library is imposed on an engine.
-// World space is right-handed, y up, in metres. Matrices are column-major and multiply columns: there is one
+// World space is right-handed, y up, in metres: a World of centimetres falls into far too many sectors, while
+// which axis is up makes no difference to it. Matrices are column-major and multiply columns: there is one
 // matrix type, and one order.
 #pragma once
 

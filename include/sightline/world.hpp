@@ -94,8 +94,8 @@ public:
   /// Puts boxes.size() objects in and writes their handles. All have one length: a handle, and an element of
   /// each column given, a box. Handles, too, may be members of the caller's structs. Errors: bad_argument
   /// (lengths, strides, pointers), bad_box (not min <= max within ±kWorldReach), too_many (beyond 2³¹
-  /// objects). Cost: linear, some 400 ns an object. Allocates: about 53 bytes an object where a sector's come
-  /// in bulk, up to 70 where they come few at a time; less for ids used again.
+  /// objects). Cost: linear, some 400 to 600 ns an object. Allocates: about 53 bytes an object where a
+  /// sector's come in bulk, up to 70 where they come few at a time; less for ids used again.
   Status insert(const BoxView& boxes, Strided<Handle> handles, const ObjectColumns& columns);
   /// The same of objects that have no columns. Errors, Cost, Allocates: the same.
   Status insert(const BoxView& boxes, Strided<Handle> handles);
@@ -296,7 +296,8 @@ struct CullResult {
   /// that layers and distances leave, those that planes or min_area would drop, too.
   std::uint64_t culled_occlusion = 0;
   /// With automatic occlusion, in the unit of CullCosts: the work of this cull and of drawing what it left,
-  /// each object once for every bit of its mask; and that of culling by frustum alone.
+  /// each object once for every bit of its mask; and that of a cull by frustum alone and of drawing all that
+  /// it leaves.
   double cost = 0, frustum_cost = 0;
 };
 
@@ -330,10 +331,11 @@ public:
   ///
   /// With Occlusion::automatic what the world's objects carry is drawn, as far as that pays, and what lies
   /// behind it is left out, too. Where that does not pay it costs little, in counted work × options.costs: no
-  /// frame costs more than 1.05 × frustum culling alone, and all of this culler's frames together no more
-  /// than 1.02 ×. What was seen the last time, and so is worth drawing, is kept for each place in `views`: a
-  /// culler should see the same cameras at the same places. Errors, too: bad_argument for costs out of range,
-  /// or where a view brings a buffer. Allocates, too: until it has drawn its largest image and mesh.
+  /// frame, culled and drawn, costs more than 1.05 × one by frustum alone, and all of this culler's frames
+  /// together no more than 1.02 ×. What was seen the last time, and so is worth drawing, is kept for each
+  /// place in `views`: a culler should see the same cameras at the same places. Errors, too: bad_argument for
+  /// costs out of range, or where a view brings a buffer. Allocates, too: until it has drawn its largest
+  /// image and mesh.
   ///
   /// The same for one view, without options. Errors, Cost, Threads, Allocates: the same.
   Result<CullResult> cull(const World& world, const CullView& view, std::span<std::uint32_t> ids) noexcept {

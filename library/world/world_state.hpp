@@ -21,7 +21,7 @@ namespace sightline::world {
 /// decimal distances from there on, so that a world shifted by one keeps its bits.
 inline constexpr double kSectorSide = 3200;
 
-// One level would do for culling; with some, large objects stay out of the small ones' groups.
+// A sector is one region; methods on a device split the ground further.
 inline constexpr auto kHalfSectorSide = static_cast<float>(kSectorSide / 2);
 inline constexpr ChunkMapOptions kSectorMap{{{-kHalfSectorSide, -kHalfSectorSide, -kHalfSectorSide},
                                              {kHalfSectorSide, kHalfSectorSide, kHalfSectorSide}},

@@ -60,7 +60,7 @@ export class World extends CoreWorld {
     check(need('world_remove_occluder')(pointerOf('World', this), named('removeOccluder', occluder)));
   }
   /** Gives each object an occluder, switched on, which hides what lies behind it from culls with automatic occlusion.
-   * `transforms`: 16 numbers each, column-major and affine, from the occluder's space to metres about the object's origin; the
+   * `transforms`: 16 numbers each, column-major and affine, from the occluder's space to metres about its entry of `origins`; the
    * identity unless given. `origins`: three numbers each, or three for all; 0 unless given. Call it again when objects have
    * moved: what reaches out of an object's box is not drawn. `noOccluder` takes away what an object carried. */
   setOccluders(handles: Handles, occluders: OccluderId | Input<Uint32Array>, transforms?: Input<Float32Array>,

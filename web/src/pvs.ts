@@ -1,5 +1,5 @@
 // Visible sets that were baked for the cells of a grid, as arrays. (The library's files are packed with zstd, which
-// browsers do not unpack; whoever bakes writes the arrays, see docs/web.md.)
+// browsers do not unpack: read them with Python's read_pvs and write its arrays.)
 import { refuse, refuseProxy, said } from './errors.js';
 import { fields, lengthOf, readNumbers, truly } from './memory.js';
 

@@ -39,7 +39,7 @@ export class World extends Owned {
     super('World', 'world_create', 'world_destroy');
   }
 
-  /** Puts objects in. Returns their handles. Linear: some 0.3 µs an object. */
+  /** Puts objects in. Returns their handles. Linear: some 0.5 µs an object. */
   insert(boxes: Boxes, columns?: Columns): Float64Array {
     return calling((call) => {
       const { data, count, args } = readBoxes('insert', boxes), names = ['layers', 'values'] as const;
@@ -51,7 +51,8 @@ export class World extends Owned {
       return new Float64Array(buffer(), out, count).slice();
     });
   }
-  /** Gives each object a new box; one that is listed twice keeps the last. */
+  /** Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with all that moved, or with
+   * nothing: what has come to rest is filed again a part a frame. Listing objects in the same order each frame is fastest. */
   move(handles: Handles, boxes: Boxes): void {
     calling((call) => {
       const { data, count, args } = readBoxes('move', boxes);
@@ -179,12 +180,13 @@ export interface Culled {
   readonly ids: Uint32Array;
   /** Bit v: view v may see the object. */
   readonly masks: Uint8Array;
-  /** Objects tested one by one, nodes visited, and objects that only occlusion dropped. */
+  /** Objects tested one by one, nodes visited, and objects that occlusion dropped, summed over the views: of a chunk that is
+   * hidden whole all that layers leave, those that planes or `minArea` would drop, too. */
   readonly tested: number;
   readonly nodesVisited: number;
   readonly culledOcclusion: number;
-  /** With automatic occlusion, in the unit of the costs: the work of this cull and of drawing what it left; and that of
-   * culling by frustum alone. */
+  /** With automatic occlusion, in the unit of the costs: the work of this cull and of drawing what it left; and that of a
+   * cull by frustum alone and of drawing all that it leaves. */
   readonly cost: number;
   readonly frustumCost: number;
 }
@@ -201,8 +203,9 @@ export class Culler extends Owned {
     super('Culler', 'culler_create', 'culler_destroy');
   }
 
-  /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the world's history
-   * alone. Nothing that is visible anywhere on the image is left out, but by `layers` and `minArea`. */
+  /** What at least one of 1 to 8 views may see, and which views see it, in an order that depends on the calls so
+   * far alone, culls between moves among them. Nothing that is visible anywhere on the image is left out, but by `layers` and
+   * `minArea`; by a buffer for `centres`, nothing that is visible at a pixel's centre. */
   cull(world: World, views: CullView | readonly CullView[], options?: CullOptions): Culled {
     void pointerOf('Culler', this); // a Proxy of it could call nothing that is private
     const count = this.#run(world, viewList(views), options);

@@ -25,7 +25,7 @@ typedef struct sightline_occluder_mesh sightline_occluder_mesh;
  * NULL and 0: both sides of each. Triangles that join to fewer than three corners are left out. Errors:
  * BAD_ARGUMENT; BAD_MESH for indices that are not a multiple of three or out of range (the index says which),
  * for positions that are not finite (which position) and for another number of sides; TOO_MANY. Cost: n log
- * n, some 2 us a triangle: build once. Allocates: about 500 bytes a triangle. */
+ * n, some 2 us a triangle: build once. Allocates: about 300 bytes a triangle. */
 SIGHTLINE_API sightline_status sightline_occluder_mesh_create(const float* positions, size_t position_count,
                                                               const uint32_t* indices, size_t index_count,
                                                               const uint8_t* sides, size_t side_count,
@@ -125,7 +125,7 @@ typedef struct sightline_occlusion sightline_occlusion;
 SIGHTLINE_API sightline_occlusion* sightline_occlusion_create(void);
 SIGHTLINE_API void sightline_occlusion_destroy(sightline_occlusion* occlusion);
 /** Empties it and takes the view, of at most 8192 pixels a side. Errors: BAD_ARGUMENT, BAD_VIEW. Cost: grows
- * with the image's tiles of 8 x 8 pixels. Allocates: 4 bytes a pixel and 8 a tile, where the view is larger
+ * with the image's tiles of 8 x 8 pixels. Allocates: 4 bytes a pixel and 24 a tile, where the view is larger
  * than any before. */
 SIGHTLINE_API sightline_status sightline_occlusion_begin(sightline_occlusion* occlusion,
                                                          const sightline_view* view);

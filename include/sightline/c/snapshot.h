@@ -102,8 +102,8 @@ SIGHTLINE_API sightline_status sightline_world_stream_update(sightline_world_str
  * Cost: some 5 to 10 ns an object. Threads: any, several at once, also beside all other calls. Allocates: the
  * sector. */
 SIGHTLINE_API int sightline_world_stream_work(sightline_world_stream* stream);
-/** Both until all that the views touch is in, as far as the budget goes: for the first view. Errors: as
- * sightline_world_stream_update(). Cost, Allocates: both. */
+/** Both until all that the views touch is in, as far as the budget goes, and nothing else (`ahead` is not
+ * read): for the first view. Errors: as sightline_world_stream_update(). Cost, Allocates: both. */
 SIGHTLINE_API sightline_status sightline_world_stream_bring_in(sightline_world_stream* stream,
                                                                const sightline_cull_view* views,
                                                                size_t view_count,

@@ -53,7 +53,8 @@ SIGHTLINE_API void sightline_world_destroy(sightline_world* world);
 
 /** Puts boxes->count objects in and writes their handles. `columns` may be NULL; all have one length. Errors:
  * BAD_ARGUMENT (pointers, strides, lengths), BAD_BOX (not min <= max within 1e11 m of 0), TOO_MANY (beyond
- * 2^31 objects). Cost: linear, some 400 ns an object. Allocates: about 60 bytes an object. */
+ * 2^31 objects). Cost: linear, some 400 to 600 ns an object. Allocates: 53 to 70 bytes an
+ * object. */
 SIGHTLINE_API sightline_status sightline_world_insert(sightline_world* world, const sightline_box_view* boxes,
                                                       const sightline_handles* handles,
                                                       const sightline_object_columns* columns);
@@ -137,9 +138,10 @@ SIGHTLINE_API sightline_status sightline_world_set_occluding(sightline_world* wo
                                                              const uint8_t* on, size_t count);
 /** Gives an object all of its triangles, three points of three floats each about `origin` (NULL: the
  * world's), which are asked for where its box may be seen, by views of the same origin; none takes them away.
- * Call it again when the object has moved. `corner_count` is in points, `sides` those from which every
- * view draws them, shadow maps too. Errors: BAD_ARGUMENT, BAD_MESH, STALE_HANDLE, TOO_MANY. Cost: a copy.
- * Allocates: 144 bytes for every four triangles begun, 4 an id. */
+ * Call it again when the object has moved. `corner_count` is in points, `sides`: SIGHTLINE_FRONT_SIDE only
+ * where no view, a shadow map's included, draws their backs, else SIGHTLINE_BOTH_SIDES. Errors: BAD_ARGUMENT,
+ * BAD_MESH, STALE_HANDLE, TOO_MANY. Cost: a copy. Allocates: 144 bytes for every four triangles begun, 4 an
+ * id. */
 SIGHTLINE_API sightline_status sightline_world_set_triangles(sightline_world* world, sightline_handle handle,
                                                              const float* corners, size_t corner_count,
                                                              const double* origin, uint8_t sides);
@@ -322,12 +324,13 @@ typedef struct sightline_cull_result {
   uint64_t culled_occlusion; /**< objects that occlusion dropped, summed over the views; of a hidden chunk all
                                 that layers and distances leave */
   double cost;               /**< automatic occlusion: of this cull and of drawing what it left */
-  double frustum_cost;       /**< the same by frustum alone */
+  double frustum_cost;       /**< the same by frustum alone: that cull, and drawing all that it leaves */
   uint64_t reserved[2];      /**< 0 */
 } sightline_cull_result;
 
 /** Elements that the arrays of a sightline_cull_output need: all objects, and what SIMD and jobs write
- * beyond. `options` may be NULL. 0 for NULL and for options that sightline_cull() refuses. */
+ * beyond. `options` may be NULL. 0 for NULL and for options whose struct, threads,
+ * occlusion or coverage are unknown. */
 SIGHTLINE_API size_t sightline_cull_capacity(const sightline_world* world,
                                              const sightline_cull_options* options);
 
@@ -342,14 +345,15 @@ SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
 SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* culler, double nanoseconds);
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
- * each, in an order that depends on the world's history alone. Nothing that is visible anywhere on the image
- * is left out, but by `layers`, `distances`, `min_area` and `casters`; by occlusion for pixel centres,
- * nothing that is visible at one. All views have the same struct_size. `options` may be NULL. With
- * SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted work x costs: no
- * frame costs more than 1.05 x frustum culling alone, and all of a culler's together no more than 1.02 x.
- * Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the index is the view's. Cost: grows with
- * what is visible and with the boundary of the views, not with the world. Threads: only reads the world and
- * the occlusions. Allocates: nothing once the culler has grown to the world's size. */
+ * each, in an order that depends on the calls so far alone, culls between moves among them. Nothing that is
+ * visible anywhere on the image is left out, but by `layers`, `distances`, `min_area` and `casters`; by
+ * occlusion for pixel centres, nothing that is visible at one. All views have the same struct_size. `options`
+ * may be NULL. With SIGHTLINE_OCCLUSION_AUTOMATIC what objects carry is drawn as far as that pays, in counted
+ * work x costs: no frame, culled and drawn, costs more than 1.05 x one by frustum alone, and all of a
+ * culler's together no more than 1.02 x. Errors: BAD_ARGUMENT, BAD_VIEW, BUFFER_TOO_SMALL, STALE_BUFFER; the
+ * index is the view's. Cost: grows with what is visible and with the boundary of the views, not with the
+ * world. Threads: only reads the world and the occlusions. Allocates: nothing once the culler has grown to
+ * the world's size. */
 SIGHTLINE_API sightline_status sightline_cull(sightline_culler* culler, const sightline_world* world,
                                               const sightline_cull_view* views, size_t view_count,
                                               const sightline_cull_options* options,
