@@ -76,9 +76,8 @@ void add_rays(py::module_& m) {
            py::arg("origins"), py::arg("directions"), py::arg("max_distances") = py::none())
       .def("visible_set", &visible_set,
            "The boxes that at least one of columns x rows rays through the view's image meets first, uint32\n"
-           "(k,), ascending: an approximation of what is visible. The view's origin is the boxes'. Refused: "
-           "another, no\n"
-           "rays, or more than 2^24.",
+           "(k,), ascending: an approximation of what is visible. The view's origin is the boxes'.\n"
+           "Refused: another, no rays, or more than 2^24.",
            py::arg("view"), py::arg("columns"), py::arg("rows"));
 }
 

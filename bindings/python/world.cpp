@@ -271,13 +271,12 @@ void add_world_class(py::module_& m) {
            "of its box, any unless given.",
            py::arg("boxes"), py::arg("handles") = py::none(), py::arg("layers") = py::none(),
            py::arg("values") = py::none(), py::arg("distances") = py::none())
-      .def("move", &move,
-           "Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with "
-           "all\n"
-           "that moved, or with nothing: what has come to rest is filed again a part a frame. Listing "
-           "objects in\n"
-           "the same order each frame is fastest.",
-           py::arg("handles"), py::arg("boxes"))
+      .def(
+          "move", &move,
+          "Gives each object a new box; one that is listed twice keeps the last. Call it once a frame, with\n"
+          "all that moved, or with nothing: what has come to rest is filed again a part a frame. Listing\n"
+          "objects in the same order each frame is fastest.",
+          py::arg("handles"), py::arg("boxes"))
       .def("remove", &remove, "Takes the objects out.", py::arg("handles"))
       .def("set_layers", &set_layers, "Gives each object new layers, uint32 (n,).", py::arg("handles"),
            py::arg("layers"))
@@ -363,16 +362,14 @@ void add_culler(py::module_& m) {
       .def("cull", &cull,
            "The ids of what at least one of 1 to MAX_VIEWS views may see, uint32 (k,), in an order that\n"
            "depends on the calls so far alone, culls between moves among them; with masks=True also which\n"
-           "views see each, uint8 (k,), bit v for view v; with values=True the objects' values instead of "
-           "their ids. views: a View, a\n"
-           "CullView, or a sequence of them. Refused: no or too many views, one that is no camera, an\n"
-           "occlusion that was not begun with its view.\n"
+           "views see each, uint8 (k,), bit v for view v; with values=True the objects' values instead of\n"
+           "their ids. views: a View, a CullView, or a sequence of them. Refused: no or too many views, one\n"
+           "that is no camera, an occlusion that was not begun with its view.\n"
            "occlusion='automatic': what the objects carry is drawn as far as that pays, and what it hides\n"
            "left out; culling and drawing cost at most 1.02 x those by frustum alone over all frames, in\n"
-           "counted work. object_cost: ns that\n"
-           "drawing an object costs; 0: what report_frame_time() taught. coverage, scale: as\n"
-           "Occlusion.begin has them. levels=Levels(...): also each object's level of detail and, of 255,\n"
-           "the share of the next coarser one that it fades into, uint8 (k,) each.",
+           "counted work. object_cost: ns that drawing an object costs; 0: what report_frame_time() taught.\n"
+           "coverage, scale: as Occlusion.begin has them. levels=Levels(...): also each object's level of\n"
+           "detail and, of 255, the share of the next coarser one that it fades into, uint8 (k,) each.",
            py::arg("world"), py::arg("views"), py::arg("masks") = false, py::arg("values") = false,
            py::arg("occlusion") = "none", py::arg("object_cost") = 0.0f, py::arg("coverage") = "area",
            py::arg("scale") = 1, py::arg("levels") = py::none())

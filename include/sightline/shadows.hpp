@@ -5,8 +5,8 @@
 //   const auto map = sightline::shadow_view(sun, camera, {.far_plane = 80}, 2048);
 //   sightline::ShadowCasters casters;
 //   if (!casters.begin(*map, camera, {.far_plane = 80})) …
-//   const auto drawn = culler.cull(world, {{{.view = camera}, {.view = *map, .casters = &casters}}}, {},
-//   {ids, masks});
+//   const std::array<sightline::CullView, 2> views{{{.view = camera}, {.view = *map, .casters = &casters}}};
+//   const auto drawn = culler.cull(world, views, {}, {ids, masks});
 #pragma once
 
 #include <cstddef>

@@ -138,7 +138,7 @@ SIGHTLINE_API sightline_status sightline_world_set_occluding(sightline_world* wo
                                                              const uint8_t* on, size_t count);
 /** Gives an object all of its triangles, three points of three floats each about `origin` (NULL: the
  * world's), which are asked for where its box may be seen, by views of the same origin; none takes them away.
- * Call it again when the object has moved. `corner_count` is in points, `sides`: SIGHTLINE_FRONT_SIDE only
+ * Call it again when the object has moved. `corner_count` is in points; `sides` is SIGHTLINE_FRONT_SIDE only
  * where no view, a shadow map's included, draws their backs, else SIGHTLINE_BOTH_SIDES. Errors: BAD_ARGUMENT,
  * BAD_MESH, STALE_HANDLE, TOO_MANY. Cost: a copy. Allocates: 144 bytes for every four triangles begun, 4 an
  * id. */
