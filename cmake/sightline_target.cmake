@@ -50,7 +50,6 @@ function(sightline_part name)
   else()
     sightline_precompile(sightline_${name} ${exports} <algorithm> <bit> <cmath> <vector> <glm/glm.hpp>)
   endif()
-  # Highway includes a source again for each vector target: it has to stand alone.
   set_target_properties(sightline_${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(sightline_${name} PRIVATE sightline_dependencies)
   set_property(GLOBAL APPEND PROPERTY sightline_parts sightline_${name})
@@ -60,6 +59,19 @@ endfunction()
 function(sightline_module folder)
   list(TRANSFORM ARGN PREPEND ${folder}/ OUTPUT_VARIABLE files)
   sightline_part(${folder} ${files})
+  # Several sources are compiled as one where a build asks for that, but those that Highway includes again for each
+  # vector target; and not for WebAssembly, where sources are compiled for size one by one.
+  if(CMAKE_UNITY_BUILD AND NOT CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
+    foreach(file IN LISTS files)
+      file(STRINGS ${file} kernel REGEX "hwy/foreach_target.h" LIMIT_COUNT 1)
+      if(kernel)
+        set_source_files_properties(${file} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+      endif()
+    endforeach()
+    set_target_properties(sightline_${folder} PROPERTIES UNITY_BUILD ON)
+    # Of sources that are compiled as one g++ says what it would of headers.
+    target_compile_options(sightline_${folder} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()
 
 # sightline_workbench_module(FOLDER FILES...): one folder of the workbench, a static library of the folder's name.

@@ -8,8 +8,20 @@ cd "$(dirname "$0")/.."
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
-# A folder's sources as one, and all public headers as another: most of the time goes into what they include.
-grep -oE '"file": "[^"]*"' "$build/compile_commands.json" | cut -d'"' -f4 | grep -F "$PWD/library/" | sort -u |
+# A folder's sources as one, and all public headers as another: most of the time goes into what they include. Some the
+# build itself compiles as one: then the database names a file that includes them.
+sources() {
+  grep -oE '"file": "[^"]*"' "$build/compile_commands.json" | cut -d'"' -f4 | while read -r file; do
+    case $file in
+      "$build"/library/*/Unity/*) sed -n 's/^#include "\(.*\)"$/\1/p' "$file" ;;
+      *) echo "$file" ;;
+    esac
+  done | grep -F "$PWD/library/" | sort -u
+}
+# Of files of visible sets the library has one of two forms.
+missing=$(comm -13 <(sources) <(ls "$PWD"/library/*/*.cpp | sort) | grep -v /pvs/) || true
+[ -z "$missing" ] || { echo "$build/compile_commands.json does not name $missing"; exit 1; }
+sources |
   while read -r source; do
     folder=${source#"$PWD/library/"}
     printf '#include "%s"\n' "$source" >>"$out/library_${folder%%/*}.cpp"
