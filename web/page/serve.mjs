@@ -7,6 +7,15 @@ import { fileURLToPath } from 'node:url';
 const root = fileURLToPath(new URL('../../build/web/page', import.meta.url));
 const kinds = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8', '.wasm': 'application/wasm' };
 
+// Whether there is such a file; what no file can be called is none.
+function isFile(path) {
+  try {
+    return statSync(path).isFile();
+  } catch {
+    return false;
+  }
+}
+
 // The file that an address names; undefined where it is no address.
 function fileOf(address) {
   try {
@@ -22,7 +31,7 @@ export function serve(port = 0) {
   const server = createServer((request, response) => {
     const file = fileOf(request.url);
     if (!file) return void response.writeHead(400).end();
-    if (!file.startsWith(`${root}/`) || !statSync(file, { throwIfNoEntry: false })?.isFile()) return void response.writeHead(404).end();
+    if (!file.startsWith(`${root}/`) || !isFile(file)) return void response.writeHead(404).end();
     response.setHeader('Content-Type', kinds[extname(file)] ?? 'application/octet-stream');
     createReadStream(file).pipe(response);
   });

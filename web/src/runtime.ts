@@ -27,7 +27,7 @@ async function compile(source: Source): Promise<WebAssembly.Module> {
   // Asked last, as Node takes as long to load Response as all the rest takes.
   const bytes = given instanceof ArrayBuffer || ArrayBuffer.isView(given);
   if (!bytes && typeof Response !== 'undefined' && given instanceof Response) {
-    if (!given.ok) refuse(`sightline: ${given.url} could not be fetched (${given.status})`);
+    if (!given.ok) refuse(`sightline: ${given.url || 'the module'} could not be fetched (${given.status})`);
     return WebAssembly.compile(await given.arrayBuffer());
   }
   if (!bytes) refuse(`initialise: ${said(given)}, expected bytes, a WebAssembly.Module or a Response`);

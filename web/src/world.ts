@@ -89,12 +89,14 @@ export class World extends Owned {
   }
   /** Whether the handle names an object of this world. */
   contains(handle: Handle): boolean {
-    return typeof handle === 'number' && wasm().world_contains!(pointerOf('World', this), handle) !== 0;
+    const world = pointerOf('World', this);
+    return typeof handle === 'number' && wasm().world_contains!(world, handle) !== 0;
   }
   /** The handle of the object that has this id now. */
   handle(id: number): Handle | undefined {
+    const world = pointerOf('World', this);
     // The module would take other numbers modulo 2^32.
-    const handle = typeof id === 'number' && id >>> 0 === id ? wasm().world_handle!(pointerOf('World', this), id) : -1;
+    const handle = typeof id === 'number' && id >>> 0 === id ? wasm().world_handle!(world, id) : -1;
     return handle < 0 ? undefined : handle;
   }
   /** The box as it is kept, minimum and maximum: it holds what was given. */

@@ -149,7 +149,8 @@ test('what was disposed of is not used', async () => {
   const made = [new World(), new Culler(), new OcclusionBuffer(), new BoxBvh()];
   const block = floats(6);
   for (const thing of [...made, block]) thing.dispose(), thing.dispose();
-  assert.throws(() => made[0].insert(Float32Array.from(cube(0, 0, 0))), refusal('disposed', /World: used after dispose/));
+  for (const call of [(world) => world.insert(Float32Array.from(cube(0, 0, 0))), (world) => world.contains('x'), (world) => world.handle({})])
+    assert.throws(() => call(made[0]), refusal('disposed', /World: used after dispose/));
   assert.throws(() => made[1].cull(new World(), view), refusal('disposed', /Culler/));
   assert.throws(() => made[2].begin(view), refusal('disposed', /OcclusionBuffer/));
   assert.throws(() => made[3].build(Float32Array.from(cube(0, 0, 0))), refusal('disposed', /BoxBvh/));

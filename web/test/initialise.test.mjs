@@ -18,7 +18,7 @@ test('the module is loaded by another try where one has failed', async () => {
     [new Uint8Array(7), /could not be loaded \(.*\); try again/], [whole.subarray(0, 1000), /could not be loaded/],
     [other, /another module, expected/],
     [async () => { throw new TypeError('fetch failed'); }, /could not be loaded \(fetch failed\); try again/],
-    [new Response('not here', { status: 404 }), /could not be fetched \(404\)/]];
+    [new Response('not here', { status: 404 }), /^sightline: the module could not be fetched \(404\)/]];
   for (const [source, words] of sources) {
     const first = ready, tried = initialise(typeof source === 'function' ? source() : source);
     assert.throws(() => initialise(whole), refusal(/loaded already/)); // one at a time

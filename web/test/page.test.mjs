@@ -129,6 +129,12 @@ async function clickDrop(page) {
   assert.match(await text(page, '#drop .said'), /^none\.glb cannot be shown: it is no binary glTF/);
   await page.setInputFiles('#file', { name: 'cut.glb', mimeType: 'model/gltf-binary', buffer: glb(3).subarray(0, 200) });
   await page.waitForFunction(() => document.querySelector('#drop .said').textContent.startsWith('cut.glb'));
+  // A length that no file of this size has.
+  const long = glb(3);
+  long.writeUInt32LE(0x7fffffff, 12);
+  await page.setInputFiles('#file', { name: 'long.glb', mimeType: 'model/gltf-binary', buffer: long });
+  await page.waitForFunction(() => document.querySelector('#drop .said').textContent.startsWith('long.glb'));
+  assert.match(await text(page, '#drop .said'), /^long\.glb cannot be shown: it is cut short or damaged \(.*[^.]\)\.$/);
   const bare = { name: 'bare.glb', mimeType: 'model/gltf-binary', buffer: glb(3, ['scene', 'scenes']) };
   await page.setInputFiles('#file', bare);
   await page.waitForFunction(() => document.querySelector('#drop .said').textContent.startsWith('bare.glb'));
@@ -176,7 +182,8 @@ test('its server answers nonsense, and goes on', async () => {
     get({ port, path, agent: false }, (answer) => (answer.resume(), resolve(answer.statusCode))).on('error', reject));
   try {
     for (const path of ['/%', '/%00', '/%c3%28', '//']) assert.equal(await ask(path), 400, path);
-    assert.deepEqual([await ask('/nothing'), await ask('/../serve.mjs'), await ask('/')], [404, 404, 200]);
+    for (const path of ['/nothing', '/../serve.mjs', '/index.html/', `/${'a'.repeat(5000)}`]) assert.equal(await ask(path), 404, path);
+    assert.equal(await ask('/'), 200);
   } finally {
     close();
   }

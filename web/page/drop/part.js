@@ -24,6 +24,10 @@ function sample() {
   return group;
 }
 
+// What is wrong with a file, without a full stop; a loader that reads beyond its end names an array's length.
+const saidOf = (error) => error instanceof RangeError ? `it is cut short or damaged (${error.message})`
+  : error.message.replace(/[.\s]+$/, '');
+
 export class DropPart {
   constructor({ quick }) {
     this.quick = quick;
@@ -90,7 +94,7 @@ export class DropPart {
       if (meshes === 0) throw new Error('there is no mesh in it');
       this.#take(scene, file.name);
     } catch (error) {
-      this.#say(`${file.name} cannot be shown: ${error.message}.`);
+      this.#say(`${file.name} cannot be shown: ${saidOf(error)}.`);
     }
   }
 

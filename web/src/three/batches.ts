@@ -53,6 +53,7 @@ const notes: Record<string, (told: Told, batch: Batch, first: number, returned: 
   setMatrixAt(told, batch, instance) { ++told.versions, note(told, batch, instance); },
   addInstance(told, batch, _, instance) { ++told.versions, note(told, batch, instance); },
   setGeometryIdAt: note,
+  deleteInstance: note,
   setGeometryAt: noteAll,
   deleteGeometry: noteAll,
   optimize(told, { geometry }) { forgetConvex(geometry), noteAll(told); },

@@ -53,9 +53,16 @@ export function boxOf(geometry: BufferGeometry): Box3 {
   return box;
 }
 
-/** The same of a mesh, of its own sphere, too, by which three culls it instead. */
-export function boxOfMesh(mesh: Mesh): Box3 {
-  return withSphere(boxOf(mesh.geometry), ownSphereOf(mesh));
+/** The same of a mesh, of its own sphere, too, by which three culls it instead; where a shader may turn its points, the sphere
+ * around them. */
+export function boxOfMesh(mesh: Mesh, mayTurn: boolean): Box3 {
+  const box = boxOf(mesh.geometry);
+  return withSphere(mayTurn ? turned(box) : box, ownSphereOf(mesh));
+}
+
+/** Holds three's sphere around a box. */
+export function turned(box: Box3): Box3 {
+  return box.isEmpty() ? box : box.clone().union(box.getBoundingSphere(ofBox).getBoundingBox(new Box3()));
 }
 
 // What a box says that was given may be older than the points. None is left behind: three would go by it when it casts rays,

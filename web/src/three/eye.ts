@@ -3,6 +3,14 @@ import type { Camera } from 'three';
 import { clipZeroToOne } from '../views.js';
 import { determinantOf, type Eye } from './occluders.js';
 
+// How far before the eye, in metres along the view, the nearer of the two planes lies that cut by depth. A camera's own `near`
+// says nothing of a matrix that was set by hand.
+function nearOf(p: readonly number[]): number {
+  const isFlat = p[15] === 1;
+  const planes = [p[14]! / p[10]!, (p[14]! - p[15]!) / (p[10]! - p[11]!)].filter((at) => Number.isFinite(at) && (isFlat || at > 0));
+  return Math.min(...planes); // of none nothing is surely before it
+}
+
 /** A camera as the library sees it, about its own place. */
 export function eyeOf(camera: Camera, width: number, most = 4096): Eye {
   const m = camera.matrixWorldInverse.elements, world = camera.matrixWorld.elements;
@@ -15,7 +23,7 @@ export function eyeOf(camera: Camera, width: number, most = 4096): Eye {
   const eyeToClip = coordinateSystem === 2001 || reversedDepth ? Array.from(p) : clipZeroToOne(p);
   const aspect = Math.abs(p[5]! / p[0]!);
   const height = Math.min(Math.max(Math.round(width / aspect), 1), most);
-  return { worldToEye, eyeToClip, origin, width, height, near: (camera as { near?: number }).near ?? 0 };
+  return { worldToEye, eyeToClip, origin, width, height, near: nearOf(eyeToClip) };
 }
 
 // Whether a metre in the world is one for the eye, and the fronts of faces are what it is shown, as occlusion takes it to be.

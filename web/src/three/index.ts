@@ -22,7 +22,7 @@ import { breaksDepth, breaksLateDepth, canBeHidden, drawOccluders, type Eye } fr
 import { release } from './release.js';
 import { restore } from './restore.js';
 import type { Sender } from './sending.js';
-import { callsBack } from './shaders.js';
+import { callsBack, countsInstances } from './shaders.js';
 import { isSameView, viewOf, viewsOf, type ShadowLight } from './shadows.js';
 import { isCalled, isCalledWhenDrawn, isDisplaced, type Thing } from './things.js';
 import { Whole } from './whole.js';
@@ -340,6 +340,7 @@ export class SightlineCuller {
     if (kind === 'batched') this.#narrowBatch(thing, main, frame);
     if (kind !== 'instanced' || nested || !renderer.isWebGLRenderer) return;
     const instanced = mesh as InstancedMesh;
+    if (countsInstances(this.#scene.overrideMaterial as Material | null)) return;
     // Where three does not look at it either, it has no sphere yet, and must not get that of a few of its instances.
     if (!instanced.visible || !instanced.layers.test(this.#drawing!.layers)) return;
     const most = instanced.count >> 1; // half of them copied would cost more than the other half drawn

@@ -1,8 +1,10 @@
 // What stands in a scene, kept up to date: things with boxes in a World, and what three draws by itself.
-import type { BatchedMesh, InstancedMesh, Layers, Mesh, Object3D, Scene } from 'three';
+import { Object3D } from 'three';
+import type { BatchedMesh, InstancedMesh, Layers, Mesh, Scene } from 'three';
 import { doubles, type Block } from '../memory.js';
 import { World } from '../world.js';
 import { measure } from './bounds.js';
+import { putNowhere } from './boxes.js';
 import { release } from './release.js';
 import { Resting } from './resting.js';
 import { classify, disposeOf, isOther, isRestless, makeThing, sumOf, takeNote, update, type Known, type Thing } from './things.js';
@@ -11,16 +13,22 @@ import { classify, disposeOf, isOther, isRestless, makeThing, sumOf, takeNote, u
 interface Node { object: Object3D; parent: number; shown: boolean; children: Object3D[]; count: number }
 const nodeOf = (object: Object3D, parent: number): Node =>
   ({ object, parent, shown: true, children: object.children, count: object.children.length });
+/** In the place of one that has gone. */
+const nobody = new Object3D();
+nobody.visible = false;
 /** Something that is left to three, with all below it. */
 export interface Left { object: Object3D; parent: number }
 
 const atOnce = 32; // things that are looked at together
-const fewestFreed = 1024; // slots without a thing that are worth making all anew
+const fewestFreed = 1024, fewestGone = 256; // slots without a thing, and groups, that are worth making all anew
 
 /** Nodes that only hold others; not those that clip them. */
 const isThrough = (object: Object3D): boolean =>
   (object.type === 'Object3D' || object.type === 'Group') && object.renderOrder === 0 &&
   !(object as { isClippingGroup?: boolean }).isClippingGroup;
+
+/** Whether what was left to three is culled, or looked into, as it stands now. */
+const isOrdinary = (object: Object3D): boolean => isThrough(object) || classify(object) !== undefined;
 
 // Where the first of ascending slots is that lies at or behind `slot`, from … to.
 function firstFrom(slots: Uint32Array, slot: number, from: number, to = slots.length): number {
@@ -44,7 +52,7 @@ export class Inventory {
   readonly things = new Set<Thing>();
   /** Instanced and batched ones. */
   readonly many = new Set<Thing>();
-  readonly left: Left[] = [];
+  left: Left[] = [];
   readonly nodes: Node[] = [];
   readonly #indexOf = new Map<Object3D, number>(); // in nodes
   /** Nobody's; kept so that compilers do not leave out what it sums. */
@@ -55,13 +63,14 @@ export class Inventory {
   readonly #resting = new Resting();
   readonly #free = new Map<number, number[]>();
   #freed = 0; // slots of what was removed
+  #gone = 0; // groups that were
   #handles = new Float64Array(0);
   #matrices = new Float64Array(0);
   #changed = true;
   readonly #moved: number[] = [];
   readonly #tell: (error: Error) => void;
   readonly #added = ({ child, target }: { child: Object3D; target: Object3D }) => this.#hear(() => this.#add(child, target, 1));
-  readonly #removed = ({ child }: { child: Object3D }) => this.#hear(() => this.#remove(child));
+  readonly #removed = ({ child, target }: { child: Object3D; target: Object3D }) => this.#hear(() => this.#remove(child, target));
 
   /** `tell` hears what goes wrong while the scene changes. */
   constructor(scene: Scene, tell: (error: Error) => void) {
@@ -76,8 +85,8 @@ export class Inventory {
   /** Takes over what has moved, come or gone since the last call. */
   update(): void {
     if (!this.#changed) this.#scan();
-    // Slots that nobody's count fits would pile up.
-    if (this.#changed || this.#freed > this.size + fewestFreed) this.#rebuild();
+    // Slots that nobody's count fits would pile up, and places of groups that have gone.
+    if (this.#changed || this.#freed > this.size + fewestFreed || 2 * this.#gone > this.nodes.length + fewestGone) this.#rebuild();
     for (const [i, node] of this.nodes.entries()) {
       const { object, parent } = node, { children } = object;
       node.shown = object.visible && (i === 0 || this.nodes[parent]!.shown);
@@ -118,6 +127,7 @@ export class Inventory {
     const some: Thing[] = [];
     for (const thing of this.things) if (some.push(thing) === atOnce) this.#look(some);
     this.#look(some);
+    if (this.left.some((each) => !this.#resting.has(each) && isOrdinary(each.object))) this.#changed = true;
     if (!this.#changed) this.#move();
     this.#moved.length = 0;
     for (const thing of this.many) if (isRestless(thing)) this.#leave(thing);
@@ -131,9 +141,14 @@ export class Inventory {
     this.sum = sumOf(some);
     for (const thing of some) {
       if (isOther(thing)) this.#changed = true;
-      else update(thing, known);
+      else this.#update(thing, known);
     }
     some.length = 0;
+  }
+  #update(thing: Thing, known: Known): void {
+    const { live } = thing;
+    update(thing, known);
+    this.size += thing.live - live;
   }
   #known(): Known {
     return { boxes: this.boxes.array, matrices: this.#matrices, moved: this.#moved };
@@ -157,7 +172,7 @@ export class Inventory {
     for (const list of [this.nodes, this.left, this.thingOf]) list.length = 0;
     for (const thing of this.things) disposeOf(thing);
     for (const all of [this.things, this.many, this.#indexOf, this.#thingOfMesh, this.#free, this.#resting]) all.clear();
-    this.slots = this.size = this.#freed = 0;
+    this.slots = this.size = this.#freed = this.#gone = 0;
     release(this.world), (this.world = new World());
     const found: Thing[] = [];
     this.#walkBelow(this.#scene, -1, found);
@@ -197,16 +212,16 @@ export class Inventory {
     const boxes = this.boxes.array;
     const slots: number[] = [];
     for (const thing of found) {
-      boxes.fill(0, 6 * thing.first, 6 * (thing.first + thing.count));
+      putNowhere(boxes, thing.first, thing.first + thing.count);
       this.#matrices.fill(NaN, 12 * thing.first, 12 * thing.first + 12);
-      update(thing, this.#known());
+      this.size += thing.live;
+      this.#update(thing, this.#known());
       for (let i = 0; i < thing.count; ++i) slots.push(thing.first + i);
     }
     this.#moved.length = 0;
     if (slots.length === 0) return;
     const entered = new Float64Array(6 * slots.length), values = Uint32Array.from(slots);
     slots.forEach((slot, i) => entered.set(boxes.subarray(6 * slot, 6 * slot + 6), 6 * i));
-    this.size += slots.length;
     this.world.insert(entered, { values }).forEach((handle, i) => (this.#handles[slots[i]!] = handle));
   }
 
@@ -236,19 +251,33 @@ export class Inventory {
     }
   }
 
-  // Meshes come and go one by one; for all else the scene is walked anew.
+  // What comes or goes is looked into, with all below it.
   #add(child: Object3D, parent: Object3D, more: number): void {
-    const taken = classify(child), index = this.#indexOf.get(parent);
-    if (this.#changed || index === undefined || !taken) return void (this.#changed = true);
+    const index = this.#indexOf.get(parent), found: Thing[] = [];
+    if (this.#changed || index === undefined) return void (this.#changed = true);
     this.nodes[index]!.count += more;
-    this.#enter([this.#thing(child as Mesh, index, taken.kind, taken.count)]);
+    this.#walk(child, index, found);
+    this.#enter(found);
   }
-  #remove(child: Object3D): void {
-    const thing = this.#thingOfMesh.get(child);
-    if (this.#changed || !thing) return void (this.#changed = true);
-    --this.nodes[thing.parent]!.count;
-    this.#freed += thing.count;
-    this.#forget(thing);
+  #remove(child: Object3D, parent: Object3D): void {
+    const index = this.#indexOf.get(parent), left = new Set<Object3D>();
+    if (this.#changed || index === undefined) return void (this.#changed = true);
+    --this.nodes[index]!.count;
+    this.#removeBelow(child, left);
+    if (left.size === 0) return;
+    for (const each of this.left) if (left.has(each.object)) this.#resting.delete(each);
+    this.left = this.left.filter(({ object }) => !left.has(object));
+  }
+  // With all below it; names what was left to three.
+  #removeBelow(object: Object3D, left: Set<Object3D>): void {
+    const thing = this.#thingOfMesh.get(object), index = this.#indexOf.get(object);
+    if (thing) return (this.#freed += thing.count), this.#forget(thing);
+    if (index === undefined) return void left.add(object);
+    const { children } = object, node = this.nodes[index]!;
+    if (children !== node.children || children.length !== node.count) this.#changed = true;
+    for (const child of children) this.#removeBelow(child, left);
+    this.#listen(object, false), this.#indexOf.delete(object);
+    this.nodes[index] = nodeOf(nobody, 0), ++this.#gone; // others keep their places
   }
   // Three draws it by itself as long as it is restless.
   #leave(thing: Thing): void {
@@ -258,7 +287,7 @@ export class Inventory {
   }
   #forget(thing: Thing): void {
     this.world.remove(this.#handles.subarray(thing.first, thing.first + thing.count));
-    this.size -= thing.count;
+    this.size -= thing.live;
     disposeOf(thing);
     this.things.delete(thing), this.many.delete(thing), this.#thingOfMesh.delete(thing.mesh);
     for (let i = 0; i < thing.count; ++i) this.thingOf[thing.first + i] = undefined;

@@ -3,7 +3,7 @@ import { Frustum, Matrix4 } from 'three';
 import type { BufferGeometry, Camera, InstancedMesh, Material, Mesh, Object3D } from 'three';
 import { said } from '../errors.js';
 import type { OcclusionBuffer } from '../occlusion.js';
-import { convexOf, convexOfInstance, type Convex } from './convex.js';
+import { beginFrame, convexOf, convexOfInstance, type Convex } from './convex.js';
 import type { Range } from './instances.js';
 import type { Inventory } from './inventory.js';
 import type { Batch } from './batches.js';
@@ -159,7 +159,7 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
     const room = 2 * slots.length;
     found.slots = new Uint32Array(room), (found.sizes = new Float64Array(room)), (found.order = new Uint32Array(room));
   }
-  found.count = 0, setFrustum(camera);
+  found.count = 0, setFrustum(camera), beginFrame();
   inventory.forEachShown(slots, (_, from, to) => findLarge(inventory.boxes.array, eye, { slots, from, to }));
   orderOf(found.sizes, found.count, true, found.order);
   let drawn = 0, tried = 0;
@@ -178,7 +178,7 @@ export function drawOccluders(buffer: OcclusionBuffer, inventory: Inventory, eye
 function findLarge(boxes: Float64Array, eye: Eye, { slots, from, to }: Range): void {
   const m = eye.worldToEye, flat = eye.eyeToClip[15] === 1, scale = Math.abs(eye.eyeToClip[5]!) / 2;
   const [x, y, z] = [-m[2]!, -m[6]!, -m[10]!], [ox, oy, oz] = [eye.origin[0]!, eye.origin[1]!, eye.origin[2]!];
-  const [nx, ny, nz] = [x > 0 ? 0 : 3, y > 0 ? 1 : 4, z > 0 ? 2 : 5], near = 1.001 * eye.near;
+  const [nx, ny, nz] = [x > 0 ? 0 : 3, y > 0 ? 1 : 4, z > 0 ? 2 : 5], near = eye.near + 1e-3 * Math.abs(eye.near);
   for (let k = from; k < to; ++k) {
     const slot = slots[k]!, at = 6 * slot;
     const nearest = x * (boxes[at + nx]! - ox) + y * (boxes[at + ny]! - oy) + z * (boxes[at + nz]! - oz) - m[14]!;

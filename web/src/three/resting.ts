@@ -14,6 +14,12 @@ export class Resting {
     const { instanceMatrix: matrix } = left.object as InstancedMesh;
     this.#seen.set(left, { matrix, version: matrix.version, frames: 0 });
   }
+  has(left: Left): boolean {
+    return this.#seen.has(left);
+  }
+  delete(left: Left): void {
+    this.#seen.delete(left);
+  }
   clear(): void {
     this.#seen.clear();
   }

@@ -2,13 +2,14 @@
 import type { BufferGeometry, InstancedMesh, Mesh } from 'three';
 import { BatchedMesh, Box3, Object3D } from 'three';
 import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
-import { boxOf, boxOfMesh, isInstancedGeometry, isStill, ownSphereOf, pointsOf, reachOf, SeenSphere, type Points } from './bounds.js';
-import { widen, writeBox } from './boxes.js';
+import { boxOf, boxOfMesh, isInstancedGeometry, isStill, ownSphereOf, pointsOf, reachOf, SeenSphere, turned, type Points } from './bounds.js';
+import { isNowhere, putNowhere, widen, writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
 import { release } from './release.js';
 import { Sending } from './sending.js';
 import { callsBack, countsInstances } from './shaders.js';
+import { Turning } from './turning.js';
 
 export interface Thing {
   readonly mesh: Mesh;
@@ -16,6 +17,10 @@ export interface Thing {
   /** Slots first … first + count - 1. */
   readonly first: number;
   readonly count: number;
+  /** Of these so many have something that is drawn; the others, as of a batch that has room for more, are nowhere. And of an
+   * InstancedMesh, how many instances it drew. */
+  live: number;
+  shown: number;
   /** Of the node above it, in Inventory.nodes. */
   readonly parent: number;
   /** What its boxes were made of. */
@@ -27,6 +32,7 @@ export interface Thing {
   readonly ownSphere: SeenSphere;
   reach: Box3 | null;
   given: Box3 | null;
+  readonly turning: Turning;
   /** Of its instances: their matrices; of a batch's, where those come from, in which version, and what it was told since. */
   readonly matrices: Matrices | undefined;
   source: unknown;
@@ -90,6 +96,7 @@ export function classify(object: Object3D): { kind: Thing['kind']; count: number
 export function makeThing(mesh: Mesh, kind: Thing['kind'], first: number, count: number, parent: number): Thing {
   const { geometry } = mesh;
   return { mesh, kind, first, count, parent, geometry, points: pointsOf(geometry), pointsVersion: -1, given: null,
+    live: kind === 'mesh' ? 1 : 0, shown: 0, turning: new Turning(),
     sphere: new SeenSphere(), ownSphere: new SeenSphere(), reach: null,
     matrices: kind === 'mesh' ? undefined : new Matrices(count), source: undefined, version: -1,
     told: kind === 'batched' ? listen(mesh as Batch) : undefined,
@@ -129,11 +136,11 @@ export function sumOf(things: readonly Thing[]): number {
 /** Brings the boxes of what has moved up to date. */
 export function update(thing: Thing, known: Known): void {
   const { mesh, kind } = thing, m = mesh.matrixWorld.elements;
-  const isMoved = moves(known.matrices, 12 * thing.first, m);
-  if (kind === 'batched') return updateBatch(thing, mesh as Batch, isMoved, known);
-  const isReshaped = reshapes(thing, mesh);
+  const isMoved = moves(known.matrices, 12 * thing.first, m), isTurned = thing.turning.changes(mesh);
+  if (kind === 'batched') return updateBatch(thing, mesh as Batch, isMoved || isTurned, known);
+  const isReshaped = reshapes(thing, mesh) || isTurned;
   if (kind === 'instanced') return updateInstances(thing, mesh as InstancedMesh, isMoved || isReshaped, known);
-  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOfMesh(mesh), m, 0)) known.moved.push(thing.first);
+  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOfMesh(mesh, thing.turning.may), m, 0)) known.moved.push(thing.first);
 }
 
 // Whether a mesh has other points than are known of it; takes them over.
@@ -163,16 +170,30 @@ const mostRestless = 4;
 const isMuch = (moved: number, count: number): boolean => moved > 1000 && 4 * moved > count;
 export const isRestless = ({ restless }: Thing): boolean => restless >= mostRestless;
 
+// A slot of which nothing is drawn any more, if something was; and one of which something is.
+function hide(thing: Thing, i: number, { boxes, moved }: Known): void {
+  const slot = thing.first + i;
+  if (isNowhere(boxes, slot)) return;
+  putNowhere(boxes, slot, slot + 1), moved.push(slot), --thing.live;
+}
+function show(thing: Thing, i: number, { boxes }: Known): void {
+  if (isNowhere(boxes, thing.first + i)) ++thing.live;
+}
+
 const reached = new Float64Array(6); // by all instances of a mesh, in the world
 
-function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxes, moved }: Known): void {
-  const { matrices, first, count } = thing, ranges = thing.ranges!, now = mesh.instanceMatrix.array as Float32Array;
+function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, known: Known): void {
+  const { boxes, moved } = known;
+  const { matrices, first, count, shown } = thing, ranges = thing.ranges!, now = mesh.instanceMatrix.array as Float32Array;
+  const drawn = (thing.shown = Math.min(Math.max(mesh.count, 0), count));
   const reach = reachOf(mesh);
   if (reach !== thing.reach) (thing.reach = reach), (all = true);
-  if (!all && ranges.isEmpty) return;
-  const box = boxOf(mesh.geometry), world = mesh.matrixWorld.elements, before = moved.length;
+  if (!all && ranges.isEmpty && drawn === shown) return;
+  const points = boxOf(mesh.geometry), box = thing.turning.may ? turned(points) : points, world = mesh.matrixWorld.elements, before = moved.length;
   if (reach) writeBox(reached, 0, reach, world, 0);
   const write = (i: number) => {
+    if (i >= drawn) return hide(thing, i, known);
+    show(thing, i, known);
     if (!writeBox(boxes, first + i, box, now, 16 * i, world) && !reach) return;
     if (reach) widen(boxes, first + i, reached);
     moved.push(first + i);
@@ -186,11 +207,13 @@ function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, { boxe
     for (let k = 0; k < ranges.list.length; k += 2) // three itself draws nothing else anew
       matrices!.compare(now, ranges.list[k]! >> 4, Math.min((ranges.list[k + 1]! + 15) >> 4, count), write);
   }
+  for (let i = Math.min(drawn, shown); i < Math.max(drawn, shown); ++i) write(i);
   thing.restless = isMuch(moved.length - before, count) ? thing.restless + 1 : 0;
   ranges.forget();
 }
 
-function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved }: Known): void {
+function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, known: Known): void {
+  const { boxes, moved } = known;
   const { geometry, _matricesTexture: { version, image: { data } }, _instanceInfo: infos } = mesh;
   const told = thing.told!, sending = thing.sending!;
   const all = isMoved || told.all || data !== thing.source || geometry !== thing.geometry;
@@ -202,8 +225,10 @@ function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, { boxes, moved
   const world = mesh.matrixWorld.elements;
   const write = (i: number) => {
     const info = infos[i];
-    if (info?.active && writeBox(boxes, thing.first + i, boxInBatch(mesh, info.geometryIndex), data, 16 * i, world))
-      moved.push(thing.first + i);
+    if (!info?.active) return hide(thing, i, known);
+    show(thing, i, known);
+    const box = boxInBatch(mesh, info.geometryIndex);
+    if (writeBox(boxes, thing.first + i, thing.turning.may ? turned(box) : box, data, 16 * i, world)) moved.push(thing.first + i);
   };
   if (all) {
     thing.matrices!.takeAll(data);
