@@ -2,32 +2,13 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import * as THREE from 'three';
-import { ready, SightlineCuller } from 'sightline-culling/three';
+import { begin, meshAt } from './walked.mjs';
 
-const renderer = { isWebGLRenderer: true, sortObjects: true };
-const meshAt = (x, y, z, size = 1) => {
-  const mesh = new THREE.Mesh(new THREE.BoxGeometry(size, size, size), new THREE.MeshBasicMaterial());
-  return mesh.position.set(x, y, z), mesh;
-};
 const sphere = (x, y, z, radius) => new THREE.Sphere(new THREE.Vector3(x, y, z), radius);
-
-// A scene with something behind the eye, lest all be in view and left to three; what three walks in a frame.
-async function begin(options) {
-  await ready;
-  const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(60, 1, 0.1, 1000), culler = new SightlineCuller(scene, options);
-  scene.add(meshAt(0, 0, 5000));
-  const frame = (look = () => {}) => {
-    camera.updateMatrixWorld(), scene.updateMatrixWorld(), scene.onBeforeRender(renderer, scene, camera, null);
-    const list = scene.children;
-    look(), scene.onAfterRender(renderer, scene, camera);
-    return list;
-  };
-  return { scene, camera, culler, frame };
-}
 
 test('what lies far off is drawn, and what is nowhere or too far off from everywhere', async () => {
   for (const x of [9e9, 1.2e10, 5e10, 9.9e10]) {
-    const { scene, camera, culler, frame } = await begin(), near = meshAt(x, 0, -50, 10), nowhere = meshAt(NaN, 0, 0);
+    const { scene, camera, culler, frame } = await begin(), near = meshAt(x, 0, -50, [10, 10, 10]), nowhere = meshAt(NaN, 0, 0);
     const beyond = meshAt(2e11, 0, 0);
     camera.position.x = x, scene.add(near, nowhere, beyond);
     assert.deepEqual([near, nowhere, beyond].map((mesh) => frame().includes(mesh)), [true, true, true], `${x}`);
@@ -83,7 +64,7 @@ test('a geometry\'s sphere that is moved, or replaced by one as large, is notice
 });
 
 test('what three does not draw, by a sphere that is too small or too old, hides nothing', async () => {
-  const { scene, culler, frame } = await begin(), hidden = meshAt(0, 0, -30), wall = meshAt(0, 0, -10, 8);
+  const { scene, culler, frame } = await begin(), hidden = meshAt(0, 0, -30), wall = meshAt(0, 0, -10, [8, 8, 8]);
   scene.add(hidden, wall);
   assert.ok(!frame().includes(hidden));
   wall.geometry.boundingSphere = sphere(300, 0, 0, 0.1);

@@ -2,29 +2,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import * as THREE from 'three';
-import { ready, SightlineCuller } from 'sightline-culling/three';
+import { basic, begin, meshAt } from './walked.mjs';
 
-const renderer = { isWebGLRenderer: true, sortObjects: true };
-const basic = () => new THREE.MeshBasicMaterial();
-const meshAt = (x, y, z, size = [1, 1, 1], material = basic()) => {
-  const mesh = new THREE.Mesh(new THREE.BoxGeometry(...size), material);
-  return mesh.position.set(x, y, z), mesh;
-};
 const at = (x, y, z) => new THREE.Matrix4().makeTranslation(x, y, z);
-
-// A scene with something behind the eye, lest all be in view and left to three; what three walks in a frame.
-async function begin(camera = new THREE.PerspectiveCamera(60, 1, 0.1, 1000), options = {}) {
-  await ready;
-  const scene = new THREE.Scene(), culler = new SightlineCuller(scene, options);
-  scene.add(meshAt(0, 0, 5000));
-  const frame = (look = () => {}) => {
-    camera.updateMatrixWorld(), scene.updateMatrixWorld(), scene.onBeforeRender(renderer, scene, camera, null);
-    const list = scene.children;
-    look(), scene.onAfterRender(renderer, scene, camera);
-    return list;
-  };
-  return { scene, camera, culler, frame };
-}
 
 test('what the near plane cuts hides nothing, whatever a camera says of itself', async () => {
   const flat = (near) => new THREE.OrthographicCamera(-10, 10, 10, -10, near, 1000);
@@ -40,7 +20,7 @@ test('what the near plane cuts hides nothing, whatever a camera says of itself',
   const bare = Object.assign(new THREE.Camera(), { projectionMatrix: deep(5, 1000).projectionMatrix });
   for (const [name, camera, near] of [['orthographic', flat(-10), -10], ['at the eye', flat(0), 0], ['set by hand', deep(5, 1000), 5],
     ['without an end', deep(5, Infinity), 5], ['reversed', deep(5, 1000, true), 5], ['a bare Camera', bare, 5]]) {
-    const { scene, culler, frame } = await begin(camera), wall = meshAt(0, 0, 0, [100, 100, 1]), behind = meshAt(0, 0, -near - 9);
+    const { scene, culler, frame } = await begin({}, camera), wall = meshAt(0, 0, 0, [100, 100, 1]), behind = meshAt(0, 0, -near - 9);
     scene.add(wall, behind);
     wall.position.z = -near - 0.495; // its front 5 mm before the plane
     assert.ok(frame().includes(behind), `${name}: lost behind a wall that is open`);
@@ -100,7 +80,7 @@ test('instances that a shader counts are all drawn, by an override and by what i
 });
 
 test('room for more counts nowhere', async () => {
-  const { scene, culler, frame } = await begin(undefined, { occlusion: false }), box = new THREE.BoxGeometry(), many = 1000;
+  const { scene, culler, frame } = await begin({ occlusion: false }), box = new THREE.BoxGeometry(), many = 1000;
   const batch = new THREE.BatchedMesh(many, 24, 36, basic()), instanced = new THREE.InstancedMesh(box, basic(), many);
   const shape = batch.addGeometry(box), stats = () => (frame(), [culler.stats.objects, culler.stats.drawn]);
   const add = (z) => {
@@ -143,7 +123,7 @@ test('a geometry that changes in every frame is no occluder until it rests', asy
 });
 
 test('what comes and goes in groups is drawn while it is there and in view', async () => {
-  const { scene, culler, frame } = await begin(undefined, { occlusion: false });
+  const { scene, culler, frame } = await begin({ occlusion: false });
   let state = 7;
   const below = (n) => ((state = (Math.imul(state, 1664525) + 1013904223) >>> 0), Math.floor((state / 2 ** 32) * n));
   const make = (depth = 0) => {

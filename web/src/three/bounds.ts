@@ -53,12 +53,8 @@ export function boxOf(geometry: BufferGeometry): Box3 {
   return box;
 }
 
-/** The same of a mesh, of its own sphere, too, by which three culls it instead; where a shader may turn its points, the sphere
- * around them. */
-export function boxOfMesh(mesh: Mesh, mayTurn: boolean): Box3 {
-  const box = boxOf(mesh.geometry);
-  return withSphere(mayTurn ? turned(box) : box, ownSphereOf(mesh));
-}
+/** Of a mesh's box one that holds its own sphere, too, by which three culls it instead. */
+export const withOwnSphere = (box: Box3, mesh: Mesh): Box3 => withSphere(box, ownSphereOf(mesh));
 
 /** Holds three's sphere around a box. */
 export function turned(box: Box3): Box3 {

@@ -37,8 +37,9 @@ export function writeBox(out: Float64Array, slot: number, local: Box3, m: ArrayL
   return changed;
 }
 
-/** Where a box stands of which nothing is drawn: out of every view that has an end. */
+// Where a box stands of which nothing is drawn: out of every view that has an end.
 const nowhere = 0.9 * reach;
+/** Whether the box at 6 · slot stands there. */
 export const isNowhere = (boxes: Float64Array, slot: number): boolean => boxes[6 * slot] === nowhere && boxes[6 * slot + 3] === nowhere;
 /** Puts boxes from … to - 1 there. */
 export const putNowhere = (boxes: Float64Array, from: number, to: number): void => void boxes.fill(nowhere, 6 * from, 6 * to);

@@ -29,7 +29,7 @@ let frame = 0;
 export const beginFrame = (): void => void ++frame;
 // A geometry that has changed has no shapes for so many frames, and each time for twice as many: to make them takes longer than
 // to draw what they hide.
-const pause = (changes: number): number => (changes === 0 ? 0 : 4 << Math.min(changes, 8));
+const pause = (changes: number): number => (changes === 0 ? 0 : 4 << Math.min(changes, 6));
 
 // Of a geometry's vertices or indices from `start` on, made once for as long as they stay.
 function part(geometry: BufferGeometry, start: number, corners: number): Convex | null {

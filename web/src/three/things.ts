@@ -2,7 +2,7 @@
 import type { BufferGeometry, InstancedMesh, Mesh } from 'three';
 import { BatchedMesh, Box3, Object3D } from 'three';
 import { isKnownInside, listen, unlisten, type Batch, type Told } from './batches.js';
-import { boxOf, boxOfMesh, isInstancedGeometry, isStill, ownSphereOf, pointsOf, reachOf, SeenSphere, turned, type Points } from './bounds.js';
+import { boxOf, isInstancedGeometry, isStill, ownSphereOf, pointsOf, reachOf, SeenSphere, withOwnSphere, type Points } from './bounds.js';
 import { isNowhere, putNowhere, widen, writeBox } from './boxes.js';
 import { Matrices } from './matrices.js';
 import { letGo, Ranges, remind } from './ranges.js';
@@ -140,7 +140,9 @@ export function update(thing: Thing, known: Known): void {
   if (kind === 'batched') return updateBatch(thing, mesh as Batch, isMoved || isTurned, known);
   const isReshaped = reshapes(thing, mesh) || isTurned;
   if (kind === 'instanced') return updateInstances(thing, mesh as InstancedMesh, isMoved || isReshaped, known);
-  if ((isMoved || isReshaped) && writeBox(known.boxes, thing.first, boxOfMesh(mesh, thing.turning.may), m, 0)) known.moved.push(thing.first);
+  if (!isMoved && !isReshaped) return;
+  const box = withOwnSphere(thing.turning.around(boxOf(mesh.geometry)), mesh);
+  if (writeBox(known.boxes, thing.first, box, m, 0)) known.moved.push(thing.first);
 }
 
 // Whether a mesh has other points than are known of it; takes them over.
@@ -189,7 +191,7 @@ function updateInstances(thing: Thing, mesh: InstancedMesh, all: boolean, known:
   const reach = reachOf(mesh);
   if (reach !== thing.reach) (thing.reach = reach), (all = true);
   if (!all && ranges.isEmpty && drawn === shown) return;
-  const points = boxOf(mesh.geometry), box = thing.turning.may ? turned(points) : points, world = mesh.matrixWorld.elements, before = moved.length;
+  const box = thing.turning.around(boxOf(mesh.geometry)), world = mesh.matrixWorld.elements, before = moved.length;
   if (reach) writeBox(reached, 0, reach, world, 0);
   const write = (i: number) => {
     if (i >= drawn) return hide(thing, i, known);
@@ -222,13 +224,18 @@ function updateBatch(thing: Thing, mesh: Batch, isMoved: boolean, known: Known):
   const isWritten = version !== thing.version + told.versions;
   if (isWritten || told.all || data !== thing.source) sending.noteAll(version);
   else for (const i of told.instances) sending.note(i, version);
-  const world = mesh.matrixWorld.elements;
+  const world = mesh.matrixWorld.elements, around = new Map<number, Box3>(); // of geometries whose points may turn
+  const boxAround = (geometry: number): Box3 => {
+    if (!thing.turning.may) return boxInBatch(mesh, geometry);
+    let box = around.get(geometry);
+    if (!box) around.set(geometry, (box = thing.turning.around(boxInBatch(mesh, geometry))));
+    return box;
+  };
   const write = (i: number) => {
     const info = infos[i];
     if (!info?.active) return hide(thing, i, known);
     show(thing, i, known);
-    const box = boxInBatch(mesh, info.geometryIndex);
-    if (writeBox(boxes, thing.first + i, thing.turning.may ? turned(box) : box, data, 16 * i, world)) moved.push(thing.first + i);
+    if (writeBox(boxes, thing.first + i, boxAround(info.geometryIndex), data, 16 * i, world)) moved.push(thing.first + i);
   };
   if (all) {
     thing.matrices!.takeAll(data);

@@ -1,5 +1,6 @@
 // Whether a shader of somebody's own may put an object's points elsewhere within three's sphere around them.
-import type { Mesh } from 'three';
+import type { Box3, Mesh } from 'three';
+import { turned } from './bounds.js';
 import { movesVertices } from './shaders.js';
 
 /** What is known of an object's material, from one look to the next. */
@@ -9,6 +10,11 @@ export class Turning {
   #material: unknown;
   #version = NaN;
   #isVouched = false;
+
+  /** Of a box of its points one that holds them wherever they are. */
+  around(box: Box3): Box3 {
+    return this.may ? turned(box) : box;
+  }
 
   /** Looks again; whether it is otherwise now. */
   changes({ material, userData }: Mesh): boolean {
