@@ -21,10 +21,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
-std::uint32_t draw_convex(DepthTiles& tiles, const Convex& polygon, const Bands& without) {
-  const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
+// A polygon as the image has it, and the part of it that it covers alone, whatever its neighbours do. Returns
+// how many tiles lie around it.
+std::uint32_t draw_convex(DepthTiles& tiles, const Convex& tight, const Convex& middle,
+                          const Surroundings& around) {
+  const TileRange range = tiles_of(tiles, tight.left, tight.right, tight.top, tight.bottom);
+  const float deeper = deeper_by(tiles, tight, around.slant);
+  const bool again = is_much_deeper(tiles, tight, deeper);
+  Convex shared = tight;
+  shared.at -= deeper;
   TileList<1> list;
-  list_polygon(tiles, polygon, range, without, kNoPixels, list);
+  if (again) list_polygon(tiles, middle, range, list);
+  list_polygon(tiles, shared, range, around.without, middle, again, list);
   draw_listed(tiles, list);
   return range.count();
 }
@@ -149,18 +157,19 @@ std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& 
   if (way * area < 0) return 0;
   Convex out;
   if (!(std::fabs(area) > kLeastClippedArea) || !set_plane(tiles, plane, outline, out)) return 0;
+  out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
   const float inset =
       kInset + tiles.around() + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
-  out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
+  Convex middle = out;
   for (std::size_t i = 0; i < outline.count; ++i) {
     const std::uint8_t edge = polygon.edge[i];
+    add_edge(outline, i, area > 0, inset, middle);
     if (edge < seams.size() && seams[edge].kind != SeamLine::Kind::none)
       add_line(outline, i, area > 0, seams[edge], out);
     else
       add_edge(outline, i, area > 0, inset, out);
   }
-  out.at -= tiles.around() * std::max(0.0f, around.slant - (std::fabs(out.across) + std::fabs(out.down)));
-  return HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, around.without);
+  return HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, middle, around);
 }
 
 }  // namespace

@@ -43,13 +43,18 @@ public:
     }
     keep_once(vertices_);  // triangles that lie upon each other share them
     for (const std::uint32_t vertex : vertices_) add(vertex);
+    const bool all = found_.size() < kTooMany;
     keep_once(found_);
+    if (all) leave_joined(t);
     std::erase_if(found_, [&](std::uint32_t e) { return edges_[e].triangle == t || edges_[e].other == t; });
     return found_;
   }
   [[nodiscard]] const CornerEdge& edge(std::uint32_t place) const { return edges_[place]; }
 
 private:
+  // No more than are surely too many: each is found at both its ends, and three may be the triangle's own.
+  static constexpr std::size_t kTooMany = 2 * (OccluderTopology::kMostAround + 4);
+
   // Each edge once; one without a neighbour once a triangle.
   void collect() {
     std::size_t shared = 0;
@@ -99,9 +104,38 @@ private:
     some.erase(std::unique(some.begin(), some.end()), some.end());
   }
 
-  // No more than are surely too many: each is found at both its ends, and three may be the triangle's own.
+  // Leaves the edges of those found that triangle t is joined with, edge by edge. What meets it in a corner
+  // alone, another sheet, covers no part of what t and those cover together.
+  void leave_joined(std::uint32_t t) {
+    near_.assign(1, t);
+    for (const std::uint32_t e : found_) {
+      near_.push_back(edges_[e].triangle);
+      if (edges_[e].other < OccluderTopology::kShared) near_.push_back(edges_[e].other);
+    }
+    keep_once(near_);
+    is_joined_.assign(near_.size(), 0);
+    joined_.clear();
+    join(t);
+    for (std::size_t i = 0; i < joined_.size(); ++i) {
+      for (const std::uint32_t other : mesh_.neighbours[joined_[i]]) join(other);
+      for (const auto& shared : shared_of(joined_[i])) {
+        for (std::uint32_t o = shared.first; o < shared.end; ++o) join(mesh_.others[o] / 4);
+      }
+    }
+    std::erase_if(found_, [&](std::uint32_t e) { return !is_joined_[place_of(edges_[e].triangle)]; });
+  }
+
+  [[nodiscard]] std::size_t place_of(std::uint32_t triangle) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(near_, triangle) - near_.begin());
+  }
+
+  void join(std::uint32_t triangle) {
+    const std::size_t place = place_of(triangle);
+    if (place == near_.size() || near_[place] != triangle || is_joined_[place]) return;
+    is_joined_[place] = 1, joined_.push_back(triangle);
+  }
+
   void add(std::uint32_t vertex) {
-    constexpr std::size_t kTooMany = 2 * (OccluderTopology::kMostAround + 4);
     const auto all = std::span(at_vertex_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     const auto some = all.first(std::min(all.size(), kTooMany - found_.size()));
     found_.insert(found_.end(), some.begin(), some.end());
@@ -109,7 +143,8 @@ private:
 
   const OccluderTopology& mesh_;
   std::vector<CornerEdge> edges_;
-  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_;
+  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_, near_, joined_;
+  std::vector<std::uint8_t> is_joined_;  // one a triangle of near_
 };
 
 // What of a group's triangles are named, each with the bits of those that name it, in order.

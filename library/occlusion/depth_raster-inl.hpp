@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
 // The pixels of a step's tiles, of the spans of two rows.
-HWY_INLINE Held store_step_pixels(const Spans& spans, const Step& step, std::uint64_t* out) {
+SIGHTLINE_INLINE_IN_BOTH Held store_step_pixels(const Spans& spans, const Step& step, std::uint64_t* out) {
   const Held first = store_pixels(spans, 0, step.tx * kTile, step.columns, out),
              second = store_pixels(spans, kTile, step.tx * kTile, step.columns, out + kStepColumns);
   return {first.some | second.some << kStepColumns, first.all | second.all << kStepColumns};
@@ -32,34 +32,45 @@ HWY_INLINE Held store_whole_step(const Step& step, std::uint64_t* out) {
 struct NothingLeftOut {
   // The sixteen lines from a pixel centre on come next.
   void come_to(float) {}
-  // Nothing is left out of these lines.
-  [[nodiscard]] bool none() const { return true; }
+  // Of the columns that these lines hold whole, leaves some of which nothing is left out.
+  void narrow_whole(TileColumns&) const {}
   void take_from(const Step&, std::uint64_t*, Held&) const {}
 };
 
-// The pixels of some bands, but those of a polygon.
+// The pixels of some bands, but those of the polygon's middle; or, where that is drawn already, those of its
+// middle, too.
 class BandsLeftOut {
 public:
-  BandsLeftOut(const DepthTiles& tiles, const Bands& bands, const Convex& but)
-      : bands_(bands), but_(but), width_(static_cast<float>(tiles.width)) {}
+  BandsLeftOut(const DepthTiles& tiles, const Bands& bands, const Convex& middle, bool with_middle)
+      : bands_(bands), middle_(middle), with_middle_(with_middle), width_(static_cast<float>(tiles.width)) {}
   void come_to(float first_y) {
     count_ = 0;
     for (std::size_t i = 0; i < bands_.count; ++i) {
       if (bands_.top[i] > first_y + 15 || bands_.bottom[i] < first_y) continue;
-      its_[count_] = i;
-      spans_[count_++] = spans_of(bands_, i, first_y, width_);
+      spans_[count_] = spans_of(bands_, i, first_y, width_);
+      columns_[count_] = columns_of(spans_[count_]);
+      count_ += columns_[count_].begin < columns_[count_].end;
     }
-    if (count_ > 0) but_spans_ = spans_of(but_, first_y, width_);
+    if (count_ > 0 || with_middle_) middle_spans_ = spans_of(middle_, first_y, width_);
   }
-  [[nodiscard]] bool none() const { return count_ == 0; }
+  void narrow_whole(TileColumns& columns) const {
+    if (with_middle_) columns.end_whole = columns.begin_whole;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::uint32_t begin = std::max(columns_[i].begin, columns.begin_whole),
+                          end = std::min(columns_[i].end, columns.end_whole);
+      if (begin >= end) continue;
+      if (begin - columns.begin_whole > columns.end_whole - end)
+        columns.end_whole = begin;
+      else
+        columns.begin_whole = end;
+    }
+  }
   HWY_INLINE void take_from(const Step& step, std::uint64_t* pixels, Held& held) const {
     const Words words;
-    const auto left = static_cast<float>(step.tx * kTile),
-               right = left + static_cast<float>(step.columns * kTile);
     alignas(64) std::array<std::uint64_t, kStepTiles> its, of_bands{};
-    bool some = false;
+    bool some = with_middle_;
     for (std::size_t i = 0; i < count_; ++i) {
-      if (bands_.right[its_[i]] < left || bands_.left[its_[i]] > right) continue;
+      if (columns_[i].begin >= step.tx + step.columns || columns_[i].end <= step.tx) continue;
       some = true;
       store_step_pixels(spans_[i], step, its.data());
       for_words(step, [&](std::size_t tile) HWY_ATTR {
@@ -68,10 +79,11 @@ public:
       });
     }
     if (!some) return;
-    store_step_pixels(but_spans_, step, its.data());
+    store_step_pixels(middle_spans_, step, its.data());
     held = {};
     for_words(step, [&](std::size_t tile) HWY_ATTR {
-      const auto out = hn::AndNot(hn::LoadU(words, &its[tile]), hn::LoadU(words, &of_bands[tile]));
+      const auto middle = hn::LoadU(words, &its[tile]), bands = hn::LoadU(words, &of_bands[tile]),
+                 out = with_middle_ ? hn::Or(middle, bands) : hn::AndNot(middle, bands);
       const auto rest = hn::AndNot(out, hn::LoadU(words, pixels + tile));
       hn::StoreU(rest, words, pixels + tile);
       add_held(rest, tile, held);
@@ -88,25 +100,27 @@ private:
   }
 
   const Bands& bands_;
-  const Convex& but_;
+  const Convex& middle_;
+  bool with_middle_;
   float width_;
-  // Of these lines: the spans of the bands that reach into them, which those are, and the polygon's spans.
+  // Of these lines: the spans of the bands that reach into them, their columns, and the middle's spans.
   std::array<Spans, Bands::kMost> spans_;
-  std::array<std::size_t, Bands::kMost> its_;
-  Spans but_spans_;
+  std::array<TileColumns, Bands::kMost> columns_;
+  Spans middle_spans_;
   std::size_t count_ = 0;
 };
 
 // The columns of two rows of tiles, of those in range. Of a wide polygon that lies aslant they hold only a
 // part, and most of that whole.
-HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, bool some_whole) {
+template <class LeftOut>
+HWY_INLINE TileColumns columns_in(const TileRange& range, const Spans& spans, const LeftOut& left_out) {
   if (range.end_x - range.begin_x <= kStepColumns) return {range.begin_x, range.end_x};
   TileColumns out = columns_of(spans);
   out.begin = std::max(out.begin, range.begin_x), out.end = std::min(out.end, range.end_x);
   out.begin_whole = std::max(out.begin_whole, out.begin), out.end_whole = std::min(out.end_whole, out.end);
+  left_out.narrow_whole(out);
   // A step that is cut short costs as much as one that is not.
-  if (!some_whole || out.end_whole < out.begin_whole + kStepColumns)
-    out.begin_whole = out.end_whole = out.end;
+  if (out.end_whole < out.begin_whole + kStepColumns) out.begin_whole = out.end_whole = out.end;
   return out;
 }
 
@@ -120,7 +134,7 @@ HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
     const float first_y = static_cast<float>(ty * kTile) + 0.5f;
     const Spans spans = spans_from(first_y);
     left_out.come_to(first_y);
-    const TileColumns columns = columns_in(range, spans, left_out.none());
+    const TileColumns columns = columns_in(range, spans, left_out);
     const std::uint32_t rows = std::min(kStepRows, range.end_y - ty);
     for (std::uint32_t tx = columns.begin, next = 0; tx < columns.end; tx = next) {
       const bool whole = columns.begin_whole <= tx && tx < columns.end_whole;
@@ -145,7 +159,6 @@ HWY_INLINE void list_spans(DepthTiles& tiles, const Planes<kPlanes>& planes, con
   list_spans(tiles, planes, range, spans_from, nothing, list);
 }
 
-constexpr Bands kNoBands{};
 constexpr Convex kNoPixels = [] {
   Convex out{};
   out.top = 1;
@@ -153,11 +166,13 @@ constexpr Convex kNoPixels = [] {
 }();
 
 // Lists a polygon, but for the pixels of some bands that are none of `middle`, the part of it that it covers
-// alone.
+// alone; without those of the middle, too, where that is drawn already.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                                      const Bands& without, const Convex& middle, TileList<1>& list) {
+                                      const Bands& without, const Convex& middle, bool without_middle,
+                                      TileList<1>& list) {
   if (!polygon.has_left || !polygon.has_right) return;
-  BandsLeftOut left_out(tiles, without, middle.has_left && middle.has_right ? middle : kNoPixels);
+  BandsLeftOut left_out(tiles, without, middle.has_left && middle.has_right ? middle : kNoPixels,
+                        without_middle);
   list_spans(
       tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
       [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
@@ -166,7 +181,24 @@ HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, 
 
 HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                              TileList<1>& list) {
-  list_polygon(tiles, polygon, range, kNoBands, kNoPixels, list);
+  constexpr Bands kNoBands{};
+  list_polygon(tiles, polygon, range, kNoBands, kNoPixels, false, list);
+}
+
+// How far a polygon is moved away for its neighbours' sake, where a pixel's margin counts: what it shares
+// with them lies as deep as the steepest of them falls within a margin.
+HWY_INLINE float deeper_by(const DepthTiles& tiles, const Convex& polygon, float slant) {
+  return tiles.around() * std::max(0.0f, slant - (std::fabs(polygon.across) + std::fabs(polygon.down)));
+}
+
+// Whether that is so far, where the polygon is farthest in the image, that its middle is drawn on its own
+// plane.
+HWY_INLINE bool is_much_deeper(const DepthTiles& tiles, const Convex& polygon, float deeper) {
+  constexpr float kLeastDeeper = 1e-2f;  // of the nearness
+  const auto width = static_cast<float>(tiles.width), height = static_cast<float>(tiles.height);
+  const float x = polygon.across > 0 ? std::max(polygon.left, 0.0f) : std::min(polygon.right, width),
+              y = polygon.down > 0 ? std::max(polygon.top, 0.0f) : std::min(polygon.bottom, height);
+  return deeper > kLeastDeeper * std::fabs(polygon.at + x * polygon.across + y * polygon.down);
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.

@@ -15,14 +15,6 @@
 #include "library/occlusion/cut_triangle.hpp"
 #include "library/occlusion/depth_raster-inl.hpp"
 
-// What is called from two places is inlined in both, but not in WebAssembly, which a page's readers load.
-#undef SIGHTLINE_INLINE_IN_BOTH
-#if HWY_TARGET == HWY_WASM
-#define SIGHTLINE_INLINE_IN_BOTH HWY_NOINLINE inline
-#else
-#define SIGHTLINE_INLINE_IN_BOTH HWY_INLINE
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 

@@ -90,17 +90,13 @@ HWY_NOINLINE Convex inset_piece(const ReadyTriangles& ready, const Piece& piece,
   return tight;
 }
 
-// Of the nearness: what is lowered by no more for its neighbours' sake is not drawn again on its own plane.
-constexpr float kLeastDeeper = 1e-2f;
-
 // Where a pixel's margin counts. First the pixels that are the piece's own; then those that it shares with
 // others, as deep as the deepest of them may be there.
 HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim,
                                    const Piece& piece, const Convex& tight, const TileRange& range,
                                    TileList<1>& list) {
-  const float own = std::fabs(tight.across) + std::fabs(tight.down), slant = most_of(piece, rim.slant),
-              deeper = tiles.around() * std::max(0.0f, slant - own);
-  const bool again = deeper > kLeastDeeper * std::fabs(ready.nearest[piece.first]);
+  const float deeper = deeper_by(tiles, tight, most_of(piece, rim.slant));
+  const bool again = is_much_deeper(tiles, tight, deeper);
   Bands bands;
   const bool known = bands_in(rim, piece.bits(), tight, bands);
   Convex shared = tight;
@@ -108,7 +104,7 @@ HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& read
   if (known && !again && bands.count == 0) return list_polygon(tiles, shared, range, list);
   const Convex middle = inset_piece(ready, piece, tight);
   if (!known || again) list_polygon(tiles, middle, range, list);
-  if (known) list_polygon(tiles, shared, range, bands, middle, list);
+  if (known) list_polygon(tiles, shared, range, bands, middle, again, list);
 }
 
 HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim, const Piece& piece,
@@ -194,8 +190,7 @@ HWY_INLINE std::array<SeamLine, 3> seams_of(const ReadyTriangles& ready, std::si
   return out;
 }
 
-// Triangle i, which the near plane cuts. Where a pixel's margin counts, first what it shares with others, as
-// draw_with_margin() has it. Returns how many tiles lie around it.
+// Triangle i, which the near plane cuts. Returns how many tiles lie around it.
 HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& mesh, std::size_t group,
                                     const ReadyTriangles& ready, const Rim& rim, std::size_t i) {
   const ExactCorners corners = exact_corners(tiles.projection, mesh, group, i);
@@ -204,12 +199,8 @@ HWY_NOINLINE std::uint32_t draw_cut(DepthTiles& tiles, const OccluderTopology& m
   Convex image;
   image.right = static_cast<float>(tiles.width), image.bottom = static_cast<float>(tiles.height);
   Bands bands;
-  const bool known = bands_in(rim, 1u << i, image, bands);
-  std::uint32_t around = 0;
-  if (known) around = draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
-  if (!known || bands.count > 0 || rim.slant[i] > std::fabs(tiles.mesh->slant[group * kGroup + i]))
-    around = std::max(around, draw_clipped_triangle(tiles, corners, way, {}));
-  return around;
+  if (!bands_in(rim, 1u << i, image, bands)) return draw_clipped_triangle(tiles, corners, way, {});
+  return draw_clipped_triangle(tiles, corners, way, {seams_of(ready, i), bands, rim.slant[i]});
 }
 
 // The triangles that are drawn, and those of their pieces that do not show themselves in this band of the

@@ -18,14 +18,15 @@ constexpr std::uint32_t kNoNeighbour = OccluderTopology::kNone;
 // Of the coordinates: differences and products of floats are all but exact in double precision.
 constexpr double kOnLine = 1e-12;
 // So many edges along one line are looked at to either side of one. What is missed is drawn inset.
-constexpr std::size_t kLooked = 48;
+constexpr std::size_t kLooked = 96;
 
-// A triangle's edge that has no neighbour, and where it lies along its line.
-struct OpenEdge {
+// A triangle's edge, and where it lies along its line.
+struct LineEdge {
   std::uint32_t triangle, edge;
   std::uint64_t line;
   double low, high;
   bool along;  // runs the way in which the line is measured
+  bool open;   // has no neighbour
 };
 
 // The number of the line through two points, and its direction: the same for all edges on one line, but where
@@ -47,20 +48,22 @@ std::uint64_t number_of(const glm::dvec3& a, const glm::dvec3& b, double reach, 
   return hash;
 }
 
-std::vector<OpenEdge> open_edges(const OccluderTopology& mesh, double reach) {
-  std::vector<OpenEdge> out;
+// Those without a neighbour; if asked for, the others, too, at which one without may end.
+std::vector<LineEdge> edges_by_line(const OccluderTopology& mesh, double reach, bool all) {
+  std::vector<LineEdge> out;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (mesh.neighbours[t][k] != kNoNeighbour) continue;
+      const bool open = mesh.neighbours[t][k] == kNoNeighbour;
+      if (!open && !all) continue;
       const glm::dvec3 a = to_double(mesh.positions[mesh.triangles[t][k]]),
                        b = to_double(mesh.positions[mesh.triangles[t][(k + 1) % 3]]);
       glm::dvec3 direction;
       const std::uint64_t line = number_of(a, b, reach, direction);
       const double from = glm::dot(a, direction), to = glm::dot(b, direction);
-      out.push_back({t, k, line, std::min(from, to), std::max(from, to), from < to});
+      out.push_back({t, k, line, std::min(from, to), std::max(from, to), from < to, open});
     }
   }
-  std::ranges::sort(out, [](const OpenEdge& a, const OpenEdge& b) {
+  std::ranges::sort(out, [](const LineEdge& a, const LineEdge& b) {
     if (a.line != b.line) return a.line < b.line;
     if (a.low != b.low) return a.low < b.low;
     return a.triangle != b.triangle ? a.triangle < b.triangle : a.edge < b.edge;
@@ -80,12 +83,12 @@ public:
       : mesh_(mesh), reach_(reach), junctions_(junctions) {}
 
   // Those of edge i of all open ones, which are sorted by line and place.
-  const std::vector<Cover>& of(std::span<const OpenEdge> edges, std::size_t i) {
+  const std::vector<Cover>& of(std::span<const LineEdge> edges, std::size_t i) {
     found_.clear();
-    const OpenEdge& edge = edges[i];
+    const LineEdge& edge = edges[i];
     const std::size_t first = i > kLooked ? i - kLooked : 0, end = std::min(edges.size(), i + kLooked);
     for (std::size_t j = first; j < end; ++j) {
-      const OpenEdge& other = edges[j];
+      const LineEdge& other = edges[j];
       if (other.line != edge.line || other.triangle == edge.triangle) continue;
       if (!junctions_ && !same_ends(edge, other)) continue;
       if (other.low < edge.high && other.high > edge.low) add(edge, other);
@@ -94,19 +97,19 @@ public:
   }
 
 private:
-  bool same_ends(const OpenEdge& a, const OpenEdge& b) const {
-    const auto end = [&](const OpenEdge& of, std::uint32_t k) {
+  bool same_ends(const LineEdge& a, const LineEdge& b) const {
+    const auto end = [&](const LineEdge& of, std::uint32_t k) {
       return mesh_.triangles[of.triangle][(of.edge + k) % 3];
     };
     const auto is = [&](std::uint32_t k) { return end(a, 0) == end(b, k) && end(a, 1) == end(b, 1 - k); };
     return is(0) || is(1);
   }
 
-  glm::dvec3 point(const OpenEdge& of, std::uint32_t end) const {
+  glm::dvec3 point(const LineEdge& of, std::uint32_t end) const {
     return to_double(mesh_.positions[mesh_.triangles[of.triangle][(of.edge + end) % 3]]);
   }
 
-  void add(const OpenEdge& edge, const OpenEdge& other) {
+  void add(const LineEdge& edge, const LineEdge& other) {
     const glm::dvec3 a = point(edge, 0), along = point(edge, 1) - a;
     const double length = glm::dot(along, along);
     const auto place = [&](const glm::dvec3& p) { return glm::dot(p - a, along) / length; };
@@ -152,10 +155,11 @@ void find_shared_edges(OccluderTopology& mesh, bool close_junctions) {
   double reach = 1e-30;
   for (const Vec3& p : mesh.positions)
     reach = std::max({reach, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
-  const std::vector<OpenEdge> edges = open_edges(mesh, reach);
+  const std::vector<LineEdge> edges = edges_by_line(mesh, reach, close_junctions);
   Covers covers(mesh, reach, close_junctions);
   std::vector<double> ends;
   for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!edges[i].open) continue;
     const auto first = static_cast<std::uint32_t>(mesh.others.size());
     if (!append_pieces(covers.of(edges, i), ends, mesh.others)) {
       mesh.others.resize(first);

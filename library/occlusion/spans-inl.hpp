@@ -13,6 +13,14 @@
 #include "library/occlusion/convex.hpp"
 #include "library/occlusion/image-inl.hpp"
 
+// What is called from two places is inlined in both, but not in WebAssembly, which a page's readers load.
+#undef SIGHTLINE_INLINE_IN_BOTH
+#if HWY_TARGET == HWY_WASM
+#define SIGHTLINE_INLINE_IN_BOTH HWY_NOINLINE inline
+#else
+#define SIGHTLINE_INLINE_IN_BOTH HWY_INLINE
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
@@ -170,7 +178,7 @@ HWY_INLINE TileColumns columns_of(const Spans& spans) {
           static_cast<std::uint32_t>(*first_end) / kTile};
 }
 #else
-HWY_INLINE TileColumns columns_of(const Spans& spans) {
+SIGHTLINE_INLINE_IN_BOTH TileColumns columns_of(const Spans& spans) {
   const hn::FixedTag<std::int16_t, 8> i16;
   const auto begin = hn::Load(i16, &spans.begin[0]), more_begin = hn::Load(i16, &spans.begin[8]),
              end = hn::Load(i16, &spans.end[0]), more_end = hn::Load(i16, &spans.end[8]);
