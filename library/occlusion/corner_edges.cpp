@@ -25,7 +25,7 @@ public:
   explicit CornerEdges(const OccluderTopology& mesh) : mesh_(mesh) {
     collect();
     sort_by_vertex();
-    first_shared_.resize(mesh.triangles.size() + 1);
+    first_shared_.resize(mesh.triangles.size() + 1), seen_.resize(mesh.triangles.size());
     for (const auto& shared : mesh.shared) ++first_shared_[shared.triangle + 1];
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) first_shared_[t + 1] += first_shared_[t];
   }
@@ -107,32 +107,27 @@ private:
   // Leaves the edges of those found that triangle t is joined with, edge by edge. What meets it in a corner
   // alone, another sheet, covers no part of what t and those cover together.
   void leave_joined(std::uint32_t t) {
-    near_.assign(1, t);
+    turn_ += 2;
+    mark_near(t);
     for (const std::uint32_t e : found_) {
-      near_.push_back(edges_[e].triangle);
-      if (edges_[e].other < OccluderTopology::kShared) near_.push_back(edges_[e].other);
+      mark_near(edges_[e].triangle);
+      if (edges_[e].other < OccluderTopology::kShared) mark_near(edges_[e].other);
     }
-    keep_once(near_);
-    is_joined_.assign(near_.size(), 0);
     joined_.clear();
     join(t);
     for (std::size_t i = 0; i < joined_.size(); ++i) {
-      for (const std::uint32_t other : mesh_.neighbours[joined_[i]]) join(other);
+      for (const std::uint32_t other : mesh_.neighbours[joined_[i]])
+        if (other != OccluderTopology::kNone) join(other);
       for (const auto& shared : shared_of(joined_[i])) {
         for (std::uint32_t o = shared.first; o < shared.end; ++o) join(mesh_.others[o] / 4);
       }
     }
-    std::erase_if(found_, [&](std::uint32_t e) { return !is_joined_[place_of(edges_[e].triangle)]; });
+    std::erase_if(found_, [&](std::uint32_t e) { return seen_[edges_[e].triangle] != turn_ + 1; });
   }
 
-  [[nodiscard]] std::size_t place_of(std::uint32_t triangle) const {
-    return static_cast<std::size_t>(std::ranges::lower_bound(near_, triangle) - near_.begin());
-  }
-
+  void mark_near(std::uint32_t triangle) { seen_[triangle] = turn_; }
   void join(std::uint32_t triangle) {
-    const std::size_t place = place_of(triangle);
-    if (place == near_.size() || near_[place] != triangle || is_joined_[place]) return;
-    is_joined_[place] = 1, joined_.push_back(triangle);
+    if (seen_[triangle] == turn_) seen_[triangle] = turn_ + 1, joined_.push_back(triangle);
   }
 
   void add(std::uint32_t vertex) {
@@ -143,8 +138,10 @@ private:
 
   const OccluderTopology& mesh_;
   std::vector<CornerEdge> edges_;
-  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_, near_, joined_;
-  std::vector<std::uint8_t> is_joined_;  // one a triangle of near_
+  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_, joined_;
+  // One a triangle: turn_ where it is near the triangle in question, one more where it is joined with it.
+  std::vector<std::uint64_t> seen_;
+  std::uint64_t turn_ = 0;
 };
 
 // What of a group's triangles are named, each with the bits of those that name it, in order.
