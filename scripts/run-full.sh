@@ -1,27 +1,25 @@
 #!/usr/bin/env bash
-# run-full.sh START: what `test.sh --full` runs beyond the gate, which began at START (seconds since 1970) and passed.
-# Runs every line, whether one before failed or not, and writes build/full/RESULTS.csv.
+# run-full.sh: what `test.sh --full` runs beyond the gate. Runs every line, whether one before failed or not, but none
+# that has passed on this commit before: it takes hours, and may be cut off. Writes build/full/RESULTS.csv line by line.
 set -uo pipefail
 cd "$(dirname "$0")/.."
-commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
-[ -z "$(git status --porcelain 2>/dev/null)" ] || commit+=-dirty
-results=build/full/RESULTS.csv
+. scripts/full-results.sh
 failed=0
-mkdir -p build/full
-
-echo "commit,line,seconds,result" >$results
-echo "$commit,gate,$(($(date +%s) - $1)),passed" >>$results
 
 # line NAME COMMAND…: its seconds are those that the command measured, where it leaves them in $MEASURED.
 export MEASURED=$PWD/build/full/measured
 line() {
   local name=$1 start result=passed
   shift
+  if passed_before "$name"; then
+    echo "== $name has passed on this commit"
+    return
+  fi
   start=$(date +%s)
   rm -f "$MEASURED"
   echo "== $name"
   "$@" || { result=failed; failed=1; }
-  echo "$commit,$name,$(cat "$MEASURED" 2>/dev/null || echo $(($(date +%s) - start))),$result" >>$results
+  record "$name" "$(cat "$MEASURED" 2>/dev/null || echo $(($(date +%s) - start)))" $result
 }
 
 sanitizers() { cmake --build --preset asan && ctest --preset asan -j"$(nproc)"; }
