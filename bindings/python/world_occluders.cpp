@@ -108,17 +108,23 @@ void add_world_occluders(py::class_<SharedWorld>& world) {
       .def("set_occluders", &set_occluders,
            "Gives each object an occluder, switched on, one for all or one each, uint32 (n,); NO_OCCLUDER\n"
            "takes it away. transforms: (4, 4) or (n, 4, 4) affine, to metres about `origin`, double (3,).\n"
-           "Call it again when the object has moved: what reaches out of its object's box is not drawn.",
+           "Call it again when the object has moved, behind move(), or has turned: of one whose box is "
+           "another\n"
+           "one than it was then, nothing is drawn, nor is what reaches out of that box.",
            py::arg("handles"), py::arg("occluders"), py::arg("transforms") = py::none(),
            py::arg("origin") = py::none())
       .def("set_occluding", &set_occluding,
            "Switches what the objects carry on or off, bool (n,), as doors do.", py::arg("handles"),
            py::arg("on"))
-      .def("set_triangles", &set_triangles,
-           "Gives one object all of its triangles, float32 (..., 3) about `origin`: asked for where its box\n"
-           "may be seen, by views of the same origin, from both sides, or from their front alone where no\n"
-           "view, a shadow map's included, draws their backs. None of them takes them away.",
-           py::arg("handle"), py::arg("corners"), py::arg("origin") = py::none(), py::arg("sides") = "both");
+      .def(
+          "set_triangles", &set_triangles,
+          "Gives one object all of its triangles, float32 (..., 3) about `origin`: asked for where its box\n"
+          "may be seen, by views of the same origin, from both sides, or from their front alone where no\n"
+          "view, a shadow map's included, draws their backs. Call it again when the object has moved, "
+          "behind\n"
+          "move(), or has turned: while its box is another one, they are not asked. None of them takes them\n"
+          "away.",
+          py::arg("handle"), py::arg("corners"), py::arg("origin") = py::none(), py::arg("sides") = "both");
 }
 
 }  // namespace sightline::python

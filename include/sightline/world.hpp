@@ -144,11 +144,12 @@ public:
   /// or an object carries it.
   Status remove_occluder(OccluderId occluder);
   /// Gives each object an occluder, switched on, which hides from culls with Occlusion::automatic what lies
-  /// behind it. Call it again when the object has moved: an occluder that reaches out of its object's box is
-  /// not drawn, nor is a mesh that the transform flattens or skews much. It is drawn exactly where the
-  /// transform says, whatever the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown
+  /// behind it. Call it again when the object has moved, behind move(), or has turned: of an object whose box
+  /// is another one than it was then, nothing is drawn; nor is an occluder that reaches out of that box, or a
+  /// mesh that the transform flattens or skews much. It is drawn exactly where the transform says, whatever
+  /// the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown
   /// occluder, a transform that is not finite or not affine, an origin beyond kWorldReach), stale_handle.
-  /// Cost: linear. Allocates: some 200 bytes an object that carries one, 4 an id.
+  /// Cost: linear. Allocates: some 250 bytes an object that carries one, 4 an id.
   Status set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements);
   /// Switches what the objects carry on (1) or off (0), as doors do; those that carry nothing stay so.
   /// Errors: bad_argument, stale_handle. Cost: linear.
@@ -156,8 +157,8 @@ public:
   /// Gives an object its triangles, three points each in metres about `origin`: all that it shows. Culls with
   /// Occlusion::automatic whose view has the same origin ask for them where the box may be seen; those of
   /// Sides::front from that side alone, where corners turn counter-clockwise: where no view, a shadow
-  /// map's included, draws their backs. Call it again when the object has moved: triangles that
-  /// reach out of its box are not asked. None takes them away. Errors: bad_mesh where the points are no
+  /// map's included, draws their backs. Call it again when the object has moved, behind move(), or has turned:
+  /// while its box is another one, and where they reach out of it, they are not asked. None takes them away. Errors: bad_mesh where the points are no
   /// multiple of three; too_many beyond 2³⁰ triangles; bad_argument for sides that are none; stale_handle.
   /// Cost: a copy. Allocates: 144 bytes for every four triangles begun, 4 an id.
   Status set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin = {},

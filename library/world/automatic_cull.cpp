@@ -206,7 +206,7 @@ private:
       if (seen[i] == all[i]) continue;
       const ObjectId id = state_.out[first + i];
       const ObjectTriangles& set = o.triangles[o.triangle_set(id)];
-      if (!stands_in(set.bounds, set.origin, stored_box(*state_.world, id))) seen[i] = all[i];
+      if (!stands(set.bounds, set.origin, set.object_box, stored_box(*state_.world, id))) seen[i] = all[i];
     }
   }
 

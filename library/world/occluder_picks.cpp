@@ -265,8 +265,8 @@ double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spar
   const Carrier& carrier = sight.world.occluders->carriers[pick.carrier];
   const WorldBox stored = stored_box(sight.world, carrier.object);
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
-  const bool here =
-      stands_in(carrier.bounds, carrier.placement.origin, stored) || SIGHTLINE_MUTANT(moved_occluders_drawn);
+  const bool here = stands(carrier.bounds, carrier.placement.origin, carrier.object_box, stored) ||
+                    SIGHTLINE_MUTANT(moved_occluders_drawn);
   if (!here || !sight.large(box) || !sight.in_range(carrier.object, stored)) return spare;
   drawn_.push_back(carrier.object);
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];

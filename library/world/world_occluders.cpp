@@ -134,15 +134,16 @@ void let_go(WorldOccluders& o, std::uint32_t carrier) noexcept {
 
 }  // namespace
 
-bool stands_in(const WorldBox& inner, const WorldPoint& origin, const WorldBox& outer) noexcept {
+bool stands(const WorldBox& bounds, const WorldPoint& origin, const WorldBox& when_given,
+            const WorldBox& box) noexcept {
   const auto within = [](double low, double high, double at, double outer_low, double outer_high) {
     const double away = std::max(std::fabs(outer_low - at), std::fabs(outer_high - at));
     const double slack = kBoxRounding * away + 1e-15 * std::fabs(at);
     return low >= outer_low - slack && high <= outer_high + slack;
   };
-  return within(inner.min.x, inner.max.x, origin.x, outer.min.x, outer.max.x) &&
-         within(inner.min.y, inner.max.y, origin.y, outer.min.y, outer.max.y) &&
-         within(inner.min.z, inner.max.z, origin.z, outer.min.z, outer.max.z);
+  return when_given == box && within(bounds.min.x, bounds.max.x, origin.x, box.min.x, box.max.x) &&
+         within(bounds.min.y, bounds.max.y, origin.y, box.min.y, box.max.y) &&
+         within(bounds.min.z, bounds.max.z, origin.z, box.min.z, box.max.z);
 }
 
 WorldOccluders& WorldState::own_occluders() {
@@ -161,9 +162,9 @@ std::unique_ptr<Hiding> WorldOccluders::make_hiding() const {
   return world::make_hiding();
 }
 
-void WorldOccluders::place(ObjectId id, const OccluderPlacement& placement, std::size_t ids) {
+void WorldOccluders::place(const WorldState& world, ObjectId id, const OccluderPlacement& placement) {
   if (placement.occluder == kNoOccluder) return take_away(id);
-  if (carrier_of.size() < ids) carrier_of.resize(ids, kNothing);
+  if (carrier_of.size() < world.objects.size()) carrier_of.resize(world.objects.size(), kNothing);
   std::uint32_t at = carrier_of[id];
   if (at == kNothing) {
     at = carrier_of[id] = take_element(carriers, free_carriers);
@@ -172,7 +173,8 @@ void WorldOccluders::place(ObjectId id, const OccluderPlacement& placement, std:
     let_go(*this, at);
   }
   ++shapes[placement.occluder].carriers;
-  carriers[at] = {id, placement, placed_bounds(shapes[placement.occluder].bounds, placement)};
+  carriers[at] = {id, placement, placed_bounds(shapes[placement.occluder].bounds, placement),
+                  stored_box(world, id)};
   briefs[at] = brief_of(carriers[at]);
 }
 
@@ -186,10 +188,10 @@ void WorldOccluders::take_away(ObjectId id) noexcept {
   free_carriers.push_back(at);
 }
 
-void WorldOccluders::set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin,
-                                   Sides sides, std::size_t ids) {
+void WorldOccluders::set_triangles(const WorldState& world, ObjectId id, std::span<const Vec3> corners,
+                                   const WorldPoint& origin, Sides sides) {
   if (corners.empty()) return take_triangles(id);
-  if (triangles_of.size() < ids) triangles_of.resize(ids, kNothing);
+  if (triangles_of.size() < world.objects.size()) triangles_of.resize(world.objects.size(), kNothing);
   std::uint32_t& at = triangles_of[id];
   if (at == kNothing) at = take_element(triangles, free_triangles);
   constexpr std::size_t kPerBlock = occlusion::TriangleBlock::kSize;
@@ -202,7 +204,7 @@ void WorldOccluders::set_triangles(ObjectId id, std::span<const Vec3> corners, c
     low = glm::min(low, geometry::to_double(p)), high = glm::max(high, geometry::to_double(p));
   }
   set.origin = origin, set.sides = sides;
-  set.bounds = about(origin, low, high);
+  set.bounds = about(origin, low, high), set.object_box = stored_box(world, id);
 }
 
 void WorldOccluders::take_triangles(ObjectId id) noexcept {
@@ -260,8 +262,7 @@ Status World::set_occluders(Strided<const Handle> handles, Strided<const Occlude
               "world: a placement is not finite, not affine or out of reach, expected the last row 0 0 0 1",
               i};
   }
-  for (std::size_t i = 0; i < placements.size(); ++i)
-    o.place(handles[i].index, placements[i], state_->objects.size());
+  for (std::size_t i = 0; i < placements.size(); ++i) o.place(*state_, handles[i].index, placements[i]);
   return {};
 }
 
@@ -292,7 +293,7 @@ Status World::set_triangles(Handle handle, std::span<const Vec3> corners, const 
     return {StatusCode::bad_argument, "world: the triangles' origin is not finite or out of reach"};
   if (!occlusion::is_known(sides))
     return {StatusCode::bad_argument, "world: the triangles' sides are none, expected both or front"};
-  state_->own_occluders().set_triangles(handle.index, corners, origin, sides, state_->objects.size());
+  state_->own_occluders().set_triangles(*state_, handle.index, corners, origin, sides);
   return {};
 }
 

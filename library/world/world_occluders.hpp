@@ -44,7 +44,8 @@ struct CarrierBrief {
 struct Carrier {
   ObjectId object = kNoObject;
   OccluderPlacement placement;
-  WorldBox bounds;  ///< of the occluder as it is placed
+  WorldBox bounds;      ///< of the occluder as it is placed
+  WorldBox object_box;  ///< as stored when it was placed
 };
 
 /// An object's triangles.
@@ -54,9 +55,11 @@ struct ObjectTriangles {
   Sides sides = Sides::both;  ///< from which each is seen
   WorldPoint origin;
   WorldBox bounds;
+  WorldBox object_box;  ///< as stored when they were set
 };
 
 class Hiding;
+struct WorldState;
 
 /// A world has none before its first occluder or triangles. What a culler and a world without any call is
 /// virtual, so that programs that never have any need not link it.
@@ -86,15 +89,16 @@ struct WorldOccluders {
   /// Whether some object carries an occluder.
   [[nodiscard]] bool any() const noexcept { return carriers.size() > free_carriers.size(); }
 
-  void place(ObjectId id, const OccluderPlacement& placement, std::size_t ids);
+  void place(const WorldState& world, ObjectId id, const OccluderPlacement& placement);
   void take_away(ObjectId id) noexcept;
-  void set_triangles(ObjectId id, std::span<const Vec3> corners, const WorldPoint& origin, Sides sides,
-                     std::size_t ids);
+  void set_triangles(const WorldState& world, ObjectId id, std::span<const Vec3> corners,
+                     const WorldPoint& origin, Sides sides);
   void take_triangles(ObjectId id) noexcept;
 };
 
-/// Whether `inner`, which was placed about the origin, lies within `outer`, but for a millimetre and what
-/// rounding may have done.
-bool stands_in(const WorldBox& inner, const WorldPoint& origin, const WorldBox& outer) noexcept;
+/// Whether what an object was given stands where the object does: it has not moved since, and what was placed
+/// about `origin` within `bounds` lies in its box, but for what rounding may have done.
+bool stands(const WorldBox& bounds, const WorldPoint& origin, const WorldBox& when_given,
+            const WorldBox& box) noexcept;
 
 }  // namespace sightline::world

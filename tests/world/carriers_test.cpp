@@ -108,6 +108,26 @@ TEST(Carriers, WhatMovedOrLeftHidesNothingWhereItWas) {
   EXPECT_EQ(wall.seen(culler), kAll);
 }
 
+// Where its occluder, left behind, still lies within the box, too.
+TEST(Carriers, WhatMovedWithinALargeBoxHidesNothingUntilItIsPlacedAgain) {
+  Wall wall;
+  World& world = wall.scene.world;
+  const std::span door = std::span(wall.scene.handles).first(1);
+  const auto wide = [](float x) { return std::array{box_at({x, 1, -10}, {50, 50, 2})}; };
+  ASSERT_TRUE(world.move(door, BoxView(wide(0))));
+  Occluder occluder;
+  occluder.boxes = {box_at({0, 0, 0}, {30, 30, 0.5f})};
+  const OccluderId shape = *world.add_occluder(occluder);
+  OccluderPlacement placement{.occluder = shape, .transform = {}, .origin = {0, 1, -10}};
+  ASSERT_TRUE(world.set_occluders(door, std::array{placement}));
+  EXPECT_EQ(wall.seen_anew(), 1u);
+  ASSERT_TRUE(world.move(door, BoxView(wide(20))));
+  EXPECT_EQ(wall.seen_anew(), kAll);
+  placement.origin.x = 20;
+  ASSERT_TRUE(world.set_occluders(door, std::array{placement}));
+  EXPECT_LT(wall.seen_anew(), kAll);
+}
+
 TEST(Carriers, WhatAViewDoesNotSeeHidesNothingFromIt) {
   Wall wall;
   const std::array<std::uint32_t, 1> layer{2};
@@ -159,6 +179,12 @@ TEST(Carriers, AsksForTheTrianglesOfWhatItsBoxLeaves) {
   ASSERT_TRUE(world.move(handle, BoxView(moved)));
   EXPECT_EQ(wall.seen_anew(), before);
   ASSERT_TRUE(world.move(handle, BoxView(boxes)));
+  EXPECT_EQ(wall.seen_anew(), before - 1);
+  // Or where they lie within its box still.
+  const std::array larger{Box{{-1, -2, -22}, {1.5f, 100, -20}}};
+  ASSERT_TRUE(world.move(handle, BoxView(larger)));
+  EXPECT_EQ(wall.seen_anew(), before);
+  ASSERT_TRUE(world.set_triangles(handle[0], hidden));
   EXPECT_EQ(wall.seen_anew(), before - 1);
   ASSERT_TRUE(world.set_triangles(handle[0], {}));
   EXPECT_EQ(wall.seen_anew(), before);

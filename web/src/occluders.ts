@@ -62,7 +62,8 @@ export class World extends CoreWorld {
   /** Gives each object an occluder, switched on, which hides what lies behind it from culls with automatic occlusion.
    * `transforms`: 16 numbers each, column-major and affine, from the occluder's space to metres about its entry of `origins`; the
    * identity unless given. `origins`: three numbers each, or three for all; 0 unless given. Call it again when objects have
-   * moved: what reaches out of an object's box is not drawn. `noOccluder` takes away what an object carried. */
+   * moved, behind `move`, or have turned: of one whose box is another one than it was then, nothing is drawn, nor is what reaches
+   * out of that box. `noOccluder` takes away what an object carried. */
   setOccluders(handles: Handles, occluders: OccluderId | Input<Uint32Array>, transforms?: Input<Float32Array>,
     origins?: Input<Float64Array> | readonly [number, number, number]): void {
     calling((call) => {
@@ -87,8 +88,8 @@ export class World extends CoreWorld {
   }
   /** Gives an object its triangles, nine numbers each, in metres about `origin`: all that it shows. Culls with automatic
    * occlusion whose view has the same origin ask for them where the box may be seen; for those of `front` from that side
-   * alone: where no view, a shadow map's included, draws their backs. Call it again when the object has moved. None takes them
-   * away. */
+   * alone: where no view, a shadow map's included, draws their backs. Call it again when the object has moved, behind
+   * `move`, or has turned: while its box is another one, they are not asked. None takes them away. */
   setTriangles(handle: Handle, corners: Input<Float32Array>, origin: ArrayLike<number> = [0, 0, 0], sides: Sides = 'both'): void {
     calling((call) => {
       expectObject(this, 'setTriangles', handle);

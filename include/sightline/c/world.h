@@ -124,9 +124,9 @@ SIGHTLINE_API sightline_status sightline_world_add_surface(sightline_world* worl
                                                            size_t side_count, uint32_t* name);
 /** Forgets an occluder that no object carries; its name may be used again. Errors: BAD_ARGUMENT. */
 SIGHTLINE_API sightline_status sightline_world_remove_occluder(sightline_world* world, uint32_t name);
-/** Gives each object an occluder, switched on. Call it again when the object has moved: an occluder that
- * reaches out of its object's box is not drawn. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates:
- * some 200 bytes an object that carries one, 4 an id. */
+/** Gives each object an occluder, switched on. Call it again when the object has moved, behind
+ * sightline_world_move(), or has turned: of one whose box is another one than it was then, nothing is drawn, nor is
+ * what reaches out of that box. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates: some 250 bytes an object that carries one, 4 an id. */
 SIGHTLINE_API sightline_status sightline_world_set_occluders(sightline_world* world,
                                                              const sightline_handles* handles,
                                                              const sightline_occluder_placement* placements,
@@ -138,7 +138,8 @@ SIGHTLINE_API sightline_status sightline_world_set_occluding(sightline_world* wo
                                                              const uint8_t* on, size_t count);
 /** Gives an object all of its triangles, three points of three floats each about `origin` (NULL: the
  * world's), which are asked for where its box may be seen, by views of the same origin; none takes them away.
- * Call it again when the object has moved. `corner_count` is in points; `sides` is SIGHTLINE_FRONT_SIDE only
+ * Call it again when the object has moved, behind sightline_world_move(), or has turned: while its box is
+ * another one, they are not asked. `corner_count` is in points; `sides` is SIGHTLINE_FRONT_SIDE only
  * where no view, a shadow map's included, draws their backs, else SIGHTLINE_BOTH_SIDES. Errors: BAD_ARGUMENT,
  * BAD_MESH, STALE_HANDLE, TOO_MANY. Cost: a copy. Allocates: 144 bytes for every four triangles begun, 4 an
  * id. */
