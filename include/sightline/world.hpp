@@ -157,10 +157,11 @@ public:
   /// Gives an object its triangles, three points each in metres about `origin`: all that it shows. Culls with
   /// Occlusion::automatic whose view has the same origin ask for them where the box may be seen; those of
   /// Sides::front from that side alone, where corners turn counter-clockwise: where no view, a shadow
-  /// map's included, draws their backs. Call it again when the object has moved, behind move(), or has turned:
-  /// while its box is another one, and where they reach out of it, they are not asked. None takes them away. Errors: bad_mesh where the points are no
-  /// multiple of three; too_many beyond 2³⁰ triangles; bad_argument for sides that are none; stale_handle.
-  /// Cost: a copy. Allocates: 144 bytes for every four triangles begun, 4 an id.
+  /// map's included, draws their backs. Call it again when the object has moved, behind move(), or has
+  /// turned: while its box is another one, and where they reach out of it, they are not asked. None takes
+  /// them away. Errors: bad_mesh where the points are no multiple of three; too_many beyond 2³⁰ triangles;
+  /// bad_argument for sides that are none; stale_handle. Cost: a copy. Allocates: 144 bytes for every four
+  /// triangles begun, 4 an id.
   Status set_triangles(Handle handle, std::span<const Vec3> corners, const WorldPoint& origin = {},
                        Sides sides = Sides::both);
 
@@ -327,8 +328,6 @@ public:
   /// with what is visible and with the boundary of the views, not with the world: some 25 µs for the
   /// 100,000 of a million still boxes that a camera sees; and some 40 ns a sector. Threads: only reads the
   /// world and the buffers. Allocates: nothing once it has grown to the world's size.
-  Result<CullResult> cull(const World& world, std::span<const CullView> views, const CullOptions& options,
-                          const CullOutput& output) noexcept;
   ///
   /// With Occlusion::automatic what the world's objects carry is drawn, as far as that pays, and what lies
   /// behind it is left out, too. Where that does not pay it costs little, in counted work × options.costs: no
@@ -337,7 +336,8 @@ public:
   /// place in `views`: a culler should see the same cameras at the same places. Errors, too: bad_argument for
   /// costs out of range, or where a view brings a buffer. Allocates, too: until it has drawn its largest
   /// image and mesh.
-  ///
+  Result<CullResult> cull(const World& world, std::span<const CullView> views, const CullOptions& options,
+                          const CullOutput& output) noexcept;
   /// The same for one view, without options. Errors, Cost, Threads, Allocates: the same.
   Result<CullResult> cull(const World& world, const CullView& view, std::span<std::uint32_t> ids) noexcept {
     return cull(world, {&view, 1}, {}, {ids, {}});

@@ -125,8 +125,9 @@ SIGHTLINE_API sightline_status sightline_world_add_surface(sightline_world* worl
 /** Forgets an occluder that no object carries; its name may be used again. Errors: BAD_ARGUMENT. */
 SIGHTLINE_API sightline_status sightline_world_remove_occluder(sightline_world* world, uint32_t name);
 /** Gives each object an occluder, switched on. Call it again when the object has moved, behind
- * sightline_world_move(), or has turned: of one whose box is another one than it was then, nothing is drawn, nor is
- * what reaches out of that box. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates: some 250 bytes an object that carries one, 4 an id. */
+ * sightline_world_move(), or has turned: of one whose box is another one than it was then, nothing is drawn,
+ * nor is what reaches out of that box. Errors: BAD_ARGUMENT, STALE_HANDLE. Cost: linear. Allocates: some 250
+ * bytes an object that carries one, 4 an id. */
 SIGHTLINE_API sightline_status sightline_world_set_occluders(sightline_world* world,
                                                              const sightline_handles* handles,
                                                              const sightline_occluder_placement* placements,
