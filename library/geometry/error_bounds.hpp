@@ -99,6 +99,10 @@ inline constexpr float kPixelPlay = 1.0f / 64;
 /// 0.03 and 0.08: the errors of a corner's coordinates seldom add up, and move the plane at all the
 /// triangle's pixels alike.
 inline constexpr float kDrawnNormalRounding = 4.2e-7f, kAskedNormalRounding = 4e-7f;
+/// For drawing that is told of rays and corners up to so many times as far away as they are deep. Of corners
+/// farther to the side it is as many times more: the plane's distance, a corner's along the normal, is off by
+/// 3 u of the corner's besides.
+inline constexpr float kAside = 2;
 /// Beyond, the plane of a triangle asked for says nothing, and its nearest point stands for it; not bounds.
 inline constexpr float kMostDoubt = 1e4f, kMostNearness = 1e30f;
 /// Corners of a polygon lie up to e from the plane that it is drawn on, d from the eye: its nearness there is

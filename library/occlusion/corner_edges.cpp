@@ -30,28 +30,34 @@ public:
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) first_shared_[t + 1] += first_shared_[t];
   }
 
+  // Of a place: whatever is beyond the edge, pixels that touch it are not the triangle's.
+  static constexpr std::uint32_t kEnds = 0x80000000u;
+
   // The places in edges() of those around triangle t, in order; of too many, some more than kMostAround.
   const std::vector<std::uint32_t>& around(std::uint32_t t) {
     found_.clear();
     vertices_.assign(mesh_.triangles[t].begin(), mesh_.triangles[t].end());
-    for (const auto& shared : shared_of(t)) {
-      for (std::uint32_t i = shared.first; i < shared.end; ++i) {
-        const std::uint32_t other = mesh_.others[i] / 4, k = edge_along(other, t, shared.edge);
-        vertices_.push_back(mesh_.triangles[other][k]);
-        vertices_.push_back(mesh_.triangles[other][(k + 1) % 3]);
-      }
-    }
+    for (const auto& shared : shared_of(t)) append_ends(shared, vertices_);
     keep_once(vertices_);  // triangles that lie upon each other share them
     for (const std::uint32_t vertex : vertices_) add(vertex);
     const bool all = found_.size() < kTooMany;
     keep_once(found_);
+    for (int corner = 0; all && corner < kFarthest && look_farther(); ++corner) {
+    }
     if (all) leave_joined(t);
     std::erase_if(found_, [&](std::uint32_t e) { return edges_[e].triangle == t || edges_[e].other == t; });
+    for (std::uint32_t& e : found_) e |= leads_to_others(e) ? kEnds : 0;
     return found_;
   }
-  [[nodiscard]] const CornerEdge& edge(std::uint32_t place) const { return edges_[place]; }
+  [[nodiscard]] CornerEdge edge(std::uint32_t place) const {
+    CornerEdge out = edges_[place & ~kEnds];
+    if ((place & kEnds) != 0) out.other = OccluderTopology::kNone;
+    return out;
+  }
 
 private:
+  // Corners of rows that lead from one to the next: pixels hardly reach farther.
+  static constexpr int kFarthest = 4;
   // No more than are surely too many: each is found at both its ends, and three may be the triangle's own.
   static constexpr std::size_t kTooMany = 2 * (OccluderTopology::kMostAround + 4);
 
@@ -99,6 +105,60 @@ private:
     return best;
   }
 
+  [[nodiscard]] const OccluderTopology::SharedEdge* shared_at(std::uint32_t place) const {
+    const std::uint32_t other = edges_[place].other;
+    const bool is_shared = other != OccluderTopology::kNone && other >= OccluderTopology::kShared;
+    return is_shared ? &mesh_.shared[other - OccluderTopology::kShared] : nullptr;
+  }
+
+  // Appends the ends of the edges of others that lie on a shared one.
+  void append_ends(const OccluderTopology::SharedEdge& shared, std::vector<std::uint32_t>& out) const {
+    for (std::uint32_t i = shared.first; i < shared.end; ++i) {
+      const std::uint32_t other = mesh_.others[i] / 4, k = edge_along(other, shared.triangle, shared.edge);
+      out.push_back(mesh_.triangles[other][k]);
+      out.push_back(mesh_.triangles[other][(k + 1) % 3]);
+    }
+  }
+
+  // Those of such an edge's ends, other than its own, of which nobody has asked what ends there.
+  void find_unknown_ends(std::uint32_t place, std::vector<std::uint32_t>& out) const {
+    out.clear();
+    const OccluderTopology::SharedEdge* const shared = shared_at(place);
+    if (!shared) return;
+    append_ends(*shared, out);
+    std::erase_if(out, [&](std::uint32_t v) {
+      return v == edges_[place].a || v == edges_[place].b || std::ranges::binary_search(vertices_, v);
+    });
+  }
+
+  // Finds what ends at corners of rows (T-junctions) along the edges found so far, unless that is too much. A
+  // pixel may reach there across such an edge.
+  bool look_farther() {
+    farther_.clear();
+    for (const std::uint32_t e : found_) {
+      find_unknown_ends(e, ends_);
+      farther_.insert(farther_.end(), ends_.begin(), ends_.end());
+    }
+    if (farther_.empty()) return false;
+    const std::vector<std::uint32_t> before = found_;
+    for (const std::uint32_t vertex : farther_) add(vertex);
+    const bool some_left_out = found_.size() >= kTooMany;
+    keep_once(found_);
+    if (some_left_out || found_.size() > OccluderTopology::kMostAround) {
+      found_ = before;
+      return false;
+    }
+    vertices_.insert(vertices_.end(), farther_.begin(), farther_.end());
+    keep_once(vertices_);
+    return true;
+  }
+
+  // Whether there is more beyond an edge than was asked for.
+  [[nodiscard]] bool leads_to_others(std::uint32_t place) {
+    find_unknown_ends(place, ends_);
+    return !ends_.empty();
+  }
+
   static void keep_once(std::vector<std::uint32_t>& some) {
     std::ranges::sort(some);
     some.erase(std::unique(some.begin(), some.end()), some.end());
@@ -138,7 +198,7 @@ private:
 
   const OccluderTopology& mesh_;
   std::vector<CornerEdge> edges_;
-  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, found_, joined_;
+  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, farther_, ends_, found_, joined_;
   // One a triangle: turn_ where it is near the triangle in question, one more where it is joined with it.
   std::vector<std::uint64_t> seen_;
   std::uint64_t turn_ = 0;

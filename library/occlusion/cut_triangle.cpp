@@ -69,6 +69,24 @@ void cut_by(double a, double b, double& begin, double& end) {
   if (a >= 0 && b < 0) end = std::min(end, a / (a - b));
 }
 
+// Of the part of a segment before the near plane what is no farther beyond the image than that is wide or
+// high.
+std::optional<ImageSegment> part_in_image(const DepthTiles& tiles, const glm::dvec3& a, const glm::dvec3& b,
+                                          double begin, double end) {
+  const Homogeneous from = on_image(tiles.projection, a), to = on_image(tiles.projection, b);
+  const double width = tiles.width, height = tiles.height;
+  cut_by(from.x + width * from.z, to.x + width * to.z, begin, end);
+  cut_by(2 * width * from.z - from.x, 2 * width * to.z - to.x, begin, end);
+  cut_by(from.y + height * from.z, to.y + height * to.z, begin, end);
+  cut_by(2 * height * from.z - from.y, 2 * height * to.z - to.y, begin, end);
+  if (!(begin <= end)) return {};
+  const auto place = [&](double share) {
+    const Homogeneous at = from + (to - from) * share;
+    return std::array{static_cast<float>(at.x / at.z), static_cast<float>(at.y / at.z)};
+  };
+  return ImageSegment{place(begin), place(end)};
+}
+
 }  // namespace
 
 glm::dvec3 about_eye(const EyeProjection& e, const Vec3& at) noexcept {
@@ -87,20 +105,9 @@ CutTriangle cut_triangle(const DepthTiles& tiles, const ExactCorners& corners) n
 
 std::optional<ImageSegment> in_view(const DepthTiles& tiles, const glm::dvec3& a,
                                     const glm::dvec3& b) noexcept {
-  const Homogeneous from = on_image(tiles.projection, a), to = on_image(tiles.projection, b);
-  const double width = tiles.width, height = tiles.height;
   double begin = 0, end = 1;
   cut_by(dot(tiles.rays.near_plane, a), dot(tiles.rays.near_plane, b), begin, end);
-  cut_by(from.x + width * from.z, to.x + width * to.z, begin, end);
-  cut_by(2 * width * from.z - from.x, 2 * width * to.z - to.x, begin, end);
-  cut_by(from.y + height * from.z, to.y + height * to.z, begin, end);
-  cut_by(2 * height * from.z - from.y, 2 * height * to.z - to.y, begin, end);
-  if (!(begin <= end)) return {};
-  const auto place = [&](double share) {
-    const Homogeneous at = from + (to - from) * share;
-    return std::array{static_cast<float>(at.x / at.z), static_cast<float>(at.y / at.z)};
-  };
-  return ImageSegment{place(begin), place(end)};
+  return part_in_image(tiles, a, b, begin, end);
 }
 
 std::optional<ImageSegment> near_edge(const DepthTiles& tiles, const ExactCorners& corners) noexcept {
@@ -112,12 +119,12 @@ std::optional<ImageSegment> near_edge(const DepthTiles& tiles, const ExactCorner
     if ((at >= 0) != (next >= 0) && count < 2) ends[count++] = a + (b - a) * (at / (at - next));
   }
   if (count < 2) return {};
-  // On the plane but for rounding, which in_view() must not take for behind it.
+  // On the plane but for rounding, which must not carry them behind the eye.
   const Vec4& plane = tiles.rays.near_plane;
   const glm::dvec3 inwards(plane.x, plane.y, plane.z);
   const double least = 1e-9 * (std::fabs(double{plane.w}) + 1e-6);
   for (glm::dvec3& q : ends) q += inwards * ((least - dot(plane, q)) / glm::dot(inwards, inwards));
-  return in_view(tiles, ends[0], ends[1]);
+  return part_in_image(tiles, ends[0], ends[1], 0, 1);
 }
 
 }  // namespace sightline::occlusion

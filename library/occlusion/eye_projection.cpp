@@ -57,6 +57,13 @@ double skew_of(const glm::dmat3& there, const glm::dmat3& back) {
   return std::isfinite(all) ? std::max({sum.x, sum.y, sum.z}) : all;
 }
 
+// How far before or behind the eye an orthographic view's near and far planes lie at most; no number where
+// they lie nowhere.
+float largest_depth(const View& view) {
+  const double along = double{view.eye_to_clip.m[10]}, at = double{view.eye_to_clip.m[14]};
+  return static_cast<float>(std::max(std::fabs(at / along), std::fabs((1 - at) / along)));
+}
+
 // Of rows about an eye. In line, so that nothing grows where nothing is placed.
 [[gnu::always_inline]] inline EyeProjection about_eye(const Rows& rows, const glm::dvec3& eye) {
   EyeProjection out;
@@ -87,11 +94,12 @@ EyeProjection placed_projection(const View& view, const glm::dmat4& placement, s
 
 float corner_rounding(const EyeProjection& e, const View& view, std::uint32_t scale) noexcept {
   const auto length = [](const Vec4& row) { return std::hypot(row.x, row.y, row.z); };
-  // An orthographic view has no focal length; what it sees lies about as far away as the image is wide.
-  const float focal = e.orthographic
-                          ? static_cast<float>(view.width + view.height) / static_cast<float>(scale)
-                          : std::max(length(e.x), length(e.y)) / length(e.w);
-  return kCornerRounding * focal;
+  if (!e.orthographic) return kCornerRounding * std::max(length(e.x), length(e.y)) / length(e.w);
+  // An orthographic view has no focal length. What it sees lies about as far away as the image is wide, or as
+  // its near and far planes are.
+  const float size = static_cast<float>(view.width + view.height) / static_cast<float>(scale),
+              depth = largest_depth(view) * std::max(length(e.x), length(e.y));
+  return kCornerRounding * (depth > size ? depth : size);
 }
 
 PixelRays pixel_rays(const View& view, std::uint32_t pixel) noexcept {

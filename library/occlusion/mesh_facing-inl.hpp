@@ -171,7 +171,8 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF length = hn::Sqrt(dot(normal, normal));
   const VPoints unit{hn::Div(normal.x, length), hn::Div(normal.y, length), hn::Div(normal.z, length)};
   const VF reach = reach_of(c.corners);
-  const VF plane_at = dot(unit, nearest_of(c));
+  const VPoints nearest = nearest_of(c);
+  const VF plane_at = dot(unit, nearest);
   const VF scale = orthographic ? dot(unit, rays.forward) : plane_at;
   out.distance = hn::Abs(scale);
   const VF least = orthographic ? hn::Set(f, rays.edge_on)
@@ -185,7 +186,10 @@ HWY_INLINE TrianglePlanes planes_of(const DepthTiles& tiles, const Candidates& c
   const VF sides = out.sides = hn::Add(largest(pq), largest(pr));
   out.doubt = hn::Div(hn::Mul(hn::Mul(hn::Set(f, kDrawnNormalRounding), reach), sides),
                       hn::Mul(length, hn::Abs(scale)));
-  out.doubt = hn::Mul(out.doubt, orthographic ? hn::Add(sides, sides) : hn::Set(f, rays.stretch));
+  // It turns rays, and moves the corner, which may lie many times as far to the side as it is deep.
+  const VF stretch = hn::Set(f, rays.stretch), aside = hn::Mul(c.nearest, hn::Sqrt(dot(nearest, nearest)));
+  const VF far = hn::IfThenElse(hn::Gt(aside, hn::Mul(hn::Set(f, kAside), stretch)), aside, stretch);
+  out.doubt = hn::Mul(out.doubt, orthographic ? hn::Add(sides, sides) : far);
   return out;
 }
 

@@ -3,7 +3,8 @@
 //
 // A triangle has the pixels whose centres it holds, and shares what they reach beyond it with those that go
 // on at its edges. Triangles that count are wide enough for a pixel's margin not to reach across, so such a
-// pixel touches only triangles that share a corner with it. It is covered but where the mesh ends at an edge
+// pixel touches only triangles that share a corner with it, or with a row of others along an edge that it
+// touches (T-junctions). It is covered but where the mesh ends at an edge
 // of one of those that ends at such a corner, and no deeper than the steepest of them falls within a margin.
 // Neighbours share most of what lies around them: it is looked for once a group.
 #if defined(SIGHTLINE_OCCLUSION_MESH_RIM_INL) == defined(HWY_TARGET_TOGGLE)

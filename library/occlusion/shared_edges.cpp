@@ -29,6 +29,10 @@ struct LineEdge {
   bool open;   // has no neighbour
 };
 
+double largest(const glm::dvec3& p) {
+  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
 // The number of the line through two points, and its direction: the same for all edges on one line, but where
 // rounding carries them to different numbers.
 std::uint64_t number_of(const glm::dvec3& a, const glm::dvec3& b, double reach, glm::dvec3& direction) {
@@ -79,8 +83,7 @@ struct Cover {
 
 class Covers {
 public:
-  Covers(const OccluderTopology& mesh, double reach, bool junctions)
-      : mesh_(mesh), reach_(reach), junctions_(junctions) {}
+  Covers(const OccluderTopology& mesh, bool junctions) : mesh_(mesh), junctions_(junctions) {}
 
   // Those of edge i of all open ones, which are sorted by line and place.
   const std::vector<Cover>& of(std::span<const LineEdge> edges, std::size_t i) {
@@ -110,13 +113,15 @@ private:
   }
 
   void add(const LineEdge& edge, const LineEdge& other) {
-    const glm::dvec3 a = point(edge, 0), along = point(edge, 1) - a;
+    const glm::dvec3 a = point(edge, 0), b = point(edge, 1), along = b - a, from = point(other, 0),
+                     to = point(other, 1);
     const double length = glm::dot(along, along);
+    // Of these four alone: what stands far away makes nothing here less sharp.
+    const double reach = std::max({largest(a), largest(b), largest(from), largest(to)});
     const auto place = [&](const glm::dvec3& p) { return glm::dot(p - a, along) / length; };
     const auto on_line = [&](const glm::dvec3& p) {
-      return glm::length(glm::cross(along, p - a)) <= kOnLine * reach_ * std::sqrt(length);
+      return glm::length(glm::cross(along, p - a)) <= kOnLine * reach * std::sqrt(length);
     };
-    const glm::dvec3 from = point(other, 0), to = point(other, 1);
     if (!on_line(from) || !on_line(to)) return;
     const double s = place(from), t = place(to);
     const Cover cover{std::max(0.0, std::min(s, t)), std::min(1.0, std::max(s, t)),
@@ -125,7 +130,6 @@ private:
   }
 
   const OccluderTopology& mesh_;
-  double reach_;
   bool junctions_;
   std::vector<Cover> found_;
 };
@@ -136,12 +140,12 @@ bool append_pieces(const std::vector<Cover>& covers, std::vector<double>& ends,
   ends.assign({0, 1});
   for (const Cover& c : covers) ends.insert(ends.end(), {c.begin, c.end});
   std::ranges::sort(ends);
-  constexpr double kNoPiece = 1e-9;  // of the edge: rounding of where one cover ends and the next begins
+  // Covers that meet in a corner end there to the bit: where one lies along the edge is told by it alone.
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    if (ends[i + 1] - ends[i] <= kNoPiece) continue;
+    if (ends[i + 1] <= ends[i]) continue;
     const std::size_t before = others.size();
     for (const Cover& c : covers) {
-      if (c.begin <= ends[i] + kNoPiece && c.end >= ends[i + 1] - kNoPiece) others.push_back(c.other);
+      if (c.begin <= ends[i] && c.end >= ends[i + 1]) others.push_back(c.other);
     }
     if (others.size() == before) return false;
     others.back() |= 1;
@@ -153,10 +157,9 @@ bool append_pieces(const std::vector<Cover>& covers, std::vector<double>& ends,
 
 void find_shared_edges(OccluderTopology& mesh, bool close_junctions) {
   double reach = 1e-30;
-  for (const Vec3& p : mesh.positions)
-    reach = std::max({reach, std::fabs(double{p.x}), std::fabs(double{p.y}), std::fabs(double{p.z})});
+  for (const Vec3& p : mesh.positions) reach = std::max(reach, largest(to_double(p)));
   const std::vector<LineEdge> edges = edges_by_line(mesh, reach, close_junctions);
-  Covers covers(mesh, reach, close_junctions);
+  Covers covers(mesh, close_junctions);
   std::vector<double> ends;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (!edges[i].open) continue;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "workbench/scene/shapes.hpp"
@@ -60,6 +61,71 @@ TEST(JoinedEdges, WhatMeetsThemInACornerAloneIsAnothersOutline) {
   EXPECT_EQ(open_pixels(wall, TJunctions::open), 0u);
   add_fan(wall, {{30.3f, 30.3f, 0}, {50, 30.8f, 5}, {50, 40, 5}});
   EXPECT_EQ(open_pixels(wall, TJunctions::open), 0u);
+}
+
+// A fan about (32.5, 32.2), and on its lower side two that leave a wedge whose tip is next to its middle: a
+// pixel of the fan's middle triangle reaches the wedge across the edge of another.
+scene::Shape fan_above_a_wedge() {
+  const Vec3 middle{32.5f, 32.2f, 0}, left{4, 32.2f, 0}, right{60, 32.2f, 0}, tip{32.45f, 32.2f, 0};
+  scene::Shape shape;
+  for (const auto& [a, b] :
+       {std::pair{right, Vec3{45, 60, 0}}, {Vec3{45, 60, 0}, Vec3{20, 60, 0}}, {Vec3{20, 60, 0}, left}})
+    add_fan(shape, {middle, a, b});
+  add_fan(shape, {tip, {60, 4, 0}, right});
+  add_fan(shape, {tip, left, {4, 4, 0}});
+  return shape;
+}
+
+OcclusionBuffer drawn(const scene::Shape& shape) {
+  const Camera camera{.eye = {32, 32, 100}, .orthographic_height = kPixels, .far_plane = 3000};
+  OcclusionBuffer buffer;
+  EXPECT_TRUE(buffer.begin({*make_view(camera, kPixels, kPixels), {}}, {Coverage::area}));
+  const auto mesh = OccluderMesh::make(shape.positions, shape.indices, Sides::both, TJunctions::closed);
+  EXPECT_TRUE(buffer.draw_mesh(*mesh));
+  return buffer;
+}
+
+TEST(JoinedEdges, AHoleIsSeenWhoseTipLiesOnAnEdgeOfANeighbour) {
+  const OcclusionBuffer buffer = drawn(fan_above_a_wedge());
+  EXPECT_TRUE(buffer.may_see(Box{{32.44f, 32.05f, -10}, {32.46f, 32.1f, -9}}));
+  EXPECT_FALSE(buffer.may_see(Box{{32.44f, 36, -10}, {32.46f, 37, -9}}));
+  EXPECT_FALSE(buffer.may_see(Box{{50.4f, 30.1f, -10}, {50.5f, 30.2f, -9}}));
+}
+
+TEST(JoinedEdges, APitIsDeepWhoseRimHasACornerOnAnEdgeOfANeighbour) {
+  scene::Shape shape = fan_above_a_wedge();
+  const Vec3 tip{32.45f, 32.2f, 0}, bottom{32, 26, -600};
+  add_fan(shape, {tip, {4, 4, 0}, bottom});
+  add_fan(shape, {tip, bottom, {60, 4, 0}});
+  const OcclusionBuffer buffer = drawn(shape);
+  // Where the pit is some 14 m deep, and the box 6 m above it.
+  EXPECT_TRUE(buffer.may_see(Box{{32.448f, 32.05f, -8}, {32.452f, 32.08f, -7.9f}}));
+}
+
+// How far away other things of the mesh stand does not matter.
+TEST(JoinedEdges, ASlitStaysOpenHoweverFarTheMeshReaches) {
+  for (const float far : {0.0f, 1e10f, 1e12f}) {
+    scene::Shape walls;
+    add_fan(walls, {{-28, 0.1f, 0}, {28, 0.1f, 0}, {0, 28, 0}});
+    add_fan(walls, {{-28, 0.09f, 0}, {0, -28, 0}, {28, 0.09f, 0}});
+    if (far > 0) add_fan(walls, {{far, 0, -5}, {far, 1, -5}, {far, 1, -6}});
+    const auto mesh = *OccluderMesh::make(walls.positions, walls.indices, Sides::both, TJunctions::closed);
+    EXPECT_EQ(mesh.open_edges(), far > 0 ? 9u : 6u) << far;
+  }
+}
+
+TEST(JoinedEdges, AGapStaysOpenHoweverLongTheEdge) {
+  constexpr float kLong = 1e6f, kHalf = 5e-4f;
+  scene::Shape walls;
+  add_fan(walls, {{-kLong, 0, 0}, {kLong, 0, 0}, {0, kLong, 0}});
+  add_fan(walls, {{-kLong, 0, 0}, {-kHalf, -6, 0}, {-kHalf, 0, 0}});
+  add_fan(walls, {{kHalf, 0, 0}, {kHalf, -6, 0}, {kLong, 0, 0}});
+  const auto open = [&] {
+    return OccluderMesh::make(walls.positions, walls.indices, Sides::both, TJunctions::closed)->open_edges();
+  };
+  const std::size_t before = open();
+  add_fan(walls, {{-kHalf, 0, 0}, {-kHalf, -6, 0}, {kHalf, 0, 0}});
+  EXPECT_LT(open(), before);
 }
 
 }  // namespace
