@@ -73,6 +73,54 @@ TEST(Pk3Hostile, BombsAreRefused) {
   EXPECT_NE(refusal_of_archive(archive), "");
 }
 
+/// An archive of so many entries that each say they unpack to `claimed` bytes, and end long before.
+Blob claims(const std::string& start, const std::string& ending, std::size_t entries, std::uint32_t claimed) {
+  std::mt19937 random(1);
+  Blob noise(claimed / 1000);
+  for (std::byte& byte : noise) byte = std::byte(random() & 0xff);
+  std::vector<std::pair<std::string, Blob>> files;
+  for (std::size_t i = 0; i < entries; ++i) files.emplace_back(start + std::to_string(i) + ending, noise);
+  Blob archive = to_pk3(files);
+  set_in_headers(archive, 22, 24, claimed);
+  return archive;
+}
+
+// One packed stream may stand behind thousands of names.
+TEST(Pk3Hostile, ScriptsAreUnpackedUpToALimitOfThemAll) {
+  Blob archive = claims("scripts/", ".shader", 1, (64 << 20) + 1);
+  io::GameFiles large(archive, "a.pk3");
+  EXPECT_TRUE(large.scripts().empty());
+  ASSERT_EQ(large.left_out().size(), 1u);
+  EXPECT_EQ(large.left_out()[0],
+            "a.pk3:scripts/0.shader: brings all shader scripts over 64 MiB; it is left out");
+  archive = claims("scripts/", ".shader", 4, 20 << 20);
+  io::GameFiles many(archive, "a.pk3");
+  EXPECT_TRUE(many.scripts().empty());
+  ASSERT_EQ(many.left_out().size(), 4u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_THAT(many.left_out()[i], HasSubstr("ends after")) << i;
+  EXPECT_THAT(many.left_out()[3], HasSubstr("scripts/3.shader: brings all shader scripts over 64 MiB"));
+}
+
+TEST(Pk3Hostile, FilesOfTheGameAreUnpackedUpToALimitOfThemAll) {
+  const Blob archive = claims("textures/", ".tga", 9, 60 << 20);
+  io::GameFiles files(archive, "a.pk3");
+  for (std::size_t i = 0; i < 9; ++i) {
+    const std::string said = error_of([&] { (void)files.read("textures/" + std::to_string(i) + ".tga"); });
+    EXPECT_THAT(said, HasSubstr(i < 8 ? "ends after" : "brings all files of the game over 512 MiB")) << i;
+  }
+}
+
+TEST(Pk3Hostile, LargeLooseScriptsAreLeftOut) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "scripts");
+  write(folder / "scripts/a.shader", {});
+  std::filesystem::resize_file(folder / "scripts/a.shader", (64 << 20) + 1);
+  io::GameFiles files(folder.path());
+  EXPECT_TRUE(files.scripts().empty());
+  ASSERT_EQ(files.left_out().size(), 1u);
+  EXPECT_THAT(files.left_out()[0], HasSubstr("a.shader: is larger than the 67108864 bytes expected"));
+}
+
 TEST(Pk3Hostile, WrongChecksumIsRefused) {
   Blob archive = to_pk3(kEntry, to_bsp(two_rooms()));
   set_in_headers(archive, 14, 16, 0x12345678);

@@ -13,6 +13,7 @@
 #include <sightline/workbench/io.hpp>
 
 #include "workbench/io/files.hpp"
+#include "workbench/io/text_file.hpp"
 
 namespace sightline {
 
@@ -73,8 +74,8 @@ std::string nearest(zip_t* archive, const std::string& entry) {
   return "the nearest are " + list;
 }
 
-std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, const std::string& entry) {
-  const std::string name = archive_name + ":" + entry;
+/// What the archive says of an entry that can be unpacked.
+zip_stat_t expect_entry(zip_t* archive, const std::string& name, const std::string& entry) {
   zip_stat_t stat;
   zip_stat_init(&stat);
   if (zip_stat(archive, entry.c_str(), 0, &stat) != 0) {
@@ -93,6 +94,10 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
     throw Error(fmt::format("{}: says that {} bytes unpack to {}, which deflate cannot do", name,
                             stat.comp_size, stat.size));
   }
+  return stat;
+}
+
+std::vector<std::byte> unpack(zip_t* archive, const std::string& name, const zip_stat_t& stat) {
   const std::unique_ptr<zip_file_t, DiscardZip> file(zip_fopen_index(archive, stat.index, 0));
   if (!file) throw Error(fmt::format("{}: cannot be unpacked: {}", name, zip_strerror(archive)));
   std::vector<std::byte> bytes(stat.size);
@@ -109,6 +114,11 @@ std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, c
   if (n < 0) throw Error(fmt::format("{}: cannot be unpacked: {}", name, zip_file_strerror(file.get())));
   if (n > 0) throw Error(fmt::format("{}: unpacks to more than the {} bytes it says", name, bytes.size()));
   return bytes;
+}
+
+std::vector<std::byte> unpack(zip_t* archive, const std::string& archive_name, const std::string& entry) {
+  const std::string name = archive_name + ":" + entry;
+  return unpack(archive, name, expect_entry(archive, name, entry));
 }
 
 }  // namespace
@@ -208,39 +218,50 @@ GameFiles::GameFiles(Bytes archive, const std::string& archive_name) {
 
 GameFiles::~GameFiles() = default;
 
-std::vector<std::byte> GameFiles::unpack(const std::string& name) {
+std::vector<std::byte> GameFiles::unpack(const std::string& name, Share& share) {
   for (const std::unique_ptr<Source>& source : sources_) {
     const auto found = source->entries.find(name);
-    if (found != source->entries.end()) return io::unpack(source->archive.get(), source->name, found->second);
+    if (found == source->entries.end()) continue;
+    const std::string called = source->name + ":" + found->second;
+    const zip_stat_t stat = expect_entry(source->archive.get(), called, found->second);
+    // Many entries may share a few packed bytes, and what turns out broken was work too.
+    if (stat.size > share.left) throw Error(fmt::format("{}: brings all {}", called, share.over));
+    share.left -= stat.size;
+    return io::unpack(source->archive.get(), called, stat);
   }
   return {};
 }
 
 std::vector<std::byte> GameFiles::read(std::string_view name) {
-  return unpack(lowered(std::string(name)));
+  return unpack(lowered(std::string(name)), files_);
 }
 
 std::vector<std::string> GameFiles::scripts() {
-  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  Share share{std::uint64_t{64} << 20, "shader scripts over 64 MiB"};
   std::vector<std::string> texts;
   std::set<std::string> known;
-  std::size_t sum = 0;
   const auto take = [&](const std::string& name, const auto& load) {
     if (!known.insert(name).second) return;
     try {
-      const std::vector<std::byte> bytes = load();
-      if (sum + bytes.size() > kMostBytes) throw Error(name + ": brings all shader scripts over 64 MiB");
-      sum += bytes.size();
-      texts.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      texts.push_back(load());
     } catch (const Error& error) {
       left_out_.push_back(std::string(error.what()) + "; it is left out");
     }
   };
   for (const std::unique_ptr<Source>& source : sources_) {
-    for (const std::string& script : source->scripts) take(script, [&] { return unpack(script); });
+    for (const std::string& script : source->scripts) {
+      take(script, [&] {
+        const std::vector<std::byte> bytes = unpack(script, share);
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      });
+    }
   }
   for (const std::filesystem::path& path : loose_scripts_) {
-    take("scripts/" + lowered(path.filename().string()), [&] { return read_file(path); });
+    take("scripts/" + lowered(path.filename().string()), [&] {
+      std::string text = read_file(path, share.left);
+      share.left -= text.size();
+      return text;
+    });
   }
   return texts;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -35,18 +36,25 @@ public:
 
   /// The texts of all shader scripts, "scripts/NAME.shader", what counts first at the front; at most 64 MiB.
   std::vector<std::string> scripts();
-  /// A file out of the archives; empty where there is none of the name.
+  /// A file out of the archives; empty where there is none of the name. Throws Error for a broken one, and
+  /// for one that brings all that were read over 512 MiB.
   std::vector<std::byte> read(std::string_view name);
   /// What was left out, a sentence each.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
 
 private:
   struct Source;
-  std::vector<std::byte> unpack(const std::string& name);
+  /// Bytes that may still be unpacked, and what one file more would bring all over.
+  struct Share {
+    std::uint64_t left;
+    const char* over;
+  };
+  std::vector<std::byte> unpack(const std::string& name, Share& share);
 
   std::vector<std::unique_ptr<Source>> sources_;  ///< what counts first at the front
   std::vector<std::filesystem::path> loose_scripts_;
   std::vector<std::string> left_out_;
+  Share files_{std::uint64_t{512} << 20, "files of the game over 512 MiB"};
 };
 
 /// A level with its shader scripts and images out of the game's files.
