@@ -12,13 +12,15 @@ using namespace sightline;
 template <class Read>
 void examine(Read read, io::Bytes bytes) {
   std::optional<AlphaImage> image;
+  io::PixelBudget budget;
   try {
-    image = read(bytes);
+    image = read(bytes, budget);
   } catch (const Error&) {
   }
   if (!image) return;
   if (image->alpha.size() != std::uint64_t{image->width} * image->height) __builtin_trap();
-  if (image->alpha.size() < 65536 && io::read_alpha(io::write_alpha(*image)) != image) __builtin_trap();
+  if (image->alpha.size() < 65536 && io::read_alpha(io::write_alpha(*image), budget) != image)
+    __builtin_trap();
 }
 
 }  // namespace

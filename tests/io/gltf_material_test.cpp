@@ -235,11 +235,23 @@ TEST(GltfMaterialHostile, ReferencesAndNumbers) {
 }
 
 TEST(AlphaPng, SixteenBitsAndLimits) {
-  EXPECT_EQ(io::read_alpha(png()), kAlpha);
-  EXPECT_EQ(io::read_alpha(jpeg()), std::nullopt);
+  io::PixelBudget budget;
+  EXPECT_EQ(io::read_alpha(png(), budget), kAlpha);
+  EXPECT_EQ(io::read_alpha(jpeg(), budget), std::nullopt);
   // 20,000 pixels wide: the header alone, with its checksum.
   AlphaImage wide{20000, 1, std::vector<std::uint8_t>(20000, 7)};
-  EXPECT_THAT(error_of([&] { (void)io::read_alpha(io::write_alpha(wide)); }), HasSubstr("20000 x 1 pixels"));
+  EXPECT_THAT(error_of([&] { (void)io::read_alpha(io::write_alpha(wide), budget); }),
+              HasSubstr("20000 x 1 pixels"));
+}
+
+// What is damaged was decoded up to where it is.
+TEST(AlphaPng, DamagedImagesCountTowardsAllPixels) {
+  io::PixelBudget budget;
+  budget.take(2 * io::kMaxImagePixels - kAlpha.alpha.size());
+  std::vector<std::byte> cut = png();
+  cut.resize(cut.size() - 16);
+  EXPECT_THAT(error_of([&] { (void)io::read_alpha(cut, budget); }), HasSubstr("is a broken PNG"));
+  EXPECT_THAT(error_of([&] { (void)io::read_alpha(png(), budget); }), HasSubstr("over 128 million pixels"));
 }
 
 }  // namespace

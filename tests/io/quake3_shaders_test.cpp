@@ -155,6 +155,12 @@ TEST(Quake3Shaders, ScriptsBesideALevelAreFound) {
   EXPECT_EQ(load_scene((folder / "maps/sample.bsp").string()).surface[0], Surface::transparent);
 }
 
+/// The texture's alpha, read by itself.
+std::optional<AlphaImage> targa_alpha(const Blob& bytes) {
+  io::PixelBudget budget;
+  return read_tga_alpha(bytes, budget);
+}
+
 /// A Targa of 2 x 2 texels, plain or of one run and one plain packet; alphas from the bottom row: 10, 10,
 /// 200, 255.
 Blob targa(bool packed) {
@@ -172,8 +178,8 @@ Blob targa(bool packed) {
 
 TEST(Quake3Shaders, CutOutsHaveTheAlphaOfTheFirstStagesImage) {
   const AlphaImage as_stored{2, 2, {200, 255, 10, 10}};
-  EXPECT_EQ(read_tga_alpha(targa(false)), as_stored);
-  EXPECT_EQ(read_tga_alpha(targa(true)), as_stored);
+  EXPECT_EQ(targa_alpha(targa(false)), as_stored);
+  EXPECT_EQ(targa_alpha(targa(true)), as_stored);
   LoadOptions options;
   const auto image_of = [&](const std::string& stage, const Blob& tga) {
     options.shader_scripts = {"textures/wall\n{\n{\n" + stage + "\n}\n}\n"};
@@ -203,6 +209,29 @@ TEST(Quake3Shaders, CutOutsHaveTheAlphaOfTheFirstStagesImage) {
   EXPECT_THAT(scene.ignored, ElementsAre(testing::HasSubstr("image textures/leaf.tga is a Targa that ends")));
 }
 
+// Each claims 64 million texels and ends before them.
+TEST(Quake3Shaders, DamagedImagesCountTowardsAllPixels) {
+  Blob huge = targa(false);
+  huge[13] = huge[15] = std::byte{8192 >> 8};
+  huge[12] = huge[14] = std::byte{0};
+  LoadOptions options;
+  options.game_file = [&](const std::string& name) { return name.ends_with(".tga") ? huge : Blob{}; };
+  Level level = two_rooms();
+  std::string script;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = "textures/" + std::to_string(i);
+    level.shaders.push_back({});
+    name.copy(level.shaders.back().name.data(), name.size());
+    level.faces[i].shader = static_cast<std::int32_t>(level.shaders.size() - 1);
+    script += name + "\n{\n{\nmap " + name + ".tga\nalphaFunc GE128\n}\n}\n";
+  }
+  options.shader_scripts = {script};
+  EXPECT_THAT(read_bsp(to_bsp(level), "level", options).ignored,
+              ElementsAre(testing::HasSubstr("textures/0.tga is a Targa that ends"),
+                          testing::HasSubstr("textures/1.tga is a Targa that ends"),
+                          testing::HasSubstr("textures/2.tga brings all images together over 128 million")));
+}
+
 TEST(Quake3Shaders, AnArchiveBringsItsOwnScriptsAndImages) {
   const auto script = [](const char* text) { return to_bytes(std::string(text)); };
   const Blob archive =
@@ -224,12 +253,12 @@ TEST(Quake3Shaders, BrokenTargasAreOneSentence) {
     for (std::size_t length = 0; length < targa(packed).size(); ++length) {
       Blob cut = targa(packed);
       cut.resize(length);
-      EXPECT_NE(error_of([&] { (void)read_tga_alpha(cut); }), "") << length;
+      EXPECT_NE(error_of([&] { (void)targa_alpha(cut); }), "") << length;
     }
     for (int round = 0; round < 5000; ++round) {
       Blob changed = targa(packed);
       changed[random() % changed.size()] = std::byte(random() & 0xff);
-      error_of([&] { (void)read_tga_alpha(changed); });
+      error_of([&] { (void)targa_alpha(changed); });
     }
   }
 }

@@ -44,7 +44,12 @@ bool is_jpeg(Bytes bytes) noexcept {
   return begins_with(bytes, kStart);
 }
 
-std::optional<AlphaImage> read_alpha(Bytes bytes) {
+void PixelBudget::take(std::uint64_t pixels) {
+  if (pixels > left_) throw Error("brings all images together over 128 million pixels");
+  left_ -= pixels;
+}
+
+std::optional<AlphaImage> read_alpha(Bytes bytes, PixelBudget& budget) {
   if (is_jpeg(bytes)) return {};
   if (!is_png(bytes)) throw Error("is neither a PNG nor a JPEG");
   PngImage png;
@@ -60,6 +65,7 @@ std::optional<AlphaImage> read_alpha(Bytes bytes) {
                     height, bytes.size(), kMaxImageSide));
   }
   if ((png.image.format & PNG_FORMAT_FLAG_ALPHA) == 0) return {};
+  budget.take(pixels);
   png.image.format = PNG_FORMAT_GA;
   std::vector<std::uint8_t> grey_and_alpha(PNG_IMAGE_SIZE(png.image));
   if (png_image_finish_read(&png.image, nullptr, grey_and_alpha.data(), 0, nullptr) == 0)

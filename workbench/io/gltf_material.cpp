@@ -15,9 +15,6 @@ namespace sightline::io::gltf {
 
 namespace {
 
-/// Images of all cut-outs together: a file can name one view of its bytes as many images.
-constexpr std::uint64_t kMaxPixels = 2 * kMaxImagePixels;
-
 bool says(const Json& object, const char* key) {
   const Json* found = find(object, key);
   return found != nullptr && found->is_boolean() && found->get<bool>();
@@ -123,13 +120,11 @@ std::uint64_t MaterialReader::image_of(const Json& texture_info) const {
 }
 
 void MaterialReader::read_images() {
-  std::uint64_t pixels = 0;
+  PixelBudget budget;
   for (const auto& [image, materials] : of_image_) {
     try {
-      std::optional<AlphaImage> alpha = read_alpha(document_.image(image));
+      std::optional<AlphaImage> alpha = read_alpha(document_.image(image), budget);
       if (!alpha) continue;
-      pixels += alpha->alpha.size();
-      if (pixels > kMaxPixels) throw Error("brings all images together over 128 million pixels");
       const std::uint32_t number = scene_.add_alpha_image(std::move(*alpha));
       for (const std::size_t material : materials) looks_[material].material.alpha_image = number;
     } catch (const Error& error) {

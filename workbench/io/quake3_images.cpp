@@ -5,7 +5,6 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "workbench/io/alpha_png.hpp"
 #include "workbench/io/quake3_tga.hpp"
 
 namespace sightline::io::quake3 {
@@ -24,10 +23,8 @@ std::uint32_t LevelImages::read(const std::string& name, bool inverted) {
       const std::vector<std::byte> bytes = game_file_(file);
       if (bytes.empty()) continue;
       std::optional<AlphaImage> alpha =
-          extension == std::string_view(".tga") ? read_tga_alpha(bytes) : read_alpha(bytes);
+          extension == std::string_view(".tga") ? read_tga_alpha(bytes, budget_) : read_alpha(bytes, budget_);
       if (!alpha) return kNoAlphaImage;
-      texels_ += alpha->alpha.size();
-      if (texels_ > 2 * kMaxImagePixels) throw Error("brings all images together over 128 million pixels");
       for (std::uint8_t& a : alpha->alpha) a = inverted ? static_cast<std::uint8_t>(255 - a) : a;
       return scene_.add_alpha_image(std::move(*alpha));
     } catch (const Error& error) {

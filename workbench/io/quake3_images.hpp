@@ -8,6 +8,7 @@
 
 #include <sightline/workbench/scene.hpp>
 
+#include "workbench/io/alpha_png.hpp"
 #include "workbench/io/quake3_shaders.hpp"
 
 namespace sightline::io::quake3 {
@@ -29,7 +30,7 @@ private:
 
   const GameFile& game_file_;
   Scene& scene_;
-  std::uint64_t texels_ = 0;
+  PixelBudget budget_;
   std::map<std::pair<std::string, bool>, std::uint32_t> known_;  ///< by name and whether it is inverted
 };
 

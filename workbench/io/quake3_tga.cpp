@@ -6,8 +6,6 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "workbench/io/alpha_png.hpp"
-
 namespace sightline::io::quake3 {
 
 namespace {
@@ -49,7 +47,7 @@ std::vector<std::uint8_t> unpacked(Bytes data, std::size_t count) {
 
 }  // namespace
 
-std::optional<AlphaImage> read_tga_alpha(Bytes bytes) {
+std::optional<AlphaImage> read_tga_alpha(Bytes bytes, PixelBudget& budget) {
   if (bytes.size() < kHeader) throw Error("is too short for a Targa");
   const std::uint8_t kind = byte_at(bytes, 2), bits = byte_at(bytes, 16);
   const std::uint32_t width = read_at<std::uint16_t>(bytes, 12), height = read_at<std::uint16_t>(bytes, 14);
@@ -62,6 +60,7 @@ std::optional<AlphaImage> read_tga_alpha(Bytes bytes) {
                             width, height, kMaxImageSide));
   }
   if (kind == grey || bits != 8 * kTexel) return {};
+  budget.take(count);
   const std::size_t comment = byte_at(bytes, 0);
   const Bytes data = bytes.subspan(std::min(kHeader + comment, bytes.size()));
   const std::vector<std::uint8_t> alphas = kind == true_colour ? plain(data, count) : unpacked(data, count);
