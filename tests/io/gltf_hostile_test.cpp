@@ -8,6 +8,7 @@
 #include <sightline/workbench/io.hpp>
 
 #include "sample_files.hpp"
+#include "workbench/io/gltf_document.hpp"
 
 namespace sightline {
 namespace {
@@ -161,6 +162,40 @@ TEST(GltfHostile, UnfoldingIsBounded) {
         {{"attributes", {{"POSITION", document["accessors"].size() - 1}}}, {"mode", 5}});
   }
   EXPECT_THAT(refusal(document), HasSubstr("unfolds the file"));
+}
+
+/// The sample's buffer in a file beside it, spelt in so many ways.
+json with_file(const TemporaryFolder& folder, std::size_t spellings) {
+  json document = one_triangle();
+  const std::vector<float> data{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  write(folder / "a.bin", std::as_bytes(std::span(data)));
+  std::string uri = "a.bin";
+  document["buffers"] = json::array();
+  for (std::size_t i = 0; i < spellings; ++i, uri.insert(0, "./"))
+    document["buffers"].push_back({{"byteLength", 42}, {"uri", uri}});
+  return document;
+}
+
+TEST(GltfHostile, AFileCountsOnceHoweverItIsSpelt) {
+  const TemporaryFolder folder;
+  json document = with_file(folder, 100);
+  for (std::size_t i = 0; i < 100; ++i) document["buffers"].push_back(document["buffers"][i]);
+  document["buffers"][7]["byteLength"] = 44;
+  const Blob bytes = to_bytes(document);
+  EXPECT_EQ(io::gltf::Document(bytes, folder.path()).buffer_bytes(), 44u);
+  document["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 45}};
+  EXPECT_THAT(error_of([&] { read_gltf(to_bytes(document), "sample.gltf", folder.path()); }),
+              HasSubstr("45 elements without a buffer view, more than the file has bytes"));
+}
+
+TEST(GltfHostile, AllFilesTogetherAreBounded) {
+  const TemporaryFolder folder;
+  json document = with_file(folder, 1);
+  write(folder / "hole.bin", {});
+  std::filesystem::resize_file(folder / "hole.bin", std::uintmax_t{1} << 32);
+  document["buffers"].push_back({{"byteLength", 1}, {"uri", "hole.bin"}});
+  EXPECT_EQ(error_of([&] { read_gltf(to_bytes(document), "sample.gltf", folder.path()); }),
+            "sample.gltf: buffer 1 lies in 'hole.bin', which brings all files together over 4 GiB");
 }
 
 TEST(GltfHostile, IndicesBeyondThePositions) {

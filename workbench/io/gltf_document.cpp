@@ -7,6 +7,7 @@
 
 #include <sightline/workbench/error.hpp>
 
+#include "workbench/io/files.hpp"
 #include "workbench/io/gltf_uri.hpp"
 
 namespace sightline::io::gltf {
@@ -216,12 +217,33 @@ Document::Document(Bytes bytes, const std::filesystem::path& folder) : folder_(f
       throw Error(fmt::format("buffer {} {}", i, error.what()));
     }
   }
+  std::map<const std::byte*, std::size_t> distinct;
+  for (const Bytes& buffer : buffers_) {
+    std::size_t& size = distinct[buffer.data()];
+    size = std::max(size, buffer.size());
+  }
+  for (const auto& [data, size] : distinct) buffer_bytes_ += size;
 }
 
 Bytes Document::load(const std::string& uri) {
-  const auto [place, added] = loaded_.try_emplace(uri);
-  if (added) place->second = load_uri(uri, folder_);
+  if (const auto known = data_.find(uri); known != data_.end()) return known->second;
+  if (auto data = decode_data_uri(uri)) return data_.emplace(uri, std::move(*data)).first->second;
+  const std::filesystem::path path = find_uri(uri, folder_);
+  const auto [place, added] = files_.try_emplace(path);
+  if (added) place->second = load_file(path);
   return place->second;
+}
+
+std::vector<std::byte> Document::load_file(const std::filesystem::path& path) {
+  std::error_code unknown;  // then reading says why
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!unknown && size > file_budget_) {
+    throw Error(
+        fmt::format("lies in '{}', which brings all files together over 4 GiB", path.filename().string()));
+  }
+  std::vector<std::byte> bytes = read_file(path);
+  file_budget_ -= std::min<std::uint64_t>(bytes.size(), file_budget_);
+  return bytes;
 }
 
 Bytes Document::image(std::uint64_t index) {
@@ -251,12 +273,6 @@ const Json& Document::at(const char* kind, std::uint64_t index) const {
     throw Error(fmt::format("refers to element {} of '{}', which has {}", index, kind, all.size()));
   }
   return all[index];
-}
-
-std::uint64_t Document::buffer_bytes() const noexcept {
-  std::uint64_t sum = 0;
-  for (const Bytes& buffer : buffers_) sum += buffer.size();
-  return sum;
 }
 
 Bytes Document::buffer_view(std::uint64_t index, std::uint64_t& stride) const {
@@ -297,7 +313,7 @@ Accessor Document::make_accessor(const Json& description) const {
                               out.stride_, offset, view.size()));
     }
     out.data_ = view.data() + std::min<std::uint64_t>(offset, view.size());
-  } else if (out.count_ > buffer_bytes()) {
+  } else if (out.count_ > buffer_bytes_) {
     // Elements that no byte stands behind are all zero; a file can claim billions of them for free.
     throw Error(
         fmt::format("has {} elements without a buffer view, more than the file has bytes", out.count_));

@@ -80,20 +80,25 @@ public:
   const Accessor& accessor(std::uint64_t index);
   /// The bytes of element `index` of 'images', whatever they are.
   [[nodiscard]] Bytes image(std::uint64_t index);
-  /// Bytes of all buffers together.
-  [[nodiscard]] std::uint64_t buffer_bytes() const noexcept;
+  /// Bytes of all buffers together, what several share counted once.
+  [[nodiscard]] std::uint64_t buffer_bytes() const noexcept { return buffer_bytes_; }
 
 private:
   Bytes buffer(const Json& description, std::size_t index, Bytes binary_chunk);
   Bytes load(const std::string& uri);
+  std::vector<std::byte> load_file(const std::filesystem::path& path);
   [[nodiscard]] Bytes buffer_view(std::uint64_t index, std::uint64_t& stride) const;
   [[nodiscard]] Accessor make_accessor(const Json& description) const;
   void read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out) const;
 
   Json root_;
   std::filesystem::path folder_;
-  std::map<std::string, std::vector<std::byte>, std::less<>> loaded_;  ///< buffers and images by URI
+  // Buffers and images.
+  std::map<std::string, std::vector<std::byte>, std::less<>> data_;  ///< by data URI
+  std::map<std::filesystem::path, std::vector<std::byte>> files_;    ///< however their URIs are spelt
+  std::uint64_t file_budget_ = std::uint64_t{1} << 32;               ///< bytes that may still be read
   std::vector<Bytes> buffers_;
+  std::uint64_t buffer_bytes_ = 0;
   std::map<std::uint64_t, Accessor> accessors_;
 };
 

@@ -9,8 +9,6 @@
 
 #include <sightline/workbench/error.hpp>
 
-#include "workbench/io/files.hpp"
-
 namespace sightline::io::gltf {
 
 namespace {
@@ -68,14 +66,16 @@ bool lies_within(const std::filesystem::path& path, const std::filesystem::path&
 
 }  // namespace
 
-std::vector<std::byte> load_uri(std::string_view uri, const std::filesystem::path& folder) {
-  if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
-      throw Error("has a data URI that is not base64");
-    }
-    return decode_base64(uri.substr(comma + 1));
+std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
+  if (!uri.starts_with("data:")) return {};
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
+    throw Error("has a data URI that is not base64");
   }
+  return decode_base64(uri.substr(comma + 1));
+}
+
+std::filesystem::path find_uri(std::string_view uri, const std::filesystem::path& folder) {
   const std::string shown(uri.substr(0, 100));
   if (folder.empty())
     throw Error(fmt::format("lies in another file ('{}'), expected all data within this one", shown));
@@ -92,7 +92,7 @@ std::vector<std::byte> load_uri(std::string_view uri, const std::filesystem::pat
   if (error) throw Error(fmt::format("lies in '{}', which cannot be found: {}", shown, error.message()));
   if (!lies_within(path, home))
     throw Error(fmt::format("lies in '{}', which leads out of the file's folder", shown));
-  return read_file(path);
+  return path;
 }
 
 }  // namespace sightline::io::gltf

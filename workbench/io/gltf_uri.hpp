@@ -3,13 +3,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace sightline::io::gltf {
 
-/// The bytes behind a URI: "data:…;base64,…", or a relative path to a file in `folder` or below. Throws Error
-/// for other schemes, broken base64, and paths that lead out of the folder, by '..' or by a symbolic link.
-std::vector<std::byte> load_uri(std::string_view uri, const std::filesystem::path& folder);
+/// The bytes of "data:…;base64,…"; nothing for any other URI. Throws Error for broken base64.
+std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri);
+
+/// The file that a relative path to `folder` or below names, the same however it is spelt. Throws Error for
+/// other schemes, and paths that lead out of the folder, by '..' or by a symbolic link.
+std::filesystem::path find_uri(std::string_view uri, const std::filesystem::path& folder);
 
 }  // namespace sightline::io::gltf
