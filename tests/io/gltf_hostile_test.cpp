@@ -1,5 +1,6 @@
 // glTF that is broken, lies, or asks for too much.
 #include <cstring>
+#include <numeric>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -196,6 +197,34 @@ TEST(GltfHostile, AllFilesTogetherAreBounded) {
   document["buffers"].push_back({{"byteLength", 1}, {"uri", "hole.bin"}});
   EXPECT_EQ(error_of([&] { read_gltf(to_bytes(document), "sample.gltf", folder.path()); }),
             "sample.gltf: buffer 1 lies in 'hole.bin', which brings all files together over 4 GiB");
+}
+
+/// Many primitives, each with an accessor of its own, that all name one list of a thousand indices.
+TEST(GltfHostile, SharedSparseIndicesAreBounded) {
+  constexpr std::uint16_t kIndices = 1000;
+  std::vector<std::uint16_t> indices(kIndices);
+  std::iota(indices.begin(), indices.end(), std::uint16_t{0});
+  const Blob values(12 * std::size_t{kIndices});
+  json document = one_triangle();
+  document["buffers"].push_back(
+      {{"byteLength", 2 * kIndices}, {"uri", to_data_uri(std::as_bytes(std::span(indices)))}});
+  document["buffers"].push_back({{"byteLength", values.size()}, {"uri", to_data_uri(values)}});
+  document["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 2 * kIndices}});
+  document["bufferViews"].push_back({{"buffer", 2}, {"byteLength", values.size()}});
+  const json sparse{{"count", kIndices},
+                    {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
+                    {"values", {{"bufferView", 3}}}};
+  const auto use = [&](std::size_t times) {
+    for (std::size_t i = 0; i < times; ++i) {
+      document["meshes"][0]["primitives"].push_back(
+          {{"attributes", {{"POSITION", document["accessors"].size()}}}, {"indices", 1}});
+      document["accessors"].push_back(
+          {{"componentType", 5126}, {"type", "VEC3"}, {"count", kIndices}, {"sparse", sparse}});
+    }
+    return refusal(document);
+  };
+  EXPECT_EQ(use(64), "");
+  EXPECT_THAT(use(1000), HasSubstr("has more sparse indices than the file's size can stand for"));
 }
 
 TEST(GltfHostile, IndicesBeyondThePositions) {

@@ -223,6 +223,7 @@ Document::Document(Bytes bytes, const std::filesystem::path& folder) : folder_(f
     size = std::max(size, buffer.size());
   }
   for (const auto& [data, size] : distinct) buffer_bytes_ += size;
+  sparse_budget_ = 64 * buffer_bytes_ + 65536;
 }
 
 Bytes Document::load(const std::string& uri) {
@@ -289,7 +290,7 @@ Bytes Document::buffer_view(std::uint64_t index, std::uint64_t& stride) const {
   return buffers_[buffer].subspan(offset, length);
 }
 
-Accessor Document::make_accessor(const Json& description) const {
+Accessor Document::make_accessor(const Json& description) {
   Accessor out;
   out.count_ = whole_of(description, "count");
   const std::uint64_t component = whole_of(description, "componentType");
@@ -322,7 +323,7 @@ Accessor Document::make_accessor(const Json& description) const {
   return out;
 }
 
-void Document::read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out) const {
+void Document::read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out) {
   const Json *indices = find(sparse, "indices"), *values = find(sparse, "values");
   if (indices == nullptr || values == nullptr) throw Error("is sparse, but lacks 'indices' or 'values'");
   const std::uint64_t count = whole_of(sparse, "count"), type = whole_of(*indices, "componentType");
@@ -340,6 +341,10 @@ void Document::read_sparse(const Json& sparse, std::uint64_t element_size, Acces
   };
   out.sparse_indices_ = place(*indices, index_size);
   out.sparse_values_ = place(*values, element_size);
+  // Any number of accessors may name the same indices.
+  if (count > sparse_budget_)
+    throw Error("has more sparse indices than the file's size can stand for, those before it counted in");
+  sparse_budget_ -= count;
   std::uint64_t next = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint32_t at = read_index(out.sparse_indices_ + i * index_size, index_size);

@@ -88,8 +88,8 @@ private:
   Bytes load(const std::string& uri);
   std::vector<std::byte> load_file(const std::filesystem::path& path);
   [[nodiscard]] Bytes buffer_view(std::uint64_t index, std::uint64_t& stride) const;
-  [[nodiscard]] Accessor make_accessor(const Json& description) const;
-  void read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out) const;
+  [[nodiscard]] Accessor make_accessor(const Json& description);
+  void read_sparse(const Json& sparse, std::uint64_t element_size, Accessor& out);
 
   Json root_;
   std::filesystem::path folder_;
@@ -99,6 +99,7 @@ private:
   std::uint64_t file_budget_ = std::uint64_t{1} << 32;               ///< bytes that may still be read
   std::vector<Bytes> buffers_;
   std::uint64_t buffer_bytes_ = 0;
+  std::uint64_t sparse_budget_ = 0;  ///< indices of sparse accessors that may still be looked at
   std::map<std::uint64_t, Accessor> accessors_;
 };
 
