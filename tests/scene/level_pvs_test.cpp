@@ -72,5 +72,21 @@ TEST(LevelPvs, RefusesWhatWouldLeadAstray) {
   EXPECT_TRUE(spoilt([](LevelPvs& l) { l.in_some_leaf.pop_back(); }));
 }
 
+// Every point that is looked up walks down the tree, and a segment down all that it crosses.
+TEST(LevelPvs, RefusesTreesThatAreNoneOrTooDeep) {
+  const auto refusal_of = [](std::size_t nodes) {
+    LevelPvs level = three_rooms();
+    level.nodes.assign(nodes, {{{1, 0, 0}, 0}, -1, -2});
+    for (std::size_t i = 0; i + 1 < nodes; ++i) level.nodes[i].front = static_cast<std::int32_t>(i + 1);
+    return test::refusal([&] { check(level, 4); });
+  };
+  EXPECT_EQ(refusal_of(1024), "");
+  EXPECT_EQ(refusal_of(1025), "level PVS: node 1023 has a child below 1024 others, expected fewer");
+  LevelPvs level = three_rooms();
+  level.nodes[0].back = level.nodes[0].front;
+  EXPECT_EQ(test::refusal([&] { check(level, 4); }),
+            "level PVS: node 0 has a child that another node has too, expected a tree");
+}
+
 }  // namespace
 }  // namespace sightline

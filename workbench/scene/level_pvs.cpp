@@ -36,24 +36,45 @@ void LevelPvs::potentially_visible(const Vec3& eye, std::span<std::uint8_t> mask
   }
 }
 
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error("level PVS: " + what);
+}
+
+/// Real levels have some tens of nodes one above the other; looking up a point walks down them all.
+constexpr std::uint16_t kMaxDepth = 1024;
+
+void check_tree(const LevelPvs& level) {
+  std::vector<std::uint16_t> depth(level.nodes.size(), 0);  ///< 0 but for children
+  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
+    const std::string node = "node " + std::to_string(i);
+    for (const std::int64_t child : {level.nodes[i].front, level.nodes[i].back}) {
+      if (child < 0) {
+        if (-(child + 1) >= static_cast<std::int64_t>(level.leaves.size()))
+          refuse(node + " has a leaf out of range");
+        continue;
+      }
+      // Compilers write parents before children, so a larger index is also what rules out a circle.
+      if (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))
+        refuse(node + " has a child out of order or range");
+      std::uint16_t& below = depth[static_cast<std::size_t>(child)];
+      if (below != 0) refuse(node + " has a child that another node has too, expected a tree");
+      below = static_cast<std::uint16_t>(depth[i] + 1);
+      if (below >= kMaxDepth)
+        refuse(node + " has a child below " + std::to_string(kMaxDepth) + " others, expected fewer");
+    }
+  }
+}
+
+}  // namespace
+
 void check(const LevelPvs& level, std::size_t object_count) {
-  const auto refuse = [](const std::string& what) { throw Error("level PVS: " + what); };
   if (level.leaves.empty()) refuse("it has no leaf");
   if (level.in_some_leaf.size() != object_count || level.in_world_model.size() != object_count) {
     refuse("expected one flag an object");
   }
-  for (std::size_t i = 0; i < level.nodes.size(); ++i) {
-    for (const std::int64_t child : {level.nodes[i].front, level.nodes[i].back}) {
-      // Compilers write parents before children, so a larger index is also what rules out a circle.
-      if (child >= 0 &&
-          (child <= static_cast<std::int64_t>(i) || child >= static_cast<std::int64_t>(level.nodes.size()))) {
-        refuse("node " + std::to_string(i) + " has a child out of order or range");
-      }
-      if (child < 0 && -(child + 1) >= static_cast<std::int64_t>(level.leaves.size())) {
-        refuse("node " + std::to_string(i) + " has a leaf out of range");
-      }
-    }
-  }
+  check_tree(level);
   for (std::size_t i = 0; i < level.leaves.size(); ++i) {
     const LevelPvs::Leaf& leaf = level.leaves[i];
     if (std::uint64_t{leaf.first_object} + leaf.object_count > level.leaf_objects.size()) {

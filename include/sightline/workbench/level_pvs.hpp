@@ -44,8 +44,8 @@ struct LevelPvs {
   void potentially_visible(const Vec3& eye, std::span<std::uint8_t> mask) const noexcept;
 };
 
-/// Throws Error unless every child, range, cluster and object id is in range and the tree has no circle, so
-/// that the functions above are safe.
+/// Throws Error unless every child, range, cluster and object id is in range and the nodes are a tree, at
+/// most 1024 one above the other, so that the functions above are safe.
 void check(const LevelPvs& level, std::size_t object_count);
 
 }  // namespace sightline
