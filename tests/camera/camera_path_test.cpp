@@ -218,6 +218,23 @@ TEST(CameraPath, WalkGoesThroughTheDoor) {
   EXPECT_NEAR(path.cameras.back().eye.z, -10, 1e-4);
 }
 
+// Each place is held against every other, and each stop against every later one: a file has room for a
+// hundred thousand. One in four is kept here, all of them in the first room.
+TEST(CameraPath, PlacesOfAWalkAreBounded) {
+  Scene scene = walled_scene();
+  scene.viewpoints.clear();
+  for (std::size_t i = 0; i < 3 * kMaxStops; ++i) {
+    const float z = -19 + 0.01f * static_cast<float>(i);
+    scene.viewpoints.push_back({"spawn", {i % 4 == 0 ? -10.0f : 10.0f, 1.5f, z}, {1, 0, 0}});
+    scene.waypoints.push_back(scene.viewpoints.back().eye);
+  }
+  EXPECT_EQ(NavigationGraph(scene).places(), 2 * 750 + scene::open_leaves(*scene.level).size());
+  const CameraPath path = make_path(scene, "walk", 50);
+  for (const Camera& camera : path.cameras) EXPECT_LT(camera.eye.x, 0);
+  EXPECT_EQ(path.cameras.front().eye, scene.viewpoints[0].eye);
+  EXPECT_NEAR(path.cameras.back().eye.z, scene.viewpoints[2996].eye.z, 1e-3);
+}
+
 TEST(CameraPath, LevelWithoutAnythingButARoomStands) {
   Scene scene = walled_scene();
   scene.viewpoints.clear();

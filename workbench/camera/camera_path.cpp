@@ -116,11 +116,13 @@ std::vector<Camera> circle(const Scene& scene, std::size_t frames) {
   return cameras;
 }
 
-/// The spawn points, each next the nearest not yet visited.
+/// The spawn points, some hundreds at most, each next the nearest not yet visited.
 std::vector<Vec3> rounds(const Scene& scene) {
-  std::vector<Vec3> left, order;
-  for (const Viewpoint& viewpoint : scene.viewpoints) left.push_back(viewpoint.eye);
-  if (left.size() < 2) left.insert(left.end(), scene.waypoints.begin(), scene.waypoints.end());
+  std::vector<Vec3> left = thinned(eyes_of(scene), kMaxStops), order;
+  if (left.size() < 2) {
+    const std::vector<Vec3> more = thinned(scene.waypoints, kMaxStops);
+    left.insert(left.end(), more.begin(), more.end());
+  }
   while (!left.empty()) {
     auto next = left.begin();
     if (!order.empty()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <queue>
 
@@ -11,9 +12,9 @@
 namespace sightline::camera {
 namespace {
 
-constexpr std::size_t kNeighbours = 24;  ///< joined to each place
-constexpr float kClearance = 0.15f;      ///< metres
-constexpr std::size_t kMaxPlaces = 6000;
+constexpr std::size_t kNeighbours = 24;   ///< joined to each place
+constexpr float kClearance = 0.15f;       ///< metres
+constexpr std::size_t kMaxLeaves = 6000;  ///< that are places; each place is held against every other
 constexpr std::uint32_t kNowhere = 0xffffffffu;
 
 float distance(const Vec3& a, const Vec3& b) {
@@ -25,6 +26,19 @@ Vec3 middle(const Box& b) {
 }
 
 }  // namespace
+
+std::vector<Vec3> thinned(const std::vector<Vec3>& places, std::size_t most) {
+  const std::size_t step = 1 + places.size() / most;
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < places.size(); i += step) kept.push_back(places[i]);
+  return kept;
+}
+
+std::vector<Vec3> eyes_of(const Scene& scene) {
+  std::vector<Vec3> eyes;
+  for (const Viewpoint& viewpoint : scene.viewpoints) eyes.push_back(viewpoint.eye);
+  return eyes;
+}
 
 bool is_clear(const LevelPvs& level, const Vec3& a, const Vec3& b) {
   if (scene::solid_length(level, a, b) > 0) return false;
@@ -39,14 +53,14 @@ bool is_clear(const LevelPvs& level, const Vec3& a, const Vec3& b) {
 }
 
 NavigationGraph::NavigationGraph(const Scene& scene) : level_(*scene.level) {
-  const auto add = [&](const Vec3& place) {
-    if (scene::is_open(level_, place)) places_.push_back(place);
-  };
-  for (const Viewpoint& viewpoint : scene.viewpoints) add(viewpoint.eye);
-  for (const Vec3& waypoint : scene.waypoints) add(waypoint);
-  const std::vector<std::uint32_t> leaves = scene::open_leaves(level_);
-  const std::size_t step = 1 + leaves.size() / kMaxPlaces;
-  for (std::size_t i = 0; i < leaves.size(); i += step) add(middle(level_.leaves[leaves[i]].bounds));
+  std::vector<Vec3> middles;
+  for (const std::uint32_t leaf : scene::open_leaves(level_))
+    middles.push_back(middle(level_.leaves[leaf].bounds));
+  for (const std::vector<Vec3>& some : {thinned(eyes_of(scene), kMaxStops),
+                                        thinned(scene.waypoints, kMaxStops), thinned(middles, kMaxLeaves)}) {
+    std::ranges::copy_if(some, std::back_inserter(places_),
+                         [&](const Vec3& place) { return scene::is_open(level_, place); });
+  }
   edges_.resize(places_.size());
   for (std::uint32_t p = 0; p < places_.size(); ++p) {
     for (const Edge& edge : neighbours_of(places_[p], p)) {

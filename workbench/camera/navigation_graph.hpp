@@ -1,6 +1,7 @@
 // Ways through a level's open space: places known to be free, joined where nothing solid lies between them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,9 +10,19 @@
 
 namespace sightline::camera {
 
+/// Of a scene's viewpoints, and of its waypoints; real levels have some hundreds.
+inline constexpr std::size_t kMaxStops = 1000;
+
+/// One in so many, evenly, that at most `most` are left.
+std::vector<Vec3> thinned(const std::vector<Vec3>& places, std::size_t most);
+
+/// Where the scene's viewpoints stand.
+std::vector<Vec3> eyes_of(const Scene& scene);
+
 class NavigationGraph {
 public:
-  /// Joins the scene's viewpoints, waypoints and the middles of its open leaves. The scene has a level.
+  /// Joins the scene's viewpoints, waypoints and the middles of its open leaves, some thousands of them at
+  /// most. The scene has a level.
   explicit NavigationGraph(const Scene& scene);
 
   /// Corners of a short way from a to b through open space, both included; empty where none was found.
