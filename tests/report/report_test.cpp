@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <regex>
 
 #include <sightline/workbench/error.hpp>
@@ -164,6 +168,19 @@ TEST(PageFolder, HoldsAllThatIsNotFinishedItself) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "page"), {}), 2);
   EXPECT_TRUE(std::filesystem::exists(others));
   EXPECT_EQ(beside(), 1);
+}
+
+// A pipe that nobody writes would be waited for.
+TEST(PageFolder, APipeIsNoPage) {
+  const TemporaryFolder folder;
+  const std::filesystem::path pipe = folder / "index.html";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int open_end = open(pipe.c_str(), O_RDWR);
+  std::string mark = kPageMark;
+  mark.resize(4096, ' ');
+  ASSERT_EQ(write(open_end, mark.data(), mark.size()), 4096);
+  EXPECT_THAT(test::refusal([&] { PageFolder(folder.path()); }), HasSubstr("an earlier page of ours"));
+  close(open_end);
 }
 
 TEST(PageFolder, ReplacesAPageAndNothingElse) {

@@ -21,6 +21,8 @@ namespace {
 constexpr const char* kPage = "index.html";
 
 bool is_page(const fs::path& folder) {
+  std::error_code failed;
+  if (!fs::is_regular_file(folder / kPage, failed)) return false;  // opening a pipe waits for who writes it
   std::ifstream page(folder / kPage, std::ios::binary);
   std::string head(1024, '\0');
   page.read(head.data(), static_cast<std::streamsize>(head.size()));
