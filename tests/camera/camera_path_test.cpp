@@ -12,6 +12,7 @@
 #include <sightline/workbench/worlds.hpp>
 
 #include "support/full_disk.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "workbench/camera/camera_path.hpp"
 #include "workbench/camera/navigation_graph.hpp"
@@ -233,6 +234,14 @@ TEST(CameraPath, PlacesOfAWalkAreBounded) {
   for (const Camera& camera : path.cameras) EXPECT_LT(camera.eye.x, 0);
   EXPECT_EQ(path.cameras.front().eye, scene.viewpoints[0].eye);
   EXPECT_NEAR(path.cameras.back().eye.z, scene.viewpoints[2996].eye.z, 1e-3);
+}
+
+TEST(CameraPath, EyesOutOfReachAreRefusedByName) {
+  Scene scene = walled_scene();
+  scene.name = "far.glb";
+  scene.viewpoints = {{"camera_1", {2e11f, 0, 0}, {1, 0, 0}}};
+  EXPECT_THAT(test::refusal([&] { return make_path(scene, "near", 5); }),
+              testing::StartsWith("scene 'far.glb': path 'near': view 0: "));
 }
 
 TEST(CameraPath, LevelWithoutAnythingButARoomStands) {

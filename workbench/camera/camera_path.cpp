@@ -199,6 +199,16 @@ std::vector<Camera> walk(const Scene& scene, std::size_t frames) {
   return cameras;
 }
 
+/// A scene within reach may have its paths lead out of it.
+void expect_views(const Scene& scene, const CameraPath& path) {
+  for (std::size_t i = 0; i < path.cameras.size(); ++i) {
+    if (const auto made = make_view(path.cameras[i], 64, 64); !made) {
+      throw Error("scene '" + scene.name + "': path '" + path.name + "': view " + std::to_string(i) + ": " +
+                  to_string(made.error()));
+    }
+  }
+}
+
 }  // namespace
 
 std::string_view default_path(const Scene& scene) noexcept {
@@ -223,7 +233,9 @@ CameraPath make_path(const Scene& scene, const std::string& name_or_file, std::s
     }
     path.cameras = load_path(name_or_file, scene.origin);
     if (frames != 0 && path.cameras.size() > frames) path.cameras.resize(frames);
+    return path;
   }
+  expect_views(scene, path);
   return path;
 }
 

@@ -20,7 +20,8 @@ std::string_view default_path(const Scene& scene) noexcept;
 
 /// `frames` cameras along "near", "far" (standing, turning gently), "rising" (from near up to far) or "walk"
 /// (through the level from spawn point to spawn point; without a level, a circle at eye height); any other
-/// name is a path file, of which at most `frames` views are taken (0: all). Throws Error for what is neither.
+/// name is a path file, of which at most `frames` views are taken (0: all). Throws Error for what is neither,
+/// and where a path of the scene leads out of reach.
 CameraPath make_path(const Scene& scene, const std::string& name_or_file, std::size_t frames);
 
 }  // namespace sightline::camera
