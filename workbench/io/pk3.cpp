@@ -100,12 +100,16 @@ zip_stat_t expect_entry(zip_t* archive, const std::string& name, const std::stri
 std::vector<std::byte> unpack(zip_t* archive, const std::string& name, const zip_stat_t& stat) {
   const std::unique_ptr<zip_file_t, DiscardZip> file(zip_fopen_index(archive, stat.index, 0));
   if (!file) throw Error(fmt::format("{}: cannot be unpacked: {}", name, zip_strerror(archive)));
-  std::vector<std::byte> bytes(stat.size);
+  // What an archive says may be a lie: memory is touched as bytes come.
+  constexpr std::size_t kStep = std::size_t{1} << 20;
+  std::vector<std::byte> bytes;
+  bytes.reserve(stat.size);
   std::size_t got = 0;
-  while (got < bytes.size()) {
+  while (got < stat.size) {
+    bytes.resize(std::min<std::size_t>(stat.size, got + kStep));
     const zip_int64_t n = zip_fread(file.get(), bytes.data() + got, bytes.size() - got);
     if (n < 0) throw Error(fmt::format("{}: cannot be unpacked: {}", name, zip_file_strerror(file.get())));
-    if (n == 0) throw Error(fmt::format("{}: ends after {} bytes, expected {}", name, got, bytes.size()));
+    if (n == 0) throw Error(fmt::format("{}: ends after {} bytes, expected {}", name, got, stat.size));
     got += static_cast<std::size_t>(n);
   }
   // Reading on finds both a longer stream and a wrong checksum.
