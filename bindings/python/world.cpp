@@ -378,8 +378,8 @@ void add_culler(py::module_& m) {
           [](LockedCuller& culler, double seconds) {
             expect(changing(culler, [&](Culler& c) { return c.report_frame_time(1e9 * seconds); }));
           },
-          "Teaches what an object costs: how many seconds the frame took that drew what the last cull left\n"
-          "(C++, C and JavaScript take nanoseconds).",
+          "Teaches what an object costs: how many seconds the frame took to draw what the last cull left,\n"
+          "without any wait for the display (C++, C and JavaScript take nanoseconds).",
           py::arg("seconds"));
 }
 

@@ -11,8 +11,8 @@ namespace sightline {
 /// Any camera: perspective, infinite far, off-centre or orthographic, with standard or reversed depth.
 /// Clip space is Vulkan's with y up: -w <= x <= w, -w <= y <= w, 0 <= z <= w; row 0 of the image is y = +w.
 struct View {
-  Mat4 world_to_eye;                         ///< rigid; the eye looks down its own -z, with +y up
-  Mat4 eye_to_clip;                          ///< the projection
+  Mat4 world_to_eye;  ///< rigid, which is not checked; the eye looks down its own -z, with +y up
+  Mat4 eye_to_clip;   ///< the projection
   std::uint32_t width = 1280, height = 720;  ///< pixels
   bool operator==(const View&) const = default;
 };

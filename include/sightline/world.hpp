@@ -25,7 +25,8 @@
 namespace sightline {
 
 /// Names an object for as long as it stands in its world. A handle whose object was removed is found out, not
-/// followed: the generation of a reused index differs.
+/// followed: the generation of a reused index differs. It does not know its world: another may take it for
+/// one of its own.
 struct Handle {
   ObjectId index = kNoObject;    ///< the id that cull() writes; below World::id_limit()
   std::uint32_t generation = 0;  ///< tells objects apart that had the same index
@@ -272,7 +273,8 @@ struct CullOptions {
   bool values_for_ids = false;            ///< writes the objects' values instead of their ids
   Occlusion occlusion = Occlusion::none;  ///< automatic: no view brings a buffer
   CullCosts costs = {};                   ///< finite, not negative; read by automatic occlusion
-  /// Which places of the images automatic occlusion answers for, and how finely.
+  /// Which places of the images automatic occlusion answers for, and how finely: more coarsely where a buffer
+  /// as fine would take most of what it may spend.
   OcclusionOptions buffer = {};
   CullZones zones = {};      ///< both functions, or none: what a cull spends its time on is told to nobody
   LevelOptions levels = {};  ///< how levels of detail are chosen
@@ -343,9 +345,10 @@ public:
     return cull(world, {&view, 1}, {}, {ids, {}});
   }
 
-  /// Teaches what an object costs, where CullCosts::object is 0: how many nanoseconds the frame took that
-  /// drew what the last cull left. What each further object adds is learned, once frames differ in how many
-  /// they draw. Errors: bad_argument for a time that is not from 0 to 1e15.
+  /// Teaches what an object costs, where CullCosts::object is 0: how many nanoseconds the frame took to draw
+  /// what the last cull left, without any wait for the display. What each further object adds is learned,
+  /// once frames differ in how many they draw; nothing of frames that take the same all the same. Errors:
+  /// bad_argument for a time that is not from 1000 to 1e15.
   Status report_frame_time(double nanoseconds) noexcept;
 
 private:

@@ -61,24 +61,32 @@ private:
 };
 
 /// What an object costs: the slope of frame times over objects drawn, older frames counting less and less.
+/// Nothing is learned from times that hardly depend on what is drawn: such frames wait for something else, as
+/// for the display.
 class ObjectCost {
 public:
   void drew(std::size_t objects) noexcept { objects_ = static_cast<double>(objects); }
   void took(double time) noexcept {
     constexpr double kForget = 63.0 / 64;
-    for (double* sum : {&n_, &x_, &t_, &xx_, &xt_}) *sum *= kForget;
-    n_ += 1, x_ += objects_, t_ += time, xx_ += objects_ * objects_, xt_ += objects_ * time;
+    for (double* sum : {&n_, &x_, &t_, &xx_, &xt_, &tt_}) *sum *= kForget;
+    n_ += 1, x_ += objects_, t_ += time;
+    xx_ += objects_ * objects_, xt_ += objects_ * time, tt_ += time * time;
     // Frames that all draw about as much say nothing of one object.
     const double spread = n_ * xx_ - x_ * x_;
     if (n_ < 8 || spread < 1e-3 * x_ * x_ || !(x_ > 0)) return;
-    const double slope = (n_ * xt_ - x_ * t_) / spread;
-    if (std::isfinite(slope)) learned_ = std::max(slope, 0.0);
+    const double together = n_ * xt_ - x_ * t_, slope = together / spread;
+    // The square of the slope's error, by how far the times lie from the line.
+    const double error = (n_ * tt_ - t_ * t_ - slope * together) / (spread * (n_ - 2));
+    constexpr double kSure = 3;  // errors
+    constexpr double kLeast =
+        1e-3;  // of the time: less is what rounding leaves of times that are all the same
+    if (slope * x_ > kLeast * t_ && slope * slope > kSure * kSure * error) learned_ = slope;
   }
   /// `otherwise` as long as nothing was learned.
   [[nodiscard]] double value(double otherwise) const noexcept { return learned_ < 0 ? otherwise : learned_; }
 
 private:
-  double objects_ = 0, n_ = 0, x_ = 0, t_ = 0, xx_ = 0, xt_ = 0, learned_ = -1;
+  double objects_ = 0, n_ = 0, x_ = 0, t_ = 0, xx_ = 0, xt_ = 0, tt_ = 0, learned_ = -1;
 };
 
 }  // namespace sightline::world

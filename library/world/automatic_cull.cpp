@@ -70,30 +70,41 @@ private:
       const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
       chunks_ += group.count, objects += group.objects;
     }
-    const double views = static_cast<double>(different_.count);
+    // The same for each; then the rest for those to whom that was too little, the first ones first.
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      const double least = kept_back(objects, different_.count);
+      draw_occluders(d, (purse_.left() - least) / static_cast<double>(different_.count - d));
+    }
+    for (std::size_t d = 0; d < different_.count; ++d)
+      if (!drawn_[d]) draw_occluders(d, purse_.left() - kept_back(objects, drawn_views() + 1));
+    return drawn_views() > 0;
+  }
+
+  [[nodiscard]] std::size_t drawn_views() const {
+    return static_cast<std::size_t>(std::ranges::count(drawn_, true));
+  }
+
+  // What asking so many views for chunks of so many objects takes. The chunks are asked for and the rest is
+  // written again in any case; the objects too, if that leaves enough for drawing.
+  [[nodiscard]] double kept_back(std::uint64_t objects, std::size_t asked) const {
+    const double views = static_cast<double>(asked);
     // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
     const double in_chunks = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
                  object_views = std::min(static_cast<double>(objects) * views, in_chunks);
-    // The chunks are asked for and the rest is written again in any case; the objects too, if that leaves
-    // enough for drawing.
     const double chunks =
         static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
     const double least = chunks + object_views * double{costs_.test};
     const double whole = least + std::min(object_views, in_view()) * double{costs_.query};
-    const double kept_back = 2 * whole <= purse_.left() ? whole : least;
-    bool any = false;
-    for (std::size_t d = 0; d < different_.count; ++d) {
-      const double share = (purse_.left() - kept_back) / static_cast<double>(different_.count - d);
-      const std::size_t place = different_.first[d];
-      drawn_[d] =
-          share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
-                                                 {state_.out, result_.count}, buffer_, costs_, share, purse_);
-      if (!drawn_[d]) continue;
-      any = true;
-      for (std::size_t v = place; v < views_.size(); ++v)
-        if (different_.bits[d] >> v & 1) memory_.drawn[v] = &memory_.picks[place];
-    }
-    return any;
+    return 2 * whole <= purse_.left() ? whole : least;
+  }
+
+  void draw_occluders(std::size_t d, double share) {
+    const std::size_t place = different_.first[d];
+    drawn_[d] =
+        share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
+                                               {state_.out, result_.count}, buffer_, costs_, share, purse_);
+    for (std::size_t v = place; drawn_[d] && v < views_.size(); ++v)
+      if (different_.bits[d] >> v & 1) memory_.drawn[v] = &memory_.picks[place];
   }
 
   void set_occluders(bool ask) {
@@ -119,7 +130,7 @@ private:
   [[nodiscard]] bool cull_again() {
     const Zone zone(state_.zones, "sightline: ask for what is hidden");
     const double nodes = static_cast<double>(chunks_) * double{costs_.node};
-    const double asking = nodes + static_cast<double>(chunks_ * different_.count) * double{costs_.query};
+    const double asking = nodes + static_cast<double>(chunks_ * drawn_views()) * double{costs_.query};
     if (!purse_.affords(asking)) return false;
     set_occluders(true);
     std::vector<std::uint32_t>& hidden = memory_.hidden;

@@ -208,9 +208,12 @@ Result<CullResult> Culler::cull(const World& world, std::span<const CullView> vi
 }
 
 Status Culler::report_frame_time(double nanoseconds) noexcept {
-  constexpr double kLongest = 1e15;  // eleven days: what costs are made of stays a float
-  if (!(nanoseconds >= 0) || !(nanoseconds <= kLongest))
-    return {StatusCode::bad_argument, "cull: a frame's time is out of range, expected 0 to 1e15 nanoseconds"};
+  // No frame takes less than a microsecond: what says so is in other units. And eleven days: what costs are
+  // made of stays a float.
+  constexpr double kShortest = 1e3, kLongest = 1e15;
+  if (!(nanoseconds >= kShortest) || !(nanoseconds <= kLongest))
+    return {StatusCode::bad_argument,
+            "cull: a frame's time is out of range, expected 1000 to 1e15 nanoseconds"};
   state_->object_cost.took(nanoseconds);
   return {};
 }

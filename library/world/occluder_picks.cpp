@@ -180,15 +180,26 @@ double OccluderPicks::begin_cost(const CullView& view, const OcclusionOptions& o
   return static_cast<double>(all) * double{costs.tile};
 }
 
+OcclusionOptions OccluderPicks::affordable(const CullView& view, const OcclusionOptions& options,
+                                           const CullCosts& costs, double left) noexcept {
+  constexpr std::uint32_t kCoarsest = 4;
+  constexpr double kShare = 1.0 / 3;
+  OcclusionOptions out = options;
+  while (out.scale < kCoarsest && begin_cost(view, out, costs) > kShare * left) out.scale *= 2;
+  return out;
+}
+
 bool OccluderPicks::draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
-                         std::span<const ObjectId> in_view, const OcclusionOptions& options,
+                         std::span<const ObjectId> in_view, const OcclusionOptions& wanted,
                          const CullCosts& costs, double most, Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
   const std::size_t carriers = world.occluders->carriers.size();
   picks_.reserve(carriers), seen_.reserve(carriers), drawn_.reserve(std::min(carriers, kMostPicks));
   picks_.clear(), drawn_.clear();
-  const double begin = begin_cost(view, options, costs), had = purse.left();
+  const double had = purse.left();
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
+  const OcclusionOptions options = affordable(view, wanted, costs, left());
+  const double begin = begin_cost(view, options, costs);
   if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
   const Sight sight(world, view, distance_eye, options, costs);
   find(sight, in_view, purse);

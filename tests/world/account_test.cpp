@@ -13,6 +13,7 @@ namespace {
 
 using scene::Random;
 using world::Account;
+using world::ObjectCost;
 using world::Purse;
 
 struct Frame {
@@ -118,6 +119,36 @@ TEST(Account, TriesMoreAndMoreSeldomWhereThatNeverPaysAndAtOnceWhereItDoes) {
   EXPECT_EQ(waited, 31);
   account.close_frame(0.9e6, 1e6);
   EXPECT_TRUE(account.begins_try(1e6));
+}
+
+// What is learned of frames that draw some hundreds to thousands of objects; -1: nothing.
+template <class TimeOf>
+double learned(const TimeOf& time_of) {
+  Random random(4);
+  ObjectCost cost;
+  for (int frame = 0; frame < 600; ++frame) {
+    const auto objects = static_cast<std::size_t>(random.between(300, 3000));
+    cost.drew(objects);
+    // The sum of twelve is nearly a normal distribution, of variance 1.
+    double noise = -6;
+    for (int i = 0; i < 12; ++i) noise += double{random.between(0, 1)};
+    cost.took(time_of(static_cast<double>(objects), noise));
+  }
+  return cost.value(-1);
+}
+
+TEST(ObjectCost, IsTheSlopeOfTimesOverObjects) {
+  EXPECT_NEAR(learned([](double objects, double) { return 3e6 + 3e3 * objects; }), 3e3, 1);
+  EXPECT_NEAR(learned([](double objects, double noise) { return 3e6 + 3e3 * objects + 1e6 * noise; }), 3e3,
+              1e3);
+}
+
+// The display's time, or that of what else keeps a device busy, makes no object free.
+TEST(ObjectCost, IsNotLearnedOfFramesThatWaitForSomethingElse) {
+  EXPECT_EQ(learned([](double, double) { return 16.667e6; }), -1);
+  EXPECT_EQ(learned([](double objects, double) { return std::max(16.667e6, 3e6 + 3e3 * objects); }), -1);
+  EXPECT_EQ(learned([](double, double noise) { return 12e6 + 1e4 * noise; }), -1);
+  EXPECT_GT(learned([](double objects, double) { return std::max(8e6, 3e6 + 3e3 * objects); }), 1e3);
 }
 
 }  // namespace

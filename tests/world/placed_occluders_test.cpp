@@ -60,7 +60,7 @@ TEST(PlacedOccluders, WallsThatReachOutOfTheirBoxHideNothing) {
   const View view = *make_view({.eye = {-1 + static_cast<float>(kMoved) / 2, 0, 4},
                                 .orthographic_height = 4 * static_cast<float>(kMoved),
                                 .near_plane = 0.1f,
-                                .far_plane = 100},
+                                .far_plane = 5.5f},
                                2048, 1024);
   World world;
   const OccluderPlacement placement{*world.add_occluder(wall)};

@@ -226,8 +226,8 @@ export class Culler extends Owned {
     return { count, ids: this.#ids!.pointer, masks: this.#masks!.pointer };
   }
 
-  /** Teaches what an object costs, where `costs.object` is 0: how many nanoseconds the frame took that drew what the last cull
-   * left. It is learned once frames differ in how many they draw. */
+  /** Teaches what an object costs, where `costs.object` is 0: how many nanoseconds the frame took to draw what the last cull left,
+   * without any wait for the display. It is learned once frames differ in how many they draw. */
   reportFrameTime(nanoseconds: number): void {
     if (typeof nanoseconds !== 'number') refuse(`reportFrameTime: ${said(nanoseconds)}, expected a number`);
     check(wasm().report_frame_time!(pointerOf('Culler', this), nanoseconds));

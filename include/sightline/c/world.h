@@ -342,8 +342,8 @@ typedef struct sightline_culler sightline_culler;
 /** Never NULL. Allocates: its first tables. */
 SIGHTLINE_API sightline_culler* sightline_culler_create(void);
 SIGHTLINE_API void sightline_culler_destroy(sightline_culler* culler);
-/** Teaches what an object costs, where the costs' `object` is 0: how many nanoseconds the frame took that
- * drew what the last cull left. Errors: BAD_ARGUMENT. */
+/** Teaches what an object costs, where the costs' `object` is 0: how many nanoseconds the frame took to
+ * draw what the last cull left, without any wait for the display. Errors: BAD_ARGUMENT. */
 SIGHTLINE_API sightline_status sightline_report_frame_time(sightline_culler* culler, double nanoseconds);
 
 /** Writes the ids of what at least one of the 1 to SIGHTLINE_MAX_VIEWS views may see and which views see
