@@ -26,6 +26,7 @@ public:
     collect();
     sort_by_vertex();
     first_shared_.resize(mesh.triangles.size() + 1), seen_.resize(mesh.triangles.size());
+    asked_.resize(mesh.positions.size());
     for (const auto& shared : mesh.shared) ++first_shared_[shared.triangle + 1];
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) first_shared_[t + 1] += first_shared_[t];
   }
@@ -35,11 +36,12 @@ public:
 
   // The places in edges() of those around triangle t, in order; of too many, some more than kMostAround.
   const std::vector<std::uint32_t>& around(std::uint32_t t) {
-    found_.clear();
-    vertices_.assign(mesh_.triangles[t].begin(), mesh_.triangles[t].end());
-    for (const auto& shared : shared_of(t)) append_ends(shared, vertices_);
-    keep_once(vertices_);  // triangles that lie upon each other share them
-    for (const std::uint32_t vertex : vertices_) add(vertex);
+    turn_ += 2;
+    found_.clear(), farther_.assign(mesh_.triangles[t].begin(), mesh_.triangles[t].end());
+    ask();
+    farther_.clear();
+    for (const auto& shared : shared_of(t)) find_ends(shared);
+    ask();
     const bool all = found_.size() < kTooMany;
     keep_once(found_);
     for (int corner = 0; all && corner < kFarthest && look_farther(); ++corner) {
@@ -105,58 +107,54 @@ private:
     return best;
   }
 
-  [[nodiscard]] const OccluderTopology::SharedEdge* shared_at(std::uint32_t place) const {
-    const std::uint32_t other = edges_[place].other;
-    const bool is_shared = other != OccluderTopology::kNone && other >= OccluderTopology::kShared;
-    return is_shared ? &mesh_.shared[other - OccluderTopology::kShared] : nullptr;
-  }
-
-  // Appends the ends of the edges of others that lie on a shared one.
-  void append_ends(const OccluderTopology::SharedEdge& shared, std::vector<std::uint32_t>& out) const {
+  // Appends to `farther_` the ends of the edges of others that lie on a shared one, but for its own, of which
+  // nobody has asked what ends there.
+  void find_ends(const OccluderTopology::SharedEdge& shared) {
+    const auto& its = mesh_.triangles[shared.triangle];
     for (std::uint32_t i = shared.first; i < shared.end; ++i) {
       const std::uint32_t other = mesh_.others[i] / 4, k = edge_along(other, shared.triangle, shared.edge);
-      out.push_back(mesh_.triangles[other][k]);
-      out.push_back(mesh_.triangles[other][(k + 1) % 3]);
+      for (const std::uint32_t end : {k, k + 1}) {
+        const std::uint32_t v = mesh_.triangles[other][end % 3];
+        if (asked_[v] != turn_ && v != its[shared.edge] && v != its[(shared.edge + 1) % 3])
+          farther_.push_back(v);
+      }
     }
   }
+  void find_ends_at(std::uint32_t place) {
+    const std::uint32_t other = edges_[place].other;
+    if (other != OccluderTopology::kNone && other >= OccluderTopology::kShared)
+      find_ends(mesh_.shared[other - OccluderTopology::kShared]);
+  }
 
-  // Those of such an edge's ends, other than its own, of which nobody has asked what ends there.
-  void find_unknown_ends(std::uint32_t place, std::vector<std::uint32_t>& out) const {
-    out.clear();
-    const OccluderTopology::SharedEdge* const shared = shared_at(place);
-    if (!shared) return;
-    append_ends(*shared, out);
-    std::erase_if(out, [&](std::uint32_t v) {
-      return v == edges_[place].a || v == edges_[place].b || std::ranges::binary_search(vertices_, v);
-    });
+  // Asks what ends at the vertices in `farther_`.
+  void ask() {
+    for (const std::uint32_t v : farther_) {
+      if (asked_[v] != turn_) add(v);
+      asked_[v] = turn_;
+    }
   }
 
   // Finds what ends at corners of rows (T-junctions) along the edges found so far, unless that is too much. A
   // pixel may reach there across such an edge.
   bool look_farther() {
     farther_.clear();
-    for (const std::uint32_t e : found_) {
-      find_unknown_ends(e, ends_);
-      farther_.insert(farther_.end(), ends_.begin(), ends_.end());
-    }
+    for (const std::uint32_t e : found_) find_ends_at(e);
     if (farther_.empty()) return false;
     const std::vector<std::uint32_t> before = found_;
-    for (const std::uint32_t vertex : farther_) add(vertex);
+    ask();
     const bool some_left_out = found_.size() >= kTooMany;
     keep_once(found_);
-    if (some_left_out || found_.size() > OccluderTopology::kMostAround) {
-      found_ = before;
-      return false;
-    }
-    vertices_.insert(vertices_.end(), farther_.begin(), farther_.end());
-    keep_once(vertices_);
-    return true;
+    if (!some_left_out && found_.size() <= OccluderTopology::kMostAround) return true;
+    found_ = before;
+    for (const std::uint32_t v : farther_) asked_[v] = 0;
+    return false;
   }
 
   // Whether there is more beyond an edge than was asked for.
   [[nodiscard]] bool leads_to_others(std::uint32_t place) {
-    find_unknown_ends(place, ends_);
-    return !ends_.empty();
+    farther_.clear();
+    find_ends_at(place);
+    return !farther_.empty();
   }
 
   static void keep_once(std::vector<std::uint32_t>& some) {
@@ -167,7 +165,6 @@ private:
   // Leaves the edges of those found that triangle t is joined with, edge by edge. What meets it in a corner
   // alone, another sheet, covers no part of what t and those cover together.
   void leave_joined(std::uint32_t t) {
-    turn_ += 2;
     mark_near(t);
     for (const std::uint32_t e : found_) {
       mark_near(edges_[e].triangle);
@@ -198,7 +195,8 @@ private:
 
   const OccluderTopology& mesh_;
   std::vector<CornerEdge> edges_;
-  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, vertices_, farther_, ends_, found_, joined_;
+  std::vector<std::uint32_t> first_, at_vertex_, first_shared_, farther_, found_, joined_;
+  std::vector<std::uint64_t> asked_;  // one a vertex: turn_ where it was asked what ends there
   // One a triangle: turn_ where it is near the triangle in question, one more where it is joined with it.
   std::vector<std::uint64_t> seen_;
   std::uint64_t turn_ = 0;
