@@ -237,5 +237,23 @@ TEST(RandomScenes, AreDrawnAndAnsweredAsExactRaysHaveThem) {
   EXPECT_GT(2 * counts.hidden, scenes);
 }
 
+// What ends at their corners shows wherever it ends.
+TEST(RandomScenes, StripsCoverNoPixelThatShowsAHole) {
+  Counts counts;
+  const std::uint64_t scenes = for_random_scenes(60, [&](Random& random) {
+    Occluders of;
+    of.shape = strips(random);
+    of.sides = random.below(2) == 0 ? Sides::both : Sides::front;
+    of.junctions = TJunctions::closed;
+    of.triangles = placed(of.shape, of.placement);
+    of.middle = {0.5f, 0.5f, 0}, of.size = 1;
+    if (of.triangles.empty()) return;
+    const auto mesh = OccluderMesh::make(of.shape.positions, of.shape.indices, of.sides, of.junctions);
+    ASSERT_TRUE(mesh);
+    for (int i = 0; i < 2; ++i) Look(random, of, *mesh, counts).hold_pixels();
+  });
+  EXPECT_GT(counts.drawn, 100 * scenes);
+}
+
 }  // namespace
 }  // namespace sightline

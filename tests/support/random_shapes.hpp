@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -113,6 +114,45 @@ inline scene::Shape boxes(scene::Random& random) {
     const Vec3 low{on_grid(at.x), on_grid(at.y), on_grid(at.z)};
     out.append(fine_box({low, {low.x + on_grid(size.x), low.y + on_grid(size.y), low.z + on_grid(size.z)}},
                         1 + random.below(2)));
+  }
+  return out;
+}
+
+// A wall of strips, each cut into triangles as if alone, so that corners lie on the edges of others, many
+// close together; some triangles lost, some turned over.
+inline scene::Shape strips(scene::Random& random) {
+  std::vector<float> favourites(6);
+  for (float& x : favourites) x = random.between(0.05f, 0.95f);
+  const auto row = [&] {
+    std::vector<float> out{0, 1};
+    for (std::uint32_t left = random.below(7); left > 0; --left) {
+      const float near = favourites[random.below(6)], apart = random.between(-0.01f, 0.01f);
+      const std::uint32_t kind = random.below(4);
+      out.push_back(kind == 0   ? near
+                    : kind == 1 ? near + apart
+                    : kind == 2 ? near + apart / 10
+                                : random.unit());
+    }
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  };
+  scene::Shape out;
+  float low = 0;
+  for (std::uint32_t left = 2 + random.below(6); left > 0; --left) {
+    const float high = low + (random.below(4) == 0 ? 0.02f : random.between(0.05f, 0.3f));
+    const std::vector<float> below = row(), above = row();
+    for (std::size_t b = 0, a = 0; b + 1 < below.size() || a + 1 < above.size();) {
+      const bool up = b + 1 == below.size() || (a + 1 < above.size() && random.below(2) == 0);
+      const Vec3 third = up ? Vec3{above[a + 1], high, 0} : Vec3{below[b + 1], low, 0};
+      const auto first = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.insert(out.positions.end(), {{below[b], low, 0}, {above[a], high, 0}, third});
+      const std::uint32_t harm = random.below(16);
+      if (harm > 1) out.indices.insert(out.indices.end(), {first, first + 2, first + 1});
+      if (harm == 1) out.indices.insert(out.indices.end(), {first, first + 1, first + 2});
+      ++(up ? a : b);
+    }
+    low = high;
   }
   return out;
 }
