@@ -148,9 +148,9 @@ public:
   /// behind it. Call it again when the object has moved, behind move(), or has turned: of an object whose box
   /// is another one than it was then, nothing is drawn; nor is an occluder that reaches out of that box, or a
   /// mesh that the transform flattens or skews much. It is drawn exactly where the transform says, whatever
-  /// the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown
-  /// occluder, a transform that is not finite or not affine, an origin beyond kWorldReach), stale_handle.
-  /// Cost: linear. Allocates: some 250 bytes an object that carries one, 4 an id.
+  /// the view's origin. Errors: bad_argument (lengths, strides, pointers, an unknown occluder, a transform
+  /// that is not finite or not affine, an origin beyond kWorldReach), stale_handle. Cost: linear. Allocates:
+  /// some 250 bytes an object that carries one, 4 an id.
   Status set_occluders(Strided<const Handle> handles, Strided<const OccluderPlacement> placements);
   /// Switches what the objects carry on (1) or off (0), as doors do; those that carry nothing stay so.
   /// Errors: bad_argument, stale_handle. Cost: linear.

@@ -71,12 +71,13 @@ private:
       chunks_ += group.count, objects += group.objects;
     }
     // The same for each; then the rest for those to whom that was too little, the first ones first.
+    std::array<bool, kMaxViews> again{};
     for (std::size_t d = 0; d < different_.count; ++d) {
       const double least = kept_back(objects, different_.count);
-      draw_occluders(d, (purse_.left() - least) / static_cast<double>(different_.count - d));
+      again[d] = !draw_for(d, (purse_.left() - least) / static_cast<double>(different_.count - d));
     }
-    for (std::size_t d = 0; d < different_.count; ++d)
-      if (!drawn_[d]) draw_occluders(d, purse_.left() - kept_back(objects, drawn_views() + 1));
+    for (std::size_t d = 0; d < different_.count && different_.count > 1; ++d)
+      if (again[d]) draw_for(d, purse_.left() - kept_back(objects, drawn_views() + 1));
     return drawn_views() > 0;
   }
 
@@ -98,13 +99,18 @@ private:
     return 2 * whole <= purse_.left() ? whole : least;
   }
 
-  void draw_occluders(std::size_t d, double share) {
+  // False where that was too little.
+  bool draw_for(std::size_t d, double share) {
+    using Drawn = OccluderPicks::Drawn;
+    if (!(share > 0)) return false;
     const std::size_t place = different_.first[d];
-    drawn_[d] =
-        share > 0 && memory_.picks[place].draw(*state_.world, views_[place], state_.distance_eyes[place],
-                                               {state_.out, result_.count}, buffer_, costs_, share, purse_);
+    OccluderPicks& picks = memory_.picks[place];
+    const Drawn drawn = picks.draw(*state_.world, views_[place], state_.distance_eyes[place],
+                                   {state_.out, result_.count}, buffer_, costs_, share, purse_);
+    drawn_[d] = drawn == Drawn::some;
     for (std::size_t v = place; drawn_[d] && v < views_.size(); ++v)
-      if (different_.bits[d] >> v & 1) memory_.drawn[v] = &memory_.picks[place];
+      if (different_.bits[d] >> v & 1) memory_.drawn[v] = &picks;
+    return drawn != Drawn::too_dear;
   }
 
   void set_occluders(bool ask) {

@@ -189,9 +189,10 @@ OcclusionOptions OccluderPicks::affordable(const CullView& view, const Occlusion
   return out;
 }
 
-bool OccluderPicks::draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
-                         std::span<const ObjectId> in_view, const OcclusionOptions& wanted,
-                         const CullCosts& costs, double most, Purse& purse) {
+OccluderPicks::Drawn OccluderPicks::draw(const WorldState& world, const CullView& view,
+                                         const WorldPoint& distance_eye, std::span<const ObjectId> in_view,
+                                         const OcclusionOptions& wanted, const CullCosts& costs, double most,
+                                         Purse& purse) {
   // Room for all, so that a camera that turns allocates nothing.
   const std::size_t carriers = world.occluders->carriers.size();
   picks_.reserve(carriers), seen_.reserve(carriers), drawn_.reserve(std::min(carriers, kMostPicks));
@@ -200,18 +201,20 @@ bool OccluderPicks::draw(const WorldState& world, const CullView& view, const Wo
   const auto left = [&] { return std::min(purse.left(), most - (had - purse.left())); };
   const OcclusionOptions options = affordable(view, wanted, costs, left());
   const double begin = begin_cost(view, options, costs);
-  if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return false;
+  if (begin + static_cast<double>(seen_.size()) * double{costs.candidate} > left()) return Drawn::too_dear;
   const Sight sight(world, view, distance_eye, options, costs);
   find(sight, in_view, purse);
+  if (picks_.empty()) return Drawn::nothing;
   const double budget = left() - begin;
   double spare = budget - choose(budget);
-  if (picks_.empty() || !buffer_.begin(view.view, options)) return false;
+  if (picks_.empty()) return Drawn::too_dear;
+  if (!buffer_.begin(view.view, options)) return Drawn::nothing;
   std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
   });
   for (const Pick& pick : picks_) spare = draw_one(sight, pick, spare);
   purse.pay(begin + budget - spare);
-  return true;
+  return Drawn::some;
 }
 
 // Those that were seen the last time; all that are in view where most of these are no longer. What comes into

@@ -16,12 +16,16 @@ namespace sightline::world {
 
 class OccluderPicks {
 public:
+  enum class Drawn : std::uint8_t {
+    some,
+    nothing,   ///< there is nothing to draw
+    too_dear,  ///< to look for any, or all that there are
+  };
   /// Draws what pays of the occluders in view, for no more than `most` out of the purse. Distances are
-  /// measured from `distance_eye`. `in_view` are the objects that the view sees by frustum and columns. False
-  /// where nothing was drawn.
-  bool draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
-            std::span<const ObjectId> in_view, const OcclusionOptions& options, const CullCosts& costs,
-            double most, Purse& purse);
+  /// measured from `distance_eye`. `in_view` are the objects that the view sees by frustum and columns.
+  Drawn draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
+             std::span<const ObjectId> in_view, const OcclusionOptions& options, const CullCosts& costs,
+             double most, Purse& purse);
   /// The caller's options, or coarser ones where to begin a buffer of theirs would take most of what is left.
   /// Coarse ones hide less, but most of what fine ones do.
   static OcclusionOptions affordable(const CullView& view, const OcclusionOptions& options,
