@@ -1,19 +1,19 @@
 // Occluders drawn as one mesh, beside peers: milliseconds a view, with wrong culls and excess.
 //
 //   occluder_meshes_benchmark SCENE [--peer FILE.so]... [--views N | --look ex,ey,ez,tx,ty,tz] [--headings N]
-//                             [--two-sided] [--queries N] [--rounds N] [--size WxH] [--samples N] [--threads
-//                             N]
+//                             [--two-sided] [--queries N] [--rounds N] [--size WxH] [--samples N]
+//                             [--threads N] [--csv FILE] [--name NAME] [--draw N]
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
 
 #include <sightline/frustum.hpp>
 #include <sightline/occlusion.hpp>
@@ -21,9 +21,11 @@
 #include <sightline/workbench/error.hpp>
 #include <sightline/workbench/io.hpp>
 
+#include "library/occlusion/depth_tiles.hpp"
 #include "occluder_truth.hpp"
 #include "peer.h"
 #include "workbench/camera/camera_path.hpp"
+#include "workbench/io/text_file.hpp"
 #include "workbench/scene/random.hpp"
 
 namespace sightline::bench {
@@ -146,10 +148,10 @@ private:
 };
 
 struct Options {
-  std::string scene, size = "1280x720";
+  std::string scene, size = "1280x720", csv, name;
   std::vector<std::string> peers;
   std::vector<float> look;
-  std::size_t views = 50, headings = 1, queries = 2000, rounds = 11;
+  std::size_t views = 50, headings = 1, queries = 2000, rounds = 11, draw = 0;
   std::uint32_t samples = 1, threads = 1;
   bool two_sided = false;
 };
@@ -228,15 +230,74 @@ double milliseconds_a_view(Contestant& contestant, std::span<const Camera> camer
   return took.count() / static_cast<double>(turns * views.size());
 }
 
-void print(const Judged& judged, std::span<const std::unique_ptr<Contestant>> contestants,
-           std::vector<std::vector<double>>& times) {
+// What drawing takes, a view: triangles that are set up, and tiles of the rectangles around what is drawn.
+struct Work {
+  double triangles, tiles;
+};
+
+Work work_of(const OccluderMesh& mesh, std::span<const View> views) {
+  using occlusion::MeshBudget;
+  constexpr double kPlenty = 1e12;
+  OcclusionBuffer buffer;
+  const auto spent = [&](MeshBudget budget) {
+    double out = 0;
+    for (const View& view : views) {
+      or_throw(buffer.begin({view, {}}, {Coverage::centres}));
+      budget.left = kPlenty;
+      occlusion::draw_mesh(OcclusionAccess::tiles(buffer), OcclusionAccess::topology(mesh), {}, &budget);
+      out += kPlenty - budget.left;
+    }
+    return out / static_cast<double>(views.size());
+  };
+  return {spent({.triangle = 1}), spent({.tile = 1})};
+}
+
+// A contestant's times, quickest first, and what it answered wrongly.
+struct Result {
+  std::string name;
+  std::vector<double> milliseconds;
+  std::size_t kept, wrong, excess;
+
+  [[nodiscard]] double median() const { return milliseconds[milliseconds.size() / 2]; }
+};
+
+void print(std::span<const Result> results, const Judged& judged) {
   std::printf("%-40s %9s %9s %9s %8s %9s\n", "", "ms a view", "min", "max", "wrong", "excess %");
-  for (std::size_t c = 0; c < contestants.size(); ++c) {
-    std::ranges::sort(times[c]);
-    std::printf("%-40s %9.4f %9.4f %9.4f %8zu %9.2f\n", contestants[c]->name().c_str(),
-                times[c][times[c].size() / 2], times[c].front(), times[c].back(), judged.wrong[c],
-                100 * static_cast<double>(judged.excess[c]) / static_cast<double>(judged.visible));
+  for (const Result& r : results) {
+    std::printf("%-40s %9.4f %9.4f %9.4f %8zu %9.2f\n", r.name.c_str(), r.median(), r.milliseconds.front(),
+                r.milliseconds.back(), r.wrong,
+                100 * static_cast<double>(r.excess) / static_cast<double>(judged.visible));
   }
+}
+
+// As scripts/figures/results.py has rows: a contestant's time, its excess, and what we do for ours.
+void write_csv(const Options& options, std::span<const Result> results, const Judged& judged,
+               const Work& work) {
+  std::string text =
+      "benchmark,case,unit,median,min,max,repetitions,beside,ratio,kept,lost,lost_pixels,excess,commit,"
+      "date\n";
+  const std::string sides = options.two_sided ? "both/" : "fronts/";
+  const auto row = [&](const std::string& of, const std::string& rest) {
+    text += options.name + ',' + sides + of + ',' + rest + '\n';
+  };
+  const auto number = [](double value) { return fmt::format("{:.6g}", value); };
+  for (const Result& r : results) {
+    std::string name;
+    for (const char c : r.name) {
+      const auto its = static_cast<unsigned char>(c);
+      if (std::isalnum(its) || c == '?' || c == '=')
+        name += static_cast<char>(std::tolower(its));
+      else if (!name.empty() && name.back() != '-')
+        name += '-';
+    }
+    row(name, fmt::format("ms,{},{},{},{},,,{},{},,{},,", number(r.median()), number(r.milliseconds.front()),
+                          number(r.milliseconds.back()), r.milliseconds.size(), r.kept, r.wrong, r.excess));
+    const double excess = 100 * static_cast<double>(r.excess) / static_cast<double>(judged.visible);
+    row(name + "/excess", "%," + number(excess) + ",,,1,,,,,,,,");
+  }
+  row("triangles", "triangles," + number(work.triangles) + ",,,1,,,,,,,,");
+  row("tiles", "tiles," + number(work.tiles) + ",,,1,,,,,,,,");
+  io::write_file(options.csv, text);
 }
 
 void run(const Options& options) {
@@ -256,28 +317,42 @@ void run(const Options& options) {
   const Ours& ours = *owned;
   contestants.push_back(std::move(owned));
   contestants.push_back(
-      std::make_unique<Ours>(mesh, "sightline, any place", OcclusionOptions{Coverage::area}));
+      std::make_unique<Ours>(mesh, "sightline?coverage=area", OcclusionOptions{Coverage::area}));
   contestants.push_back(
-      std::make_unique<Ours>(mesh, "sightline, half resolution", OcclusionOptions{Coverage::centres, 2}));
+      std::make_unique<Ours>(mesh, "sightline?scale=2", OcclusionOptions{Coverage::centres, 2}));
   if (options.threads > 1) {
-    contestants.push_back(
-        std::make_unique<Ours>(mesh, "sightline, " + std::to_string(options.threads) + " threads",
-                               OcclusionOptions{Coverage::centres}, tbb_jobs(options.threads)));
+    contestants.push_back(std::make_unique<Ours>(mesh, "sightline?threads=" + std::to_string(options.threads),
+                                                 OcclusionOptions{Coverage::centres},
+                                                 tbb_jobs(options.threads)));
   }
   for (const std::string& file : options.peers)
     contestants.push_back(std::make_unique<Peer>(file, occluders, options.two_sided, width, height));
+  if (options.draw > 0) {
+    for (std::size_t turn = 0; turn < options.draw; ++turn) {
+      for (std::size_t v = 0; v < views.size(); ++v) contestants.front()->draw(cameras[v], views[v]);
+    }
+    return;
+  }
   Judged judged;
   judge(occluders, scene, cameras, views, options, contestants, ours, judged);
-  std::vector<std::vector<double>> times(contestants.size());
+  std::vector<Result> results;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    const std::size_t kept = judged.visible - judged.wrong[c] + judged.excess[c];
+    results.push_back({contestants[c]->name(), {}, kept, judged.wrong[c], judged.excess[c]});
+  }
   for (std::size_t round = 0; round < options.rounds; ++round) {
     for (std::size_t c = 0; c < contestants.size(); ++c)
-      times[c].push_back(milliseconds_a_view(*contestants[c], cameras, views));
+      results[c].milliseconds.push_back(milliseconds_a_view(*contestants[c], cameras, views));
   }
+  for (Result& r : results) std::ranges::sort(r.milliseconds);
+  const Work work = work_of(mesh, views);
   std::printf("%s: %zu triangles, %zu views of %ux%u, %s\n", scene.name.c_str(), occluders.indices.size() / 3,
               views.size(), width, height, options.two_sided ? "both sides" : "fronts");
-  print(judged, contestants, times);
+  print(results, judged);
+  std::printf("a view sets up %.0f triangles and looks at %.0f tiles\n", work.triangles, work.tiles);
   std::printf("%.1f pixels a view are open that hold something in truth\n",
               static_cast<double>(judged.pinholes) / static_cast<double>(views.size()));
+  if (!options.csv.empty()) write_csv(options, results, judged, work);
 }
 
 }  // namespace
@@ -297,6 +372,9 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Draw with so many as well")
       ->check(CLI::Range(1u, sightline::kMaxJobs));
   app.add_option("--size", options.size, "Of the image");
+  app.add_option("--csv", options.csv, "Also write the rows that scripts/measure.sh takes");
+  app.add_option("--name", options.name, "What they call the scene");
+  app.add_option("--draw", options.draw, "Only draw all views so many times, for a profiler");
   app.add_flag("--two-sided", options.two_sided, "Both sides occlude, not fronts alone");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -2,7 +2,7 @@
 # Measures everything that the documents quote and writes it down, a CSV a topic, in benchmarks/results/MACHINE; then
 # brings the documents up to date. Methods that are compared take turns in one process. On a quiet machine: about
 # fifty minutes; --quick repeats less and leaves out what takes long, whose rows stay as they are.
-# usage: measure.sh [--quick] [NAME…], NAME of world, columns, instances, ranges, snapshots, movers, moving, forms, frustum, occlusion, rays, scenes, surfaces, shadows, automatic,
+# usage: measure.sh [--quick] [NAME…], NAME of world, columns, instances, ranges, snapshots, movers, moving, forms, frustum, occlusion, meshes, peers, rays, scenes, surfaces, shadows, automatic,
 # memory, startup, large, bake, draw-calls, web
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -14,7 +14,7 @@ python3-numpy dpkg-dev libclang-rt-19-dev clang-tidy-19 clang-format-14 git patc
 command -v node >/dev/null || { test_packages+=" nodejs"; web_packages+=" nodejs"; }
 
 # What scripts/measure.sh needs: peers are other libraries.
-measure_packages="$run_packages libbenchmark-dev libbullet-dev libopenscenegraph-dev"
+measure_packages="$run_packages libbenchmark-dev libbullet-dev libopenscenegraph-dev linux-perf"
 
 # What `test.sh --full` needs besides.
 full_packages="mmdebstrap assimp-utils assimp-testmodels"

@@ -13,7 +13,7 @@ from figures.results import RESULTS, ROOT, SECONDS, Wrong, page_machine, read_al
 
 NUMBER = r"\d(?:[\d,]*\d)?(?:\.\d+)?"
 UNITS = ("ns", "µs", "ms", "s", "%", "×", "B", "bytes", "KiB", "MiB", "GiB", "kB", "MB", "GB", "fps", "M triangles/s",
-         "M boxes/s", "objects", "rays", "calls", "triangles", "vertices", "frames", "views")
+         "M boxes/s", "objects", "rays", "calls", "triangles", "tiles", "vertices", "frames", "views", "cycles")
 UNIT = "|".join(sorted(map(re.escape, UNITS), key=len, reverse=True))
 MARK = re.compile(r"(?<!`)<!--(fig|paper|given)( [^>]*?)?-->")
 FIGURE = re.compile(rf"({NUMBER})(?: ({UNIT})(?![\w/]))?")
@@ -21,7 +21,7 @@ FIGURE = re.compile(rf"({NUMBER})(?: ({UNIT})(?![\w/]))?")
 MEASURED = re.compile(
     rf"(?<![\w.])({NUMBER})[  ]?(ns|µs|us|ms|s|seconds?|minutes?|min|%|per cent|fps|frames? (?:a|per) second|[KMG]i?B|kB"
     rf"|M(?:illion)? [a-z]+ ?(?:/|a |per )s(?:econd)?|M/s|x|×(?!\s?\d)|times)(?![\w/])")
-PLAIN = ("objects", "rays", "calls", "triangles", "vertices", "frames", "views")
+PLAIN = ("objects", "rays", "calls", "triangles", "tiles", "vertices", "frames", "views")
 
 
 def show(value, unit=""):

@@ -1,6 +1,7 @@
 """What is measured, topic by topic: each function gives the rows of one CSV. `quick` repeats less and leaves out what
 takes minutes."""
 import dataclasses
+import os
 import re
 import tempfile
 import time
@@ -8,6 +9,7 @@ import time
 from figures.programs import (BUILD, compare, google_benchmark, number, reproduced, run, sightline, table_of,
                               tables)
 from figures.results import ROOT, Row, Wrong, compare_with, read_topic, row_of
+from figures.stages import stage_rows
 
 LEVEL = "pak1-maps.pk3:maps/{}.bsp"
 
@@ -118,6 +120,47 @@ def occlusion(quick):
     rows = google_benchmark("occlusion", only="^draw", rate="M triangles/s", **repeats(quick))
     return rows + google_benchmark("occlusion", only="^query", rate="M boxes/s",
                                    counters=(("excess_%", "%", 1),), **repeats(quick))
+
+
+def drawn_meshes(key, scene, quick, *arguments):
+    """A scene's triangles drawn as one occluder, its fronts and both sides: ours at every place of a pixel, at half
+    resolution and by two threads, and who is named as a peer, beside ours."""
+    rows = []
+    for sides in ((), ("--two-sided",)):
+        with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+            run(BUILD / "benchmarks" / "occluder_meshes_benchmark", scene, f"--rounds={3 if quick else 11}", "--threads=2",
+                f"--csv={file.name}", f"--name={key}", *sides, *arguments)
+            rows += read_topic(file.name)
+    return compare_with(rows, lambda name: name[:name.rindex("/")] + "/sightline"
+                        if re.match(".*/(fronts|both)/[^/]*$", name) else None)
+
+
+def meshes(quick):
+    """Levels drawn as one occluder, and by stages what that takes."""
+    rows = []
+    for key in ("oa_dm4", "ctf_inyard"):
+        its = drawn_meshes(key, LEVEL.format(key), quick)
+        by_id = {row.id: row for row in its}
+        work = {what: by_id[f"{key}/both/{what}s"].median for what in ("triangle", "tile")}
+        rows += its + stage_rows(LEVEL.format(key), by_id[f"{key}/both/sightline"], work)
+    return rows
+
+
+def peers(quick):
+    """The same beside peers, which the tree does not have: SIGHTLINE_PEERS names shared libraries with the functions of
+    benchmarks/peer.h, SIGHTLINE_CASTLE a file of Intel's castle. Without them what was measured stays."""
+    given = [file for file in os.environ.get("SIGHTLINE_PEERS", "").split(":") if file]
+    if not given:
+        return []
+    named = [f"--peer={file}" for file in given]
+    rows = []
+    if castle := os.environ.get("SIGHTLINE_CASTLE"):
+        look = "--look=27,2,47,27.1426,2.0611,46.0121"
+        rows += drawn_meshes("castle", castle, quick, look, *named)
+        rows += drawn_meshes("castle-8", castle, quick, look, "--headings=8", *named)
+    for key in ("oa_dm4", "ctf_inyard"):
+        rows += drawn_meshes(key, LEVEL.format(key), quick, *named)
+    return rows
 
 
 def fastest(rows, forms, name):
@@ -388,5 +431,5 @@ def web(quick):
 
 
 TOPICS = {"world": world, "columns": columns, "instances": instances, "ranges": ranges, "snapshots": snapshots, "movers": movers, "moving": moving, "forms": forms, "frustum": frustum,
-          "occlusion": occlusion, "rays": rays, "scenes": scenes, "surfaces": surfaces, "shadows": shadows, "automatic": automatic,
+          "occlusion": occlusion, "meshes": meshes, "peers": peers, "rays": rays, "scenes": scenes, "surfaces": surfaces, "shadows": shadows, "automatic": automatic,
           "memory": memory, "startup": startup, "large": large, "bake": bake, "draw-calls": draw_calls, "web": web}
