@@ -259,18 +259,34 @@ struct Result {
   std::size_t kept, wrong, excess;
 
   [[nodiscard]] double median() const { return milliseconds[milliseconds.size() / 2]; }
+  // In per cent of what is visible.
+  [[nodiscard]] double share(std::size_t visible) const {
+    return visible == 0 ? 0 : 100 * static_cast<double>(excess) / static_cast<double>(visible);
+  }
 };
 
 void print(std::span<const Result> results, const Judged& judged) {
   std::printf("%-40s %9s %9s %9s %8s %9s\n", "", "ms a view", "min", "max", "wrong", "excess %");
   for (const Result& r : results) {
     std::printf("%-40s %9.4f %9.4f %9.4f %8zu %9.2f\n", r.name.c_str(), r.median(), r.milliseconds.front(),
-                r.milliseconds.back(), r.wrong,
-                100 * static_cast<double>(r.excess) / static_cast<double>(judged.visible));
+                r.milliseconds.back(), r.wrong, r.share(judged.visible));
   }
 }
 
-// As scripts/figures/results.py has rows: a contestant's time, its excess, and what we do for ours.
+// A name as a row's id has it.
+std::string word_of(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const auto its = static_cast<unsigned char>(c);
+    if (std::isalnum(its) || c == '?' || c == '=')
+      out += static_cast<char>(std::tolower(its));
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  return out;
+}
+
+// As scripts/figures/results.py has rows: each contestant's time and excess, and the work behind ours.
 void write_csv(const Options& options, std::span<const Result> results, const Judged& judged,
                const Work& work) {
   std::string text =
@@ -282,18 +298,10 @@ void write_csv(const Options& options, std::span<const Result> results, const Ju
   };
   const auto number = [](double value) { return fmt::format("{:.6g}", value); };
   for (const Result& r : results) {
-    std::string name;
-    for (const char c : r.name) {
-      const auto its = static_cast<unsigned char>(c);
-      if (std::isalnum(its) || c == '?' || c == '=')
-        name += static_cast<char>(std::tolower(its));
-      else if (!name.empty() && name.back() != '-')
-        name += '-';
-    }
+    const std::string name = word_of(r.name);
     row(name, fmt::format("ms,{},{},{},{},,,{},{},,{},,", number(r.median()), number(r.milliseconds.front()),
                           number(r.milliseconds.back()), r.milliseconds.size(), r.kept, r.wrong, r.excess));
-    const double excess = 100 * static_cast<double>(r.excess) / static_cast<double>(judged.visible);
-    row(name + "/excess", "%," + number(excess) + ",,,1,,,,,,,,");
+    row(name + "/excess", "%," + number(r.share(judged.visible)) + ",,,1,,,,,,,,");
   }
   row("triangles", "triangles," + number(work.triangles) + ",,,1,,,,,,,,");
   row("tiles", "tiles," + number(work.tiles) + ",,,1,,,,,,,,");
@@ -306,6 +314,7 @@ void run(const Options& options) {
     throw Error("--size " + options.size + ": expected WIDTHxHEIGHT");
   const Scene scene = load_scene(options.scene);
   const Occluders occluders = occluders_of(scene);
+  if (occluders.indices.empty()) throw Error(options.scene + ": expected opaque triangles");
   const std::vector<Camera> cameras = cameras_of(scene, options);
   std::vector<View> views;
   for (const Camera& camera : cameras) views.push_back(or_throw(make_view(camera, width, height)));
@@ -363,22 +372,26 @@ int main(int argc, char** argv) {
   sightline::bench::Options options;
   app.add_option("scene", options.scene, "As sightline takes it")->required();
   app.add_option("--peer", options.peers, "A shared library with the functions of peer.h; may be repeated");
-  app.add_option("--views", options.views, "Along the scene's own path");
+  const CLI::Range some(std::size_t{1}, std::size_t{1'000'000});
+  app.add_option("--views", options.views, "Along the scene's own path")->check(some);
   app.add_option("--look", options.look, "Eye and target instead of a path")->expected(6)->delimiter(',');
-  app.add_option("--headings", options.headings, "Turns of that view about the vertical");
-  app.add_option("--queries", options.queries, "Boxes asked for a view");
-  app.add_option("--rounds", options.rounds, "Of timing, all contestants in each");
-  app.add_option("--samples", options.samples, "Of the truth: 1 is the centre, more lie anywhere in a pixel");
+  app.add_option("--headings", options.headings, "Turns of that view about the vertical")->check(some);
+  app.add_option("--queries", options.queries, "Boxes asked for a view")->check(some);
+  app.add_option("--rounds", options.rounds, "Of timing, all contestants in each")->check(some);
+  app.add_option("--samples", options.samples, "Of the truth: 1 is the centre, more lie anywhere in a pixel")
+      ->check(CLI::Range(1u, 64u));
   app.add_option("--threads", options.threads, "Draw with so many as well")
       ->check(CLI::Range(1u, sightline::kMaxJobs));
   app.add_option("--size", options.size, "Of the image");
-  app.add_option("--csv", options.csv, "Also write the rows that scripts/measure.sh takes");
-  app.add_option("--name", options.name, "What they call the scene");
-  app.add_option("--draw", options.draw, "Only draw all views so many times, for a profiler");
+  CLI::Option* const name = app.add_option("--name", options.name, "What rows call the scene");
+  app.add_option("--csv", options.csv, "Also write the rows that scripts/measure.sh takes")->needs(name);
+  app.add_option("--draw", options.draw, "Only draw all views so many times, for a profiler")->check(some);
   app.add_flag("--two-sided", options.two_sided, "Both sides occlude, not fronts alone");
-  CLI11_PARSE(app, argc, argv);
   try {
+    app.parse(argc, argv);
     sightline::bench::run(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
   } catch (const sightline::Error& error) {
     std::fprintf(stderr, "occluder_meshes_benchmark: %s\n", error.what());
     return 2;
