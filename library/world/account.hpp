@@ -10,6 +10,29 @@
 
 namespace sightline::world {
 
+/// Tries of what may not pay: each that did not makes the next one rarer, at the worst one time in 32 alike.
+class Tries {
+public:
+  /// Whether to try this time; counts the times that wait. What is far larger than what failed is no like of
+  /// it: the camera turned, or a door opened.
+  [[nodiscard]] bool begin(double size) noexcept {
+    constexpr double kUnlike = 8;
+    if (waits_ == 0 || size > kUnlike * failed_) return true;
+    --waits_;
+    return false;
+  }
+  void failed(double size) noexcept {
+    pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
+    failed_ = size;
+  }
+  void paid() noexcept { pause_ = waits_ = 0; }
+
+private:
+  static constexpr std::uint32_t kLongestPause = 31;
+  std::uint32_t pause_ = 0, waits_ = 0;
+  double failed_ = 0;  // how large the last one was that did not pay
+};
+
 /// The sum over all frames: what they cost, and what culling by frustum alone would have.
 class Account {
 public:
@@ -20,28 +43,16 @@ public:
   }
   void close_frame(double cost, double frustum_cost) noexcept {
     credit_ += 1.01998 * frustum_cost - cost;
-    // Tries that do not pay become rarer: at the worst one frame in 32 alike. To look and find that nothing
-    // is affordable is none.
-    if (cost > 1.001 * frustum_cost) {
-      pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
-      failed_ = frustum_cost;
-    }
-    if (cost < frustum_cost) pause_ = waits_ = 0;
+    // To look and find that nothing is affordable is no try.
+    if (cost > 1.001 * frustum_cost) tries_.failed(frustum_cost);
+    if (cost < frustum_cost) tries_.paid();
   }
-  /// Whether a frame may try at all; counts the frames that may not. One with far more in view than the one
-  /// that failed is no like of it: the camera turned, or a door opened.
-  [[nodiscard]] bool begins_try(double frustum_cost) noexcept {
-    constexpr double kUnlike = 8;
-    if (waits_ == 0 || frustum_cost > kUnlike * failed_) return true;
-    --waits_;
-    return false;
-  }
+  /// Whether a frame may try at all; counts the frames that may not.
+  [[nodiscard]] bool begins_try(double frustum_cost) noexcept { return tries_.begin(frustum_cost); }
 
 private:
-  static constexpr std::uint32_t kLongestPause = 31;
   double credit_ = 0;
-  std::uint32_t pause_ = 0, waits_ = 0;
-  double failed_ = 0;  // what the last frame of which a try did not pay costs by frustum
+  Tries tries_;
 };
 
 /// What a frame has to spend: its allowance and what it has saved for certain, less what it spent.
@@ -78,8 +89,8 @@ public:
     // The square of the slope's error, by how far the times lie from the line.
     const double error = (n_ * tt_ - t_ * t_ - slope * together) / (spread * (n_ - 2));
     constexpr double kSure = 3;  // errors
-    constexpr double kLeast =
-        1e-3;  // of the time: less is what rounding leaves of times that are all the same
+    // Of the time: less is what rounding leaves of times that are all the same.
+    constexpr double kLeast = 1e-3;
     if (slope * x_ > kLeast * t_ && slope * slope > kSure * kSure * error) learned_ = slope;
   }
   /// `otherwise` as long as nothing was learned.

@@ -18,6 +18,7 @@ namespace {
 struct Memory {
   std::array<OccluderPicks, kMaxViews> picks;           // by the place of the caller's view
   std::array<const OccluderPicks*, kMaxViews> drawn{};  // what was drawn for each place: equal views share
+  std::array<Tries, kMaxViews> tries;                   // of each, where there are several
   std::vector<std::uint32_t> hidden;                    // of PassInput
   std::vector<std::uint8_t> seen;                       // what the triangles of each object left of its mask
   std::size_t asking = 0;                               // how many objects' triangles are asked, of the first
@@ -40,7 +41,9 @@ public:
         result_(result),
         masks_(state.masks),
         before_(count_drawn(state, result.count)),
-        purse_(state.account.allowance(result.frustum_cost)) {}
+        purse_(state.account.allowance(result.frustum_cost)) {
+    for (std::size_t d = 0; d < different_.count; ++d) in_view_[d] = count_seen(d);
+  }
 
   void run() {
     hide();
@@ -52,51 +55,95 @@ public:
 private:
   void hide() {
     if (SIGHTLINE_MUTANT(automatic_by_frustum) || !draw_occluders()) return;
-    if (!cull_again()) return;
-    ask_triangles();
-    remember();
+    if (cull_again()) {
+      ask_triangles();
+      remember();
+    }
+    learn_who_pays();
   }
 
   [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
-  // The objects that views saw before anything was hidden, once for each: no more are asked for.
-  [[nodiscard]] double in_view() const {
-    return static_cast<double>(masks_ ? before_ : before_ * different_.count);
+  // Of what is left: what the view, or where nobody tells them apart some view, sees.
+  [[nodiscard]] std::uint64_t count_seen(std::size_t d) const {
+    if (!masks_) return result_.count;
+    std::uint64_t out = 0;
+    for (std::size_t i = 0; i < result_.count; ++i) out += (masks_[i] & different_.bits[d]) != 0;
+    return out;
+  }
+
+  // Some of the views, and what they saw before anything was hidden, once for each: no more are asked for.
+  struct Asked {
+    std::size_t views = 0;
+    double in_view = 0;
+  };
+  [[nodiscard]] Asked with(Asked some, std::size_t d) const {
+    return {some.views + 1, some.in_view + static_cast<double>(in_view_[d])};
+  }
+  [[nodiscard]] Asked drawn_views() const {
+    Asked out;
+    for (std::size_t d = 0; d < different_.count; ++d) out = drawn_[d] ? with(out, d) : out;
+    return out;
   }
 
   [[nodiscard]] bool draw_occluders() {
     const Zone zone(state_.zones, "sightline: draw occluders");
-    std::uint64_t objects = 0;
     for (const GroupEntry& entry : state_.entries) {
       const ChunkMap::Group& group = state_.maps[entry.sector]->groups()[entry.group];
-      chunks_ += group.count, objects += group.objects;
+      chunks_ += group.count, objects_ += group.objects;
     }
-    // The same for each; then the rest for those to whom that was too little, the first ones first.
-    std::array<bool, kMaxViews> again{};
+    // The first ones first, but those that lately did not pay.
+    std::array<std::size_t, kMaxViews> order;
+    std::size_t count = 0;
     for (std::size_t d = 0; d < different_.count; ++d) {
-      const double least = kept_back(objects, different_.count);
-      again[d] = !draw_for(d, (purse_.left() - least) / static_cast<double>(different_.count - d));
+      Tries& tries = memory_.tries[different_.first[d]];
+      if (different_.count == 1 || tries.begin(static_cast<double>(in_view_[d]))) order[count++] = d;
     }
-    for (std::size_t d = 0; d < different_.count && different_.count > 1; ++d)
-      if (again[d]) draw_for(d, purse_.left() - kept_back(objects, drawn_views() + 1));
-    return drawn_views() > 0;
+    draw_for_some({order.data(), count});
+    return drawn_views().views > 0;
   }
 
-  [[nodiscard]] std::size_t drawn_views() const {
-    return static_cast<std::size_t>(std::ranges::count(drawn_, true));
+  // The same for each of as many as may be asked for their objects; then the rest for those to whom that was
+  // too little, and for others.
+  void draw_for_some(std::span<const std::size_t> views) {
+    if (views.empty()) return;
+    Asked alike;
+    for (const std::size_t d : views) {
+      const Asked more = with(alike, d);
+      if (alike.views > 0 && !affords_objects(more)) break;
+      alike = more;
+    }
+    std::array<bool, kMaxViews> served{};
+    const double share = (purse_.left() - kept_back(alike)) / static_cast<double>(alike.views);
+    for (std::size_t i = 0; i < alike.views; ++i) served[i] = draw_for(views[i], share);
+    for (std::size_t i = 0; i < views.size() && different_.count > 1; ++i) {
+      const Asked more = with(drawn_views(), views[i]);
+      if (!served[i] && (more.views == 1 || affords_objects(more)))
+        draw_for(views[i], purse_.left() - kept_back(more));
+    }
   }
 
-  // What asking so many views for chunks of so many objects takes. The chunks are asked for and the rest is
-  // written again in any case; the objects too, if that leaves enough for drawing.
-  [[nodiscard]] double kept_back(std::uint64_t objects, std::size_t asked) const {
-    const double views = static_cast<double>(asked);
-    // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
-    const double in_chunks = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
-                 object_views = std::min(static_cast<double>(objects) * views, in_chunks);
-    const double chunks =
-        static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
-    const double least = chunks + object_views * double{costs_.test};
-    const double whole = least + std::min(object_views, in_view()) * double{costs_.query};
-    return 2 * whole <= purse_.left() ? whole : least;
+  // What asking for chunks takes: they are asked for and the rest is written again in any case.
+  [[nodiscard]] double chunk_cost(const Asked& some) const {
+    const double views = static_cast<double>(some.views);
+    return static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query}) +
+           object_views(some) * double{costs_.test};
+  }
+  // And for objects.
+  [[nodiscard]] double object_cost(const Asked& some) const {
+    return chunk_cost(some) + std::min(object_views(some), some.in_view) * double{costs_.query};
+  }
+  // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
+  [[nodiscard]] double object_views(const Asked& some) const {
+    const double views = static_cast<double>(some.views);
+    return std::min(static_cast<double>(objects_) * views,
+                    static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views);
+  }
+  // So that there is as much for drawing.
+  [[nodiscard]] bool affords_objects(const Asked& some) const {
+    return 2 * object_cost(some) <= purse_.left();
+  }
+  [[nodiscard]] double kept_back(const Asked& some) const {
+    return affords_objects(some) ? object_cost(some) : chunk_cost(some);
   }
 
   // False where that was too little.
@@ -105,9 +152,10 @@ private:
     if (!(share > 0)) return false;
     const std::size_t place = different_.first[d];
     OccluderPicks& picks = memory_.picks[place];
+    const double before = purse_.left();
     const Drawn drawn = picks.draw(*state_.world, views_[place], state_.distance_eyes[place],
                                    {state_.out, result_.count}, buffer_, costs_, share, purse_);
-    drawn_[d] = drawn == Drawn::some;
+    drawn_[d] = drawn == Drawn::some, spent_[d] += before - purse_.left();
     for (std::size_t v = place; drawn_[d] && v < views_.size(); ++v)
       if (different_.bits[d] >> v & 1) memory_.drawn[v] = &picks;
     return drawn != Drawn::too_dear;
@@ -136,7 +184,8 @@ private:
   [[nodiscard]] bool cull_again() {
     const Zone zone(state_.zones, "sightline: ask for what is hidden");
     const double nodes = static_cast<double>(chunks_) * double{costs_.node};
-    const double asking = nodes + static_cast<double>(chunks_ * drawn_views()) * double{costs_.query};
+    const Asked drawn_for = drawn_views();
+    const double asking = nodes + static_cast<double>(chunks_ * drawn_for.views) * double{costs_.query};
     if (!purse_.affords(asking)) return false;
     set_occluders(true);
     std::vector<std::uint32_t>& hidden = memory_.hidden;
@@ -147,7 +196,8 @@ private:
     const double saved = saving(tally);
     purse_.earn(saved);
     const double least = nodes + static_cast<double>(tally.left) * double{costs_.test};
-    const double whole = least + std::min(static_cast<double>(tally.left), in_view()) * double{costs_.query};
+    const double whole =
+        least + std::min(static_cast<double>(tally.left), drawn_for.in_view) * double{costs_.query};
     const bool objects = purse_.affords(whole);
     if (!objects && (tally.hidden == 0 || !purse_.affords(least))) return false;
     if (!objects) set_occluders(false);
@@ -275,6 +325,23 @@ private:
     }
   }
 
+  // Which views' tries paid; of several alone who has masks knows.
+  void learn_who_pays() {
+    if (!masks_ || different_.count == 1) return;
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      if (!drawn_[d]) continue;
+      const auto seen = static_cast<double>(in_view_[d]);
+      const int copies = std::popcount(different_.bits[d]);
+      const double saved = (seen - static_cast<double>(count_seen(d))) * copies * double{costs_.object},
+                   asked = (static_cast<double>(chunks_) + seen) * double{costs_.query};
+      Tries& tries = memory_.tries[different_.first[d]];
+      if (saved < spent_[d] + asked)
+        tries.failed(seen);
+      else
+        tries.paid();
+    }
+  }
+
   CullerState& state_;
   Memory& memory_;
   std::span<const CullView> views_;
@@ -284,7 +351,9 @@ private:
   const CullCosts& costs_;
   CullResult& result_;
   std::uint8_t* masks_;  // the caller's
-  std::uint64_t before_, chunks_ = 0;
+  std::uint64_t before_, chunks_ = 0, objects_ = 0;
+  std::array<std::uint64_t, kMaxViews> in_view_{};  // what each view sees by frustum
+  std::array<double, kMaxViews> spent_{};           // on drawing for it
   std::array<bool, kMaxViews> drawn_{};
   Purse purse_;
 };

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <deque>
 
 #include <sightline/rays.hpp>
+#include <sightline/shadows.hpp>
 #include <sightline/world.hpp>
 
 #include "support/solid_boxes.hpp"
@@ -128,6 +130,42 @@ TEST(AutomaticOcclusion, BeginsCoarselyWhereItCannotAffordMore) {
     EXPECT_GT(in_view, 400u);
     EXPECT_LT(last.count, in_view / 4) << width;
   }
+}
+
+// The camera's view and a sun's cascades in one call, as engines have them. Of the cascades next to nothing
+// can be hidden: what they may spend must not be missing where it pays.
+TEST(AutomaticOcclusion, SpendsOnTheViewsThatItPaysFor) {
+  std::vector<Box> blocks;
+  for (int x = -30; x < 30; ++x)
+    for (int z = -30; z < 30; ++z)
+      blocks.push_back({{50.0f * static_cast<float>(x), 0, 50.0f * static_cast<float>(z)},
+                        {50.0f * static_cast<float>(x) + 30, 20, 50.0f * static_cast<float>(z) + 30}});
+  SolidBoxes streets(blocks);
+  const WorldView camera{
+      *make_view({.eye = {45, 1.7f, -10}, .forward = {1, 0, 0.1f}, .far_plane = 1500}, 1920, 1080), {}};
+  std::array<Cascade, 3> cascades;
+  const Light sun{.direction = {1, -1.5f, 0.4f}, .reach = 100};
+  ASSERT_TRUE(split_cascades(sun, camera, {.depths = {-INFINITY, 400}}, cascades));
+  std::array<ShadowCasters, 3> casters;
+  std::vector<CullView> views{{.view = camera}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_TRUE(casters[i].begin(cascades[i].view, camera, cascades[i].depths));
+    views.push_back({.view = cascades[i].view, .distance_view = 0, .casters = &casters[i]});
+  }
+  const auto of_camera = [](const Culled& culled) {
+    return std::ranges::count_if(culled.masks, [](std::uint8_t mask) { return (mask & 1) != 0; });
+  };
+  Culler culler, plain;
+  const auto in_view = of_camera(cull_with(plain, streets.world, views, {}, true));
+  Promise promise;
+  Culled last;
+  for (int frame = 0; frame < 100; ++frame) {
+    last = cull_with(culler, streets.world, views, kAutomatic, true);
+    promise.frame(last.result);
+  }
+  EXPECT_GT(in_view, 700);
+  EXPECT_LT(of_camera(last), in_view / 8);
+  EXPECT_LT(promise.ratio(), 0.4);
 }
 
 // A chunk that the view crosses has many objects that the frustum leaves out already: to ask for them, too,
