@@ -183,7 +183,7 @@ double OccluderPicks::begin_cost(const CullView& view, const OcclusionOptions& o
 OcclusionOptions OccluderPicks::affordable(const CullView& view, const OcclusionOptions& options,
                                            const CullCosts& costs, double left) noexcept {
   constexpr std::uint32_t kCoarsest = 4;
-  constexpr double kShare = 1.0 / 3;
+  constexpr double kShare = 1.0 / 4;
   OcclusionOptions out = options;
   while (out.scale < kCoarsest && begin_cost(view, out, costs) > kShare * left) out.scale *= 2;
   return out;

@@ -26,7 +26,7 @@ public:
   Drawn draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
              std::span<const ObjectId> in_view, const OcclusionOptions& options, const CullCosts& costs,
              double most, Purse& purse);
-  /// The caller's options, or coarser ones where to begin a buffer of theirs would take most of what is left.
+  /// The caller's options, or coarser ones where to begin a buffer of theirs would take much of what is left.
   /// Coarse ones hide less, but most of what fine ones do.
   static OcclusionOptions affordable(const CullView& view, const OcclusionOptions& options,
                                      const CullCosts& costs, double left) noexcept;

@@ -108,14 +108,19 @@ TEST(AutomaticOcclusion, BeginsNoTryThatItCannotAfford) {
   }
 }
 
+// Blocks and streets, from block `begin` to block `end` along x.
+std::vector<Box> blocks(int begin, int end) {
+  std::vector<Box> out;
+  for (int x = begin; x < end; ++x)
+    for (int z = -30; z < 30; ++z)
+      out.push_back({{50.0f * static_cast<float>(x), 0, 50.0f * static_cast<float>(z)},
+                     {50.0f * static_cast<float>(x) + 30, 20, 50.0f * static_cast<float>(z) + 30}});
+  return out;
+}
+
 // A street of blocks at an image so large that to empty a buffer as fine takes more than a first try may.
 TEST(AutomaticOcclusion, BeginsCoarselyWhereItCannotAffordMore) {
-  std::vector<Box> blocks;
-  for (int x = -20; x < 40; ++x)
-    for (int z = -30; z < 30; ++z)
-      blocks.push_back({{50.0f * static_cast<float>(x), 0, 50.0f * static_cast<float>(z)},
-                        {50.0f * static_cast<float>(x) + 30, 20, 50.0f * static_cast<float>(z) + 30}});
-  SolidBoxes streets(blocks);
+  SolidBoxes streets(blocks(-20, 40));
   for (const std::uint32_t width : {320u, 1280u, 3840u}) {
     const CullView view{
         .view = {*make_view({.eye = {45, 1.7f, -10}, .forward = {1, 0, 0.1f}}, width, width * 9 / 16), {}}};
@@ -135,12 +140,7 @@ TEST(AutomaticOcclusion, BeginsCoarselyWhereItCannotAffordMore) {
 // The camera's view and a sun's cascades in one call, as engines have them. Of the cascades next to nothing
 // can be hidden: what they may spend must not be missing where it pays.
 TEST(AutomaticOcclusion, SpendsOnTheViewsThatItPaysFor) {
-  std::vector<Box> blocks;
-  for (int x = -30; x < 30; ++x)
-    for (int z = -30; z < 30; ++z)
-      blocks.push_back({{50.0f * static_cast<float>(x), 0, 50.0f * static_cast<float>(z)},
-                        {50.0f * static_cast<float>(x) + 30, 20, 50.0f * static_cast<float>(z) + 30}});
-  SolidBoxes streets(blocks);
+  SolidBoxes streets(blocks(-30, 30));
   const WorldView camera{
       *make_view({.eye = {45, 1.7f, -10}, .forward = {1, 0, 0.1f}, .far_plane = 1500}, 1920, 1080), {}};
   std::array<Cascade, 3> cascades;
@@ -166,6 +166,22 @@ TEST(AutomaticOcclusion, SpendsOnTheViewsThatItPaysFor) {
   EXPECT_GT(in_view, 700);
   EXPECT_LT(of_camera(last), in_view / 8);
   EXPECT_LT(promise.ratio(), 0.4);
+}
+
+// Two eyes with large images: a buffer so fine that few occluders can be afforded in it hides less than a
+// coarse one with many.
+TEST(AutomaticOcclusion, LeavesMoreForOccludersThanForEmptyingTheirBuffer) {
+  SolidBoxes streets(blocks(-30, 30));
+  std::vector<CullView> eyes;
+  for (const float z : {-10.03f, -9.97f}) {
+    const Camera camera{.eye = {45, 1.7f, z}, .forward = {1, 0, 0.1f}, .far_plane = 1500};
+    eyes.push_back({.view = {*make_view(camera, 2064, 2208), {}}});
+  }
+  Culler culler;
+  Promise promise;
+  for (int frame = 0; frame < 60; ++frame)
+    promise.frame(cull_with(culler, streets.world, eyes, automatic(5000), true).result);
+  EXPECT_LT(promise.ratio(), 0.2);
 }
 
 // A chunk that the view crosses has many objects that the frustum leaves out already: to ask for them, too,
