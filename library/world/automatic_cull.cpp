@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <vector>
 
 #include <sightline/occlusion.hpp>
 
 #include "library/geometry/mutant.h"
+#include "library/world/mask_counts.hpp"
 #include "library/world/occluder_picks.hpp"
 
 namespace sightline::world {
@@ -65,10 +67,7 @@ private:
   [[nodiscard]] std::uint64_t drawn() const { return count_drawn(state_, result_.count); }
   // Of what is left: what the view, or where nobody tells them apart some view, sees.
   [[nodiscard]] std::uint64_t count_seen(std::size_t d) const {
-    if (!masks_) return result_.count;
-    std::uint64_t out = 0;
-    for (std::size_t i = 0; i < result_.count; ++i) out += (masks_[i] & different_.bits[d]) != 0;
-    return out;
+    return masks_ ? count_with({masks_, result_.count}, different_.bits[d]) : result_.count;
   }
 
   // Some of the views, and what they saw before anything was hidden, once for each: no more are asked for.
@@ -106,44 +105,32 @@ private:
   // too little, and for others.
   void draw_for_some(std::span<const std::size_t> views) {
     if (views.empty()) return;
-    Asked alike;
-    for (const std::size_t d : views) {
-      const Asked more = with(alike, d);
-      if (alike.views > 0 && !affords_objects(more)) break;
+    Asked alike = with({}, views[0]);
+    while (alike.views < views.size()) {
+      const Asked more = with(alike, views[alike.views]);
+      if (!(kept_back(more) < purse_.left())) break;
       alike = more;
     }
     std::array<bool, kMaxViews> served{};
     const double share = (purse_.left() - kept_back(alike)) / static_cast<double>(alike.views);
     for (std::size_t i = 0; i < alike.views; ++i) served[i] = draw_for(views[i], share);
-    for (std::size_t i = 0; i < views.size() && different_.count > 1; ++i) {
-      const Asked more = with(drawn_views(), views[i]);
-      if (!served[i] && (more.views == 1 || affords_objects(more)))
-        draw_for(views[i], purse_.left() - kept_back(more));
-    }
+    for (std::size_t i = 0; i < views.size() && different_.count > 1; ++i)
+      if (!served[i]) draw_for(views[i], purse_.left() - kept_back(with(drawn_views(), views[i])));
   }
 
-  // What asking for chunks takes: they are asked for and the rest is written again in any case.
-  [[nodiscard]] double chunk_cost(const Asked& some) const {
-    const double views = static_cast<double>(some.views);
-    return static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query}) +
-           object_views(some) * double{costs_.test};
-  }
-  // And for objects.
-  [[nodiscard]] double object_cost(const Asked& some) const {
-    return chunk_cost(some) + std::min(object_views(some), some.in_view) * double{costs_.query};
-  }
-  // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
-  [[nodiscard]] double object_views(const Asked& some) const {
-    const double views = static_cast<double>(some.views);
-    return std::min(static_cast<double>(objects_) * views,
-                    static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views);
-  }
-  // So that there is as much for drawing.
-  [[nodiscard]] bool affords_objects(const Asked& some) const {
-    return 2 * object_cost(some) <= purse_.left();
-  }
+  // What asking some views takes: their chunks, and all their objects if that leaves as much for drawing. The
+  // rest is written again in any case. Chunks alone for several are not worth it.
   [[nodiscard]] double kept_back(const Asked& some) const {
-    return affords_objects(some) ? object_cost(some) : chunk_cost(some);
+    const double views = static_cast<double>(some.views);
+    // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
+    const double in_chunks = static_cast<double>(result_.tested) + static_cast<double>(result_.count) * views,
+                 object_views = std::min(static_cast<double>(objects_) * views, in_chunks);
+    const double chunks =
+        static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
+    const double least = chunks + object_views * double{costs_.test};
+    const double whole = least + std::min(object_views, some.in_view) * double{costs_.query};
+    if (2 * whole <= purse_.left()) return whole;
+    return some.views == 1 ? least : std::numeric_limits<double>::infinity();
   }
 
   // False where that was too little.

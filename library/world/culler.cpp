@@ -1,7 +1,6 @@
 // Culling a world: the regions and groups are sorted here, one by one; what is left goes to the SIMD passes,
 // in as many jobs as the caller has threads.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "library/geometry/mutant.h"
 #include "library/world/begin_cull-inl.hpp"
 #include "library/world/culler_state.hpp"
+#include "library/world/mask_counts.hpp"
 
 namespace sightline {
 
@@ -141,11 +141,7 @@ Zone::~Zone() {
 }
 
 std::uint64_t count_drawn(CullerState& state, std::size_t count) noexcept {
-  const std::uint8_t* masks = state.masks;
-  if (!masks) return count;
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < count; ++i) sum += static_cast<std::uint64_t>(std::popcount(masks[i]));
-  return sum;
+  return state.masks ? count_bits({state.masks, count}) : count;
 }
 
 void run_passes(CullerState& state, const JobSystem& jobs, CullResult& result) {
