@@ -56,6 +56,19 @@ sightline_status call_with(StreamCall call, sightline_world_stream* stream, cons
   return SIGHTLINE_OK;
 }
 
+static_assert(sizeof(sightline_handle) == sizeof(Handle) && alignof(sightline_handle) == alignof(Handle) &&
+              offsetof(sightline_handle, generation) == offsetof(Handle, generation));
+
+// came() or went().
+using Passed = std::span<const Handle> (WorldStream::*)() const noexcept;
+sightline_status list(Passed passed, const sightline_world_stream* stream, const sightline_handle** handles,
+                      std::size_t* count) {
+  if (!stream || !handles || !count) return refuse("stream: the stream or a place for the handles is NULL");
+  const std::span<const Handle> of = (stream->stream.*passed)();
+  *handles = reinterpret_cast<const sightline_handle*>(of.data()), *count = of.size();
+  return SIGHTLINE_OK;
+}
+
 }  // namespace
 
 extern "C" {
@@ -136,6 +149,15 @@ sightline_status sightline_world_stream_bring_in(sightline_world_stream* stream,
                                                  const sightline_stream_options* options,
                                                  sightline_stream_report* report) {
   return call_with(&WorldStream::bring_in, stream, views, view_count, options, report);
+}
+
+sightline_status sightline_world_stream_came(const sightline_world_stream* stream,
+                                             const sightline_handle** handles, size_t* count) {
+  return list(&WorldStream::came, stream, handles, count);
+}
+sightline_status sightline_world_stream_went(const sightline_world_stream* stream,
+                                             const sightline_handle** handles, size_t* count) {
+  return list(&WorldStream::went, stream, handles, count);
 }
 
 }  // extern "C"

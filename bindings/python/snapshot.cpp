@@ -129,6 +129,20 @@ py::array stand_out(Streamed& streamed, const py::object& handles) {
   return out;
 }
 
+// came() or went().
+template <std::span<const Handle> (WorldStream::*kPassed)() const noexcept>
+py::array passed(Streamed& streamed) {
+  const std::vector<Handle> handles = [&] {
+    const Unlocked unlocked;
+    const std::lock_guard lock(streamed.mutex);
+    const std::span<const Handle> of = (*streamed.stream.*kPassed)();
+    return std::vector<Handle>(of.begin(), of.end());
+  }();
+  py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(handles.size()), py::ssize_t{2}});
+  std::ranges::copy(handles, reinterpret_cast<Handle*>(out.mutable_data()));
+  return out;
+}
+
 }  // namespace
 
 void add_snapshots(py::module_& m, py::class_<Guarded<World>>& world) {
@@ -164,6 +178,12 @@ void add_snapshots(py::module_& m, py::class_<Guarded<World>>& world) {
           "update() and work() until all that the views touch is in, as far as the budget goes, and nothing\n"
           "else: `ahead` is not read.",
           py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 0.0)
+      .def("came", &passed<&WorldStream::came>,
+           "Handles of the objects that are in since the last update or bring_in and were not before it: to "
+           "be\n"
+           "given what they carry, occluders and triangles.")
+      .def("went", &passed<&WorldStream::went>,
+           "Handles of those that were in before it and are out, which are stale.")
       .def("sector", &sector, "bounds, objects, memory, first_byte, state and error of one of them.",
            py::arg("index"))
       .def("stand_out", &stand_out, "bool (n,): whether the object may be one that is out.",

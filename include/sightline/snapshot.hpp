@@ -85,9 +85,9 @@ struct StreamReport {
 ///
 /// What is out is as if it were not there: culls do not see it, and its handles are stale until it is in
 /// again, when they name the same objects as before. A sector that was changed while in stays in. What its
-/// objects carried, occluders and triangles, is forgotten when it goes out. The bytes must stay as they are
-/// as long as the stream lives; a mapped file is what they should be, for nothing of a sector is read before
-/// it comes.
+/// objects carried, occluders and triangles, is forgotten when it goes out: came() lists who is to be given
+/// it again. The bytes must stay as they are as long as the stream lives; a mapped file is what they should
+/// be, for nothing of a sector is read before it comes.
 ///
 /// What was moved from may only be destroyed or assigned to. Unless a function says otherwise: Errors: none.
 /// Cost: constant. Threads: those of World's for changing it; work() alone may run on others at the same
@@ -117,7 +117,7 @@ public:
   /// and takes out the farthest of the others where room is needed. Errors: bad_argument, bad_view, as
   /// Culler::cull, of which it reads the views alone. Cost: some 100 ns a sector and view; an object that
   /// comes or goes 5 to 10 ns, or 200 where others were put into its sector meanwhile. Allocates: its lists,
-  /// the first time; columns' rows.
+  /// until they were as long once; columns' rows.
   Result<StreamReport> update(std::span<const CullView> views, const StreamOptions& options = {});
   /// Checks one of the wanted sectors and copies it, for the next update() to put in; false where none
   /// waits. Cost: some 5 to 10 ns an object. Threads: any, several at once. Allocates: the sector.
@@ -125,6 +125,12 @@ public:
   /// update() and work() until all that the views touch is in, as far as the budget goes, and nothing else:
   /// `ahead` is not read. For the first view, or after a cut. Errors, Allocates: as update(). Cost: both.
   Result<StreamReport> bring_in(std::span<const CullView> views, const StreamOptions& options = {});
+  /// Objects that are in since the last update() or bring_in() and were not before it: to be given what they
+  /// carry, occluders and triangles, or what a renderer keeps of each. Of sectors one behind the other, until
+  /// the next of these calls.
+  [[nodiscard]] std::span<const Handle> came() const noexcept;
+  /// Those that were in before it and are out: their handles are stale, their ids are as before.
+  [[nodiscard]] std::span<const Handle> went() const noexcept;
 
 private:
   struct State;

@@ -1,6 +1,7 @@
 // Sectors in and out of a world: their maps, where their objects stand, and what columns say of them.
 #include "library/world/snapshot_world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "library/world/world_cull.hpp"
@@ -24,6 +25,16 @@ void for_each_object(const ChunkMap& map, const Take& take) {
 }
 
 }  // namespace
+
+bool Passed::drop(std::size_t sector) {
+  const auto part = std::ranges::find(parts_, sector, &Part::sector);
+  if (part == parts_.end()) return false;
+  const std::size_t first = part->first, end = part + 1 == parts_.end() ? handles_.size() : (part + 1)->first;
+  handles_.erase(handles_.begin() + static_cast<std::ptrdiff_t>(first),
+                 handles_.begin() + static_cast<std::ptrdiff_t>(end));
+  for (auto later = parts_.erase(part); later != parts_.end(); ++later) later->first -= end - first;
+  return true;
+}
 
 bool SnapshotWorld::is_new(const World& world) noexcept {
   const WorldState& s = WorldAccess::state(world);
@@ -80,7 +91,7 @@ Status SnapshotWorld::claim(std::size_t sector, const ChunkMap& map) {
           directory_.first_bytes[sector]};
 }
 
-void SnapshotWorld::read_columns(const SectorPiece& piece) {
+void SnapshotWorld::read_columns(const SectorPiece& piece, bool came) {
   WorldState& s = *state_;
   const SnapshotRows rows(directory_.columns);
   auto* levels = static_cast<WorldLevels*>(s.levels.get());
@@ -92,6 +103,7 @@ void SnapshotWorld::read_columns(const SectorPiece& piece) {
       const ObjectId id = c.objects[i];
       s.objects[id].generation = at[i];
       s.note_generation(id);
+      if (came) came_.add({id, at[i]});
       s.columns.forget(id);
       if (levels) levels->forget(id);
       if (rows.layers != SnapshotRows::kNone) s.columns.layers[id] = row(rows.layers)[i];
@@ -122,7 +134,9 @@ Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
   WorldState& s = *state_;
   const auto& [x, y, z] = directory_.sectors[i].cell;
   if (const Status sound = claim(i, *piece.map); !sound) return sound;
-  read_columns(piece);
+  const bool came = !went_.drop(i);
+  if (came) came_.begin(i);
+  read_columns(piece, came);
   s.size += piece.map->size();
   const auto begun = s.sector_of_cell.find({x, y, z});
   if (begun != s.sector_of_cell.end()) {
@@ -146,7 +160,10 @@ Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
 void SnapshotWorld::take_out(std::size_t i) {
   WorldState& s = *state_;
   Sector& sector = s.sectors[i];
+  const bool goes = !came_.drop(i);
+  if (goes) went_.begin(i);
   for_each_object(*sector.map, [&](ObjectId id, std::uint32_t, std::uint32_t) {
+    if (goes) went_.add({id, s.objects[id].generation});
     go_out(s.objects[id], true);
     s.note_generation(id);
     if (s.occluders) s.occluders->forget(id);

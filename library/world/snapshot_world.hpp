@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <sightline/snapshot.hpp>
@@ -16,6 +17,25 @@ namespace sightline::world {
 
 /// Location::slot_and_history of an object that is out, but was in.
 inline constexpr std::uint32_t kGenerationIsKnown = 1;
+
+/// Whose sectors passed one way, in or out, since clear(), and did not come back the other way.
+class Passed {
+public:
+  void clear() noexcept { handles_.clear(), parts_.clear(); }
+  /// Begins a sector, whose objects are then added.
+  void begin(std::size_t sector) { parts_.push_back({sector, handles_.size()}); }
+  void add(Handle handle) { handles_.push_back(handle); }
+  /// Forgets a sector, where it is among them.
+  bool drop(std::size_t sector);
+  [[nodiscard]] std::span<const Handle> handles() const noexcept { return handles_; }
+
+private:
+  struct Part {
+    std::size_t sector = 0, first = 0;
+  };
+  std::vector<Handle> handles_;
+  std::vector<Part> parts_;  ///< in the order of their handles
+};
 
 /// A world of which sectors come out of a snapshot. Sector i of the snapshot has place i among the world's,
 /// so that with all of them in, a cull goes through them in the order that it always had.
@@ -36,6 +56,10 @@ public:
   Status put_in(std::size_t sector, SectorPiece& piece);
   /// Takes out a sector that is in and unchanged.
   void take_out(std::size_t sector);
+  /// Objects that were put in or taken out since begin_turn(), and are not as they were then.
+  void begin_turn() noexcept { came_.clear(), went_.clear(); }
+  [[nodiscard]] std::span<const Handle> came() const noexcept { return came_.handles(); }
+  [[nodiscard]] std::span<const Handle> went() const noexcept { return went_.handles(); }
   /// Whether a sector that was put in is as it was then.
   [[nodiscard]] bool unchanged(std::size_t sector) const noexcept {
     return state_->sectors[sector].snapshot == sector;
@@ -43,11 +67,12 @@ public:
 
 private:
   Status claim(std::size_t sector, const ChunkMap& map);
-  void read_columns(const SectorPiece& piece);
+  void read_columns(const SectorPiece& piece, bool came);
   void file_each(const ChunkMap& map, std::uint32_t into);
 
   SnapshotDirectory directory_;
   WorldState* state_ = nullptr;
+  Passed came_, went_;
 };
 
 /// A sector that update() asked for, on its way through work().

@@ -229,8 +229,17 @@ bool WorldStream::stands_out(Handle handle) const noexcept {
 }
 
 Result<StreamReport> WorldStream::update(std::span<const CullView> views, const StreamOptions& options) {
+  state_->snapshot.begin_turn();
   if (const Status sound = check_stream(views, options); !sound) return sound;
   return state_->update(views, options, 1);
+}
+
+std::span<const Handle> WorldStream::came() const noexcept {
+  return state_->snapshot.came();
+}
+
+std::span<const Handle> WorldStream::went() const noexcept {
+  return state_->snapshot.went();
 }
 
 bool WorldStream::work() {
@@ -246,6 +255,7 @@ bool WorldStream::work() {
 }
 
 Result<StreamReport> WorldStream::bring_in(std::span<const CullView> views, const StreamOptions& options) {
+  state_->snapshot.begin_turn();
   if (const Status sound = check_stream(views, options); !sound) return sound;
   StreamOptions touched = options;
   touched.ahead = 0;
@@ -266,6 +276,7 @@ Result<World> load(std::span<const std::byte> bytes) {
   snapshot.begin(*std::move(directory), loaded);
   for (std::size_t i = 0; i < snapshot.directory().sectors.size(); ++i) {
     world::SectorPiece piece;
+    snapshot.begin_turn();
     Status sound = snapshot.read(i, piece);
     if (sound) sound = snapshot.put_in(i, piece);
     if (!sound) return sound;

@@ -67,6 +67,8 @@ static void bring_in(const sightline_handle* handles) {
   sightline_world_stream* stream = NULL;
   sightline_stream_report report;
   sightline_stream_sector sector;
+  const sightline_handle* passed = NULL;
+  size_t count = 9;
   sightline_stream_options options = sightline_stream_options_default();
   const sightline_view ahead = view_ahead();
   const sightline_cull_view view = sightline_cull_view_of(&ahead);
@@ -76,12 +78,16 @@ static void bring_in(const sightline_handle* handles) {
   EXPECT(sector.objects == kBoxes / 2 && sector.state == SIGHTLINE_SECTOR_OUT && !sector.error);
   EXPECT(sector.first_byte == 16 && sector.memory > 28 * sector.objects && sector.bounds.max[2] == -4.5);
   EXPECT(count_ahead(world) == 0 && sightline_world_stream_stands_out(stream, handles[0]));
+  EXPECT(sightline_world_stream_came(stream, &passed, &count) == SIGHTLINE_OK && count == 0);
   options.ahead = 0;
   EXPECT(sightline_world_stream_update(stream, &view, 1, &options, &report) == SIGHTLINE_OK);
   EXPECT(report.coming == 1 && report.missing == 1 && report.in == 0 && report.memory == sector.memory);
   EXPECT(sightline_world_stream_work(stream) && !sightline_world_stream_work(stream));
   EXPECT(sightline_world_stream_update(stream, &view, 1, &options, &report) == SIGHTLINE_OK);
   EXPECT(report.coming == 0 && report.missing == 0 && report.in == 1 && report.damaged == 0);
+  EXPECT(sightline_world_stream_came(stream, &passed, &count) == SIGHTLINE_OK && count == kBoxes / 2);
+  for (size_t i = 0; i < count; ++i) EXPECT(sightline_world_contains(world, passed[i]));
+  EXPECT(sightline_world_stream_went(stream, &passed, &count) == SIGHTLINE_OK && count == 0);
   EXPECT(count_ahead(world) == kBoxes / 2 && sightline_world_contains(world, handles[0]));
   EXPECT(sightline_world_stream_stands_out(stream, handles[kBoxes - 1]));
   EXPECT_REFUSED(sightline_world_save(world, keep_bytes, &saved), SIGHTLINE_BAD_ARGUMENT, SIGHTLINE_NO_INDEX);
@@ -89,6 +95,14 @@ static void bring_in(const sightline_handle* handles) {
   options.budget = 1;
   EXPECT(sightline_world_stream_update(stream, &view, 1, &options, &report) == SIGHTLINE_OK);
   EXPECT(report.in == 0 && report.missing == 1 && report.memory == 0);
+  EXPECT(sightline_world_stream_went(stream, &passed, &count) == SIGHTLINE_OK && count == kBoxes / 2);
+  for (size_t i = 0; i < count; ++i) EXPECT(sightline_world_stream_stands_out(stream, passed[i]));
+  EXPECT_REFUSED(sightline_world_stream_went(NULL, &passed, &count), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
+  EXPECT_REFUSED(sightline_world_stream_came(stream, NULL, &count), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
+  EXPECT_REFUSED(sightline_world_stream_came(stream, &passed, NULL), SIGHTLINE_BAD_ARGUMENT,
+                 SIGHTLINE_NO_INDEX);
   EXPECT_REFUSED(sightline_world_stream_update(stream, &view, 9, NULL, NULL), SIGHTLINE_BAD_ARGUMENT,
                  SIGHTLINE_NO_INDEX);
   EXPECT_REFUSED(sightline_world_stream_update(NULL, &view, 1, NULL, NULL), SIGHTLINE_BAD_ARGUMENT,

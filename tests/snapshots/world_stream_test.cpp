@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <thread>
 #include <utility>
@@ -286,7 +288,57 @@ TEST(WorldStream, WhatObjectsCarriedIsForgottenWhenTheyGo) {
   EXPECT_FALSE(world.remove_occluder(*occluder));
   ASSERT_TRUE(stream->bring_in({&there, 1}, {.budget = 1}));
   EXPECT_TRUE(stream->stands_out(handle));
+  EXPECT_TRUE(std::ranges::count(stream->went(), handle));
   EXPECT_TRUE(world.remove_occluder(*occluder));
+  // Who comes again is given another.
+  ASSERT_TRUE(stream->bring_in({&here, 1}));
+  placement.occluder = *world.add_occluder(test::kUnitBox);
+  const std::vector<OccluderPlacement> placements(stream->came().size(), placement);
+  ASSERT_TRUE(std::ranges::count(stream->came(), handle));
+  ASSERT_TRUE(world.set_occluders(stream->came(), placements));
+}
+
+std::set<ObjectId> ids_of(std::span<const Handle> handles, const World& of) {
+  std::set<ObjectId> out;
+  for (const Handle handle : handles) {
+    EXPECT_EQ(handle, of.handle(handle.index));
+    EXPECT_TRUE(out.insert(handle.index).second) << handle.index << " is listed twice";
+  }
+  return out;
+}
+
+// A small budget and sectors that become ready late: some are put in that nobody wants any more, and go at
+// once; others go and come back within one bring_in().
+TEST(WorldStream, ListsWhoCameAndWhoWent) {
+  Streamed streamed(5000);
+  auto& [ground, world, stream] = streamed;
+  Random random(11);
+  std::set<ObjectId> in;
+  std::size_t came = 0, went = 0;
+  for (int i = 0; i < 300; ++i) {
+    const CullView view =
+        looking_from(random.inside({{-kSide, 0, -kSide}, {kSide, 9, kSide}}), random.between(-3, 3), 9000);
+    const StreamOptions options{.budget = memory_of_all(*stream) / (2 + random.below(30)), .ahead = 0};
+    ASSERT_TRUE(random.below(4) == 0 ? stream->bring_in({&view, 1}, options)
+                                     : stream->update({&view, 1}, options));
+    std::set<ObjectId> now;
+    for (const Handle handle : ground.handles)
+      if (world.contains(handle)) now.insert(handle.index);
+    std::set<ObjectId> newly, gone;
+    std::ranges::set_difference(now, in, std::inserter(newly, newly.end()));
+    std::ranges::set_difference(in, now, std::inserter(gone, gone.end()));
+    ASSERT_EQ(ids_of(stream->came(), ground.world), newly) << i;
+    ASSERT_EQ(ids_of(stream->went(), ground.world), gone) << i;
+    came += newly.size(), went += gone.size();
+    in = std::move(now);
+    for (std::uint32_t works = random.below(4); works > 0; --works) stream->work();
+  }
+  EXPECT_GT(came, 5000u);
+  EXPECT_GT(went, 5000u);
+  // A call that is refused passes nobody.
+  EXPECT_FALSE(stream->update({}));
+  EXPECT_TRUE(stream->came().empty());
+  EXPECT_TRUE(stream->went().empty());
 }
 
 // Instances of a streamed world show what those of the whole one show, less what is out; and a cull is

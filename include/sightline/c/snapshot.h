@@ -109,6 +109,13 @@ SIGHTLINE_API sightline_status sightline_world_stream_bring_in(sightline_world_s
                                                                size_t view_count,
                                                                const sightline_stream_options* options,
                                                                sightline_stream_report* report);
+/** Objects that are in since the last update or bring_in and were not before it: to be given what they carry
+ * again, occluders and triangles. Valid until the next of these calls. Errors: BAD_ARGUMENT for NULL. */
+SIGHTLINE_API sightline_status sightline_world_stream_came(const sightline_world_stream* stream,
+                                                           const sightline_handle** handles, size_t* count);
+/** The same of those that were in before it and are out: their handles are stale. */
+SIGHTLINE_API sightline_status sightline_world_stream_went(const sightline_world_stream* stream,
+                                                           const sightline_handle** handles, size_t* count);
 
 #ifdef __cplusplus
 }

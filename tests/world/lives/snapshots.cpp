@@ -26,6 +26,23 @@ void expect_report(const Streaming& streaming, const StreamReport& report) {
   ASSERT_LE(report.memory, streaming.budget);
 }
 
+// Who came and who went with the last update, before it is noted.
+void expect_passed(const Life& life, const World& world) {
+  std::vector<Handle> came, went;
+  for (const ObjectId id : life.model.standing) {
+    const Object& object = life.model.objects[id];
+    if (world.contains(object.handle) != object.in) (object.in ? went : came).push_back(object.handle);
+  }
+  const auto expect_same = [](std::vector<Handle> expected, std::span<const Handle> listed) {
+    std::vector<Handle> found(listed.begin(), listed.end());
+    std::ranges::sort(expected, {}, &Handle::index);
+    std::ranges::sort(found, {}, &Handle::index);
+    ASSERT_EQ(found, expected);
+  };
+  expect_same(came, life.streaming->stream->came());
+  expect_same(went, life.streaming->stream->went());
+}
+
 // Notes who is in now. Whoever came is as he was, and who has changed since the stream began stays.
 void expect_in_or_out(Life& life) {
   World& world = life.world();
@@ -107,6 +124,7 @@ void stream(Life& life) {
     const auto report = one_in(random, 5) ? stream.bring_in(views, options) : stream.update(views, options);
     ASSERT_TRUE(report) << report.error().message();
     expect_report(*life.streaming, *report);
+    expect_passed(life, life.world());
     expect_in_or_out(life);
     if (testing::Test::HasFailure()) return;
     for (std::uint32_t works = random.below(5); works > 0; --works) stream.work();
