@@ -18,7 +18,9 @@ namespace sightline {
 inline JobSystem tbb_jobs(std::uint32_t threads = 0) {
   if (threads == 0) threads = static_cast<std::uint32_t>(std::max(tbb::info::default_concurrency(), 1));
   const auto run = [](void*, std::uint32_t count, void (*job)(void*, std::uint32_t), void* data) {
-    tbb::parallel_for(std::uint32_t{0}, count, [=](std::uint32_t i) { job(data, i); });
+    // Each job is a task of its own: there are few, and they are long.
+    const auto task = [=](std::uint32_t i) { job(data, i); };
+    tbb::parallel_for(std::uint32_t{0}, count, task, tbb::simple_partitioner{});
   };
   return {run, nullptr, std::clamp(threads, 1u, kMaxJobs)};
 }

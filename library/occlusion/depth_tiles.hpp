@@ -27,6 +27,14 @@ using geometry::SphereSpan;
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
+/// Whether jobs share a mesh out by what it cost; not where each byte of code is loaded by whoever opens a
+/// web page, and there are no threads.
+#ifdef __wasm__
+inline constexpr bool kSharesByCost = false;
+#else
+inline constexpr bool kSharesByCost = true;
+#endif
+
 /// What a view has found out about a mesh. Reused from mesh to mesh.
 struct MeshScratch {
   /// The groups in view, and their boxes: min x, y, z, max x, y, z.
@@ -41,6 +49,9 @@ struct MeshScratch {
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
+  /// Of each row of tiles, and of one after the last, what it cost more than the row above it; empty where
+  /// nobody asks.
+  std::vector<std::int32_t> cost_steps;
 };
 
 /// The nearness of a tile that one plane covers.
@@ -63,6 +74,13 @@ struct TileMemory {
   geometry::AlignedVector<float> farthest, nearest, nearness, untouched;
   TilePlanes<geometry::AlignedVector<float>> plane;
   std::vector<MeshScratch> scratch;  ///< one a job that draws; the first is there once a view is begun
+  /// What jobs drew last.
+  struct Banded {
+    const OccluderTopology* mesh = nullptr;  ///< only compared
+    std::uint32_t jobs = 0;
+    Vec3 direction;  ///< of the view
+  };
+  Banded banded;
 };
 
 struct BoxQuestions;

@@ -1,8 +1,12 @@
 // A mesh that jobs draw, band by band of the image, gives the bits that one thread gives.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <sightline/occlusion.hpp>
 
+#include "library/occlusion/depth_tiles.hpp"
 #include "support/occluder_meshes.hpp"
 #include "support/run_threads.hpp"
 #include "workbench/scene/random.hpp"
@@ -98,6 +102,72 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThreadOfFlatPieces) {
     }
   }
   EXPECT_GT(covered, 100'000u);
+}
+
+// A camera that turns by `step` degrees a frame towards a low heap, of which the first frames see only a part
+// of the image's rows.
+Camera turning(int frame, float step) {
+  const float turn = 0.0174533f * step * static_cast<float>(frame);
+  return {.forward = {std::sin(turn), -0.3f, -std::cos(turn)}, .near_plane = 0.2f};
+}
+
+OccluderMesh heap(Random& random) {
+  return strips_about(random, {{-60, -2, -60}, {60, 1, -20}});
+}
+
+// Bands move with what they cost the frame before.
+TEST(OcclusionJobs, DrawTheBitsOfOneThreadWhereverBandsBegin) {
+  Random random(12);
+  const OccluderMesh mesh = heap(random);
+  std::size_t covered = 0;
+  for (const std::uint32_t threads : {2u, 3u, 8u}) {
+    OcclusionBuffer buffer;
+    for (int frame = 0; frame < 12; ++frame) {
+      // Some images are higher, and others draw in between.
+      const View view = *make_view(turning(frame, 3), 200, frame % 5 == 4 ? 500 : 403);
+      const OcclusionOptions options{frame % 4 == 3 ? Coverage::area : Coverage::centres};
+      ASSERT_TRUE(buffer.begin({view, {}}, options));
+      ASSERT_TRUE(buffer.draw_mesh(mesh, {}, {test::run_threads, nullptr, threads + (frame == 9)}));
+      std::vector<float> pixels(std::size_t{view.width} * view.height);
+      ASSERT_TRUE(buffer.read_nearness(pixels));
+      ASSERT_EQ(pixels, drawn(mesh, view, options, {})) << threads << ", " << frame;
+      for (const float nearness : pixels) covered += nearness > 0;
+    }
+  }
+  EXPECT_GT(covered, 100'000u);
+}
+
+// The most that one of four jobs drew, of the mean.
+double most_of_mean(const OcclusionBuffer& buffer) {
+  const occlusion::DepthTiles& tiles = OcclusionAccess::tiles(buffer);
+  double sum = 0, most = 0;
+  for (std::size_t job = 0; job < 4; ++job) {
+    std::int64_t row = 0, cost = 0;
+    for (const std::int32_t step : tiles.mesh[job].cost_steps) cost += row += step;
+    EXPECT_EQ(row, 0);
+    sum += static_cast<double>(cost), most = std::max(most, static_cast<double>(cost));
+  }
+  return most / (sum / 4);
+}
+
+// Where a view looks much as the one before did, jobs are given as much as each other.
+TEST(OcclusionJobs, ShareWhatAFrameCosts) {
+  if (!occlusion::kSharesByCost) GTEST_SKIP();
+  Random random(13);
+  const OccluderMesh mesh = heap(random);
+  OcclusionBuffer buffer;
+  double first = 0, later = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const View view = *make_view(turning(frame, 1), 640, 480);
+    ASSERT_TRUE(buffer.begin({view, {}}));
+    ASSERT_TRUE(buffer.draw_mesh(mesh, {}, {test::run_threads, nullptr, 4}));
+    if (frame == 0)
+      first = most_of_mean(buffer);
+    else
+      later = std::max(later, most_of_mean(buffer));
+  }
+  EXPECT_GT(first, 2);
+  EXPECT_LT(later, 1.5);
 }
 
 // What lies beyond a job's band is none of its business, even where the mesh is drawn a second time behind
