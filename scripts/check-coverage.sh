@@ -24,7 +24,7 @@ for scene in "${scenes[@]}"; do
   cat "$folder/log"
   # What centres keep, and lose at other places, which is no failure.
   "$build/sightline" verify "$scene" --methods masked --samples 8 --seed 11 --views $views --replays "$folder" \
-    >"$folder/centres" 2>&1 || [ $? = 1 ]
+    >"$folder/centres" 2>&1
   grep -E '^ *masked' "$folder/centres" | head -1
   echo "$scene: $((SECONDS - start)) s"
 done

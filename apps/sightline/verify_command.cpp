@@ -118,6 +118,10 @@ int run_verify(const VerifyOptions& options) {
     for (const measure::LostObject& lost : m.examples)
       fmt::print("{}{}\n", std::exchange(separator, ""), measure::describe(m, lost));
   }
+  if (std::ranges::any_of(result.methods, &measure::MethodVerdict::of_centres))
+    fmt::print(
+        "\nOf centres alone: what they promise holds at pixel centres, not at other places of a pixel. Those "
+        "that\ntake coverage=area promise all of the image with it, as masked?coverage=area.\n");
   write_replays(result, options);
   if (scene.level && !device) print_level_evidence(scene, options.seed);
   return result.passed() ? Exit::done : Exit::check_failed;
@@ -159,8 +163,8 @@ void add_verify(CLI::App& app, int& exit) {
       ->capture_default_str();
   command
       .add_option("--samples", options->samples,
-                  "random places of each pixel that are judged in place of its centre: for methods that "
-                  "promise all of the image, as masked?coverage=area does")
+                  "random places of each pixel that are judged in place of its centre; what methods lose "
+                  "there that promise pixel centres alone, as masked without coverage=area, is no failure")
       ->transform(whole(1, 64))
       ->type_name("N");
   command.add_option("--size", options->size, "image size in pixels")

@@ -197,10 +197,16 @@ TEST(Verify, SamplesShowWhatCentresMissAndAreaKeepsIt) {
                      samples = verify(of_samples, cameras, 160, 120, 0);
   EXPECT_TRUE(centres.passed());
   EXPECT_GT(samples.methods[0].visible, centres.methods[0].visible);
-  EXPECT_GT(samples.methods[0].lost_objects, 0u);  // whose promise is of centres
+  // Whose promise is of centres, so that what it loses is no failure.
+  EXPECT_GT(samples.methods[0].lost_objects, 0u);
+  EXPECT_TRUE(samples.methods[0].of_centres && samples.methods[0].holds());
+  EXPECT_EQ(samples.methods[0].examples.size(), 1u);
+  EXPECT_FALSE(centres.methods[0].of_centres || samples.methods[3].of_centres);
+  EXPECT_TRUE(samples.passed());
   for (const std::size_t by_area : {1u, 2u}) {
     const MethodVerdict& found = samples.methods[by_area];
     EXPECT_EQ(found.lost_objects, 0u) << found.method;
+    EXPECT_FALSE(found.of_centres) << found.method;
     EXPECT_LT(found.kept, samples.methods[3].kept / 2) << found.method;
   }
 }

@@ -11,7 +11,9 @@ namespace sightline::measure {
 
 Bench::Bench(Scene& scene, std::span<const std::string> specifications, device::Device* device,
              std::uint32_t samples)
-    : scene_(scene), renderer_(device ? std::make_unique<device::Renderer>(*device, scene) : nullptr) {
+    : scene_(scene),
+      samples_(samples),
+      renderer_(device ? std::make_unique<device::Renderer>(*device, scene) : nullptr) {
   if (renderer_ && samples > 0)
     throw Error("samples: a device judges pixel centres alone, expected --device cpu");
   oracle_ = renderer_ ? oracle::make_raster_oracle(*renderer_) : oracle::make_ray_oracle(scene, samples);

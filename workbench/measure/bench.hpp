@@ -34,6 +34,8 @@ public:
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   [[nodiscard]] std::span<Subject> subjects() noexcept { return subjects_; }
   [[nodiscard]] std::span<const Subject> subjects() const noexcept { return subjects_; }
+  /// Whether places of pixels are judged other than their centres.
+  [[nodiscard]] bool judges_samples() const noexcept { return samples_ > 0; }
   [[nodiscard]] oracle::Oracle& oracle() noexcept { return *oracle_; }
   /// Null on the CPU.
   [[nodiscard]] device::Renderer* renderer() noexcept { return renderer_.get(); }
@@ -57,6 +59,7 @@ public:
 
 private:
   Scene& scene_;
+  std::uint32_t samples_;
   std::unique_ptr<device::Renderer> renderer_;
   std::unique_ptr<oracle::Oracle> oracle_;
   std::vector<Subject> subjects_;

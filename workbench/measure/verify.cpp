@@ -13,9 +13,9 @@
 namespace sightline::measure {
 namespace {
 
-/// One is enough to show where an approximate method gives way; a defect wants several.
-std::size_t examples_wanted(Guarantee guarantee) {
-  return guarantee == Guarantee::approximate ? 1 : 10;
+/// One is enough to show where a method gives way that promises nothing; a defect wants several.
+std::size_t examples_wanted(const MethodVerdict& verdict) {
+  return verdict.of_centres || verdict.guarantee == Guarantee::approximate ? 1 : 10;
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ void examine(Bench& bench, Subject& subject, const View& view, const LostObject&
   verdict.views_with_loss += lost;
   const bool breaks = verdict.guarantee == Guarantee::exact && judged.different_pixels > 0;
   if (!lost && !breaks) return;
-  if (verdict.examples.size() >= examples_wanted(verdict.guarantee)) return;
+  if (verdict.examples.size() >= examples_wanted(verdict)) return;
   verdict.examples.push_back(where);
   verdict.examples.back().object = lost ? judged.loss.lost.front() : kNoObject;
   verdict.examples.back().pixels = lost ? judged.loss.lost_pixels : judged.different_pixels;
@@ -49,6 +49,7 @@ Verification start_verification(const Bench& bench) {
     MethodVerdict verdict;
     verdict.method = subject.name;
     verdict.guarantee = subject.method->guarantee();
+    verdict.of_centres = bench.judges_samples() && subject.method->coverage() == Coverage::centres;
     result.methods.push_back(std::move(verdict));
   }
   return result;

@@ -29,6 +29,8 @@ struct LostObject {
 struct MethodVerdict {
   std::string method;
   Guarantee guarantee = Guarantee::exact;
+  /// It speaks of pixel centres, and other places were judged: what was lost there is only reported.
+  bool of_centres = false;
   std::uint64_t kept = 0, visible = 0;  ///< objects, summed over the views
   std::uint64_t lost_objects = 0, lost_pixels = 0, excess_objects = 0;
   std::uint64_t different_pixels = 0;  ///< on a device: that differ from the picture of all it could draw
@@ -37,9 +39,9 @@ struct MethodVerdict {
       examples;  ///< from the first views that break the guarantee, one for approximate methods
 
   /// False where an exact or conservative method lost something, or an exact one drew another picture; an
-  /// approximate one only reports.
+  /// approximate one only reports, as does one that was judged where it promises nothing.
   [[nodiscard]] bool holds() const noexcept {
-    return guarantee == Guarantee::approximate ||
+    return of_centres || guarantee == Guarantee::approximate ||
            (lost_objects == 0 && (guarantee != Guarantee::exact || different_pixels == 0));
   }
 };

@@ -16,6 +16,7 @@ public:
   }
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return method_->guarantee(); }
+  [[nodiscard]] Coverage coverage() const noexcept override { return method_->coverage(); }
   void do_update(std::span<const ObjectId> objects) override {
     if (objects.empty()) return;
     method_->update(objects);

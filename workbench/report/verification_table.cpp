@@ -6,6 +6,7 @@ namespace {
 
 const char* verdict_of(const measure::MethodVerdict& v) {
   if (!v.holds()) return "BROKEN";
+  if (v.of_centres) return v.lost_objects > 0 ? "of centres alone" : "lost nothing";
   if (v.guarantee != Guarantee::approximate) return "holds";
   return v.lost_objects > 0 ? "approximate" : "lost nothing";
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include <sightline/occlusion.hpp>
 #include <sightline/view.hpp>
 #include <sightline/workbench/frame.hpp>
 #include <sightline/workbench/held_scene.hpp>
@@ -47,6 +48,8 @@ public:
 
   /// With the parameters it was made with.
   [[nodiscard]] virtual Guarantee guarantee() const noexcept = 0;
+  /// Of which places on the image that speaks: of any, or of pixel centres alone.
+  [[nodiscard]] virtual Coverage coverage() const noexcept { return Coverage::area; }
   /// Told after Scene::move_object (and on a device Renderer::update) of each of `objects`, before the next
   /// frame. Throws Error, and changes nothing, for an object that is not in the scene or has no finite
   /// bounds.

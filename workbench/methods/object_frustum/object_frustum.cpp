@@ -47,6 +47,9 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override {
     return printed_ || list_.leaves_out_layers() ? Guarantee::approximate : Guarantee::conservative;
   }
+  [[nodiscard]] Coverage coverage() const noexcept override {
+    return occluders_ ? Coverage::centres : Coverage::area;
+  }
   void do_update(std::span<const ObjectId> moved) override {
     if (moved.empty()) return;
     objects_.rebuild();

@@ -47,6 +47,7 @@ public:
   Masked(const Scene& scene, const Parameters& parameters)
       : CpuMethod(scene),
         all_solid_(parameters.word("solid") == "all"),
+        coverage_(buffer_from(parameters).coverage),
         occluders_(scene, choice_from(parameters)),
         draw_list_(scene),
         handles_(scene.size()) {
@@ -56,6 +57,7 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override {
     return all_solid_ ? Guarantee::approximate : Guarantee::conservative;
   }
+  [[nodiscard]] Coverage coverage() const noexcept override { return coverage_; }
 
   void do_update(std::span<const ObjectId> objects) override {
     for (const ObjectId o : objects)
@@ -106,6 +108,7 @@ private:
   }
 
   bool all_solid_;
+  Coverage coverage_;
   SceneOccluders occluders_;
   submission::DrawList draw_list_;
   World world_;

@@ -33,6 +33,10 @@ Guarantee guarantee_of(const submission::Contribution& contribution) noexcept {
                                                                    : Guarantee::exact;
 }
 
+Coverage coverage_of(const submission::Contribution& contribution) noexcept {
+  return contribution.test == submission::Contribution::Test::exact ? Coverage::centres : Coverage::area;
+}
+
 std::array<std::uint32_t, 2> shader_constants(const submission::Contribution& contribution) noexcept {
   return {static_cast<std::uint32_t>(contribution.test),
           std::bit_cast<std::uint32_t>(contribution.threshold)};

@@ -16,6 +16,8 @@ inline constexpr std::array kOcclusionParameters{submission::kContributionParame
 
 /// Exact, unless objects are dropped by their area.
 Guarantee guarantee_of(const submission::Contribution& contribution) noexcept;
+/// Any place, unless objects are dropped that cover no pixel centre.
+Coverage coverage_of(const submission::Contribution& contribution) noexcept;
 /// The constants of shaders that include boxes.h.
 std::array<std::uint32_t, 2> shader_constants(const submission::Contribution& contribution) noexcept;
 
@@ -47,6 +49,7 @@ public:
   MarkAndDraw(device::Renderer& renderer, const Parameters& parameters, std::optional<float> least = {});
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
+  [[nodiscard]] Coverage coverage() const noexcept override { return Coverage::centres; }
   void do_record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 

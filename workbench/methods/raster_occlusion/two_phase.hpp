@@ -13,6 +13,7 @@ public:
   TwoPhase(device::Renderer& renderer, const submission::Contribution& contribution);
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
+  [[nodiscard]] Coverage coverage() const noexcept override { return Coverage::centres; }
   void do_record(FrameContext& context) final;
   void read_back(Frame& frame) final;
 

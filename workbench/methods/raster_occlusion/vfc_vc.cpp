@@ -36,6 +36,7 @@ public:
   [[nodiscard]] Guarantee guarantee() const noexcept override {
     return contribution_.test == Contribution::Test::area ? Guarantee::approximate : Guarantee::conservative;
   }
+  [[nodiscard]] Coverage coverage() const noexcept override { return coverage_of(contribution_); }
 
   void do_update(std::span<const ObjectId> objects) override {
     for (const ObjectId object : objects) bounds_.refresh(scene_, object);
@@ -86,6 +87,7 @@ public:
         draws_(renderer.draws().make_buffers(renderer.device())) {}
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return guarantee_of(contribution_); }
+  [[nodiscard]] Coverage coverage() const noexcept override { return coverage_of(contribution_); }
   void do_update(std::span<const ObjectId>) override {}
 
   void do_record(FrameContext& context) override {

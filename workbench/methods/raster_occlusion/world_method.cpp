@@ -51,6 +51,9 @@ public:
   }
 
   [[nodiscard]] Guarantee guarantee() const noexcept override { return Guarantee::conservative; }
+  [[nodiscard]] Coverage coverage() const noexcept override {
+    return options_.occlusion == Occlusion::none ? Coverage::area : options_.buffer.coverage;
+  }
 
   void do_update(std::span<const ObjectId> objects) override {
     bool first_time = false;
