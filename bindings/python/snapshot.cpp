@@ -179,11 +179,10 @@ void add_snapshots(py::module_& m, py::class_<Guarded<World>>& world) {
           "else: `ahead` is not read.",
           py::arg("views"), py::arg("budget") = py::none(), py::arg("ahead") = 0.0)
       .def("came", &passed<&WorldStream::came>,
-           "Handles of the objects that are in since the last update or bring_in and were not before it: to "
-           "be\n"
-           "given what they carry, occluders and triangles.")
+           "Handles of the objects that came in with the last update or bring_in: to be given what they "
+           "carry,\noccluders and triangles.")
       .def("went", &passed<&WorldStream::went>,
-           "Handles of those that were in before it and are out, which are stale.")
+           "Handles of those that were in before it and went out; who went and came again is in both.")
       .def("sector", &sector, "bounds, objects, memory, first_byte, state and error of one of them.",
            py::arg("index"))
       .def("stand_out", &stand_out, "bool (n,): whether the object may be one that is out.",

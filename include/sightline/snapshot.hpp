@@ -65,7 +65,8 @@ struct StreamSector {
 /// Which sectors update() wants in.
 struct StreamOptions {
   /// Bytes that sectors may take, those that are coming and those that changed among them, as saved; only the
-  /// latter may take more. What a world has besides, an id's 16 bytes and its columns, is not counted.
+  /// latter may take more. What there is besides is not counted: an id's 16 bytes, columns, the lists of who
+  /// came and went.
   std::size_t budget = std::numeric_limits<std::size_t>::max();
   /// Metres around the eyes within which sectors are wanted that no view touches, after those that views
   /// touch.
@@ -125,11 +126,12 @@ public:
   /// update() and work() until all that the views touch is in, as far as the budget goes, and nothing else:
   /// `ahead` is not read. For the first view, or after a cut. Errors, Allocates: as update(). Cost: both.
   Result<StreamReport> bring_in(std::span<const CullView> views, const StreamOptions& options = {});
-  /// Objects that are in since the last update() or bring_in() and were not before it: to be given what they
-  /// carry, occluders and triangles, or what a renderer keeps of each. Of sectors one behind the other, until
-  /// the next of these calls.
+  /// Objects that came in with the last update() or bring_in() that was not refused, and are in behind it: to
+  /// be given what they carry, occluders and triangles, or what a renderer keeps of each. Until the next such
+  /// call; an object that is removed meanwhile is listed still.
   [[nodiscard]] std::span<const Handle> came() const noexcept;
-  /// Those that were in before it and are out: their handles are stale, their ids are as before.
+  /// Those that were in before it and went out: their handles are stale, their ids as before. One that went
+  /// and came again within the call is in both, as what it carried is forgotten.
   [[nodiscard]] std::span<const Handle> went() const noexcept;
 
 private:

@@ -34,6 +34,7 @@ std::uint32_t draw_convex(DepthTiles& tiles, const Convex& tight, const Convex& 
   if (again) list_polygon(tiles, middle, range, list);
   list_polygon(tiles, shared, range, around.without, middle, again, list);
   draw_listed(tiles, list);
+  tiles.mesh->note_cost(range.begin_y, range.end_y, range.end_x - range.begin_x);
   return range.count();
 }
 

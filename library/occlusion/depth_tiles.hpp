@@ -27,14 +27,6 @@ using geometry::SphereSpan;
 
 inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
-/// Whether jobs share a mesh out by what it cost; not where each byte of code is loaded by whoever opens a
-/// web page, and there are no threads.
-#ifdef __wasm__
-inline constexpr bool kSharesByCost = false;
-#else
-inline constexpr bool kSharesByCost = true;
-#endif
-
 /// What a view has found out about a mesh. Reused from mesh to mesh.
 struct MeshScratch {
   /// The groups in view, and their boxes: min x, y, z, max x, y, z.
@@ -49,9 +41,16 @@ struct MeshScratch {
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
   float front = 1;  ///< which way triangles turn on the image that are seen from their front
-  /// Of each row of tiles, and of one after the last, what it cost more than the row above it; empty where
-  /// nobody asks.
-  std::vector<std::int32_t> cost_steps;
+  /// Of each row of tiles, and of one after the last, what it cost more than the row above it, in tiles that
+  /// were looked at; empty where nobody asks.
+  std::vector<std::int64_t> cost_steps;
+
+  /// Notes a polygon that reaches into so many tiles of these rows.
+  void note_cost(std::uint32_t begin_row, std::uint32_t end_row, std::uint32_t columns) noexcept {
+    if (!kSharesByCost || cost_steps.empty()) return;
+    constexpr std::int64_t kPolygon = 16;  // of a row
+    cost_steps[begin_row] += columns + kPolygon, cost_steps[end_row] -= columns + kPolygon;
+  }
 };
 
 /// The nearness of a tile that one plane covers.
@@ -69,18 +68,43 @@ struct TilePlanes {
   }
 };
 
+/// Where bands of the image begin, and where the last one ends, in rows of tiles: a band a job.
+using BandCuts = std::array<std::uint32_t, kMaxJobs + 1>;
+
+struct DepthTiles;
+
+/// What a mesh cost when jobs drew it.
+class DrawnMesh {
+public:
+  /// Bands that would have cost the same; of the same height where nothing is known.
+  [[nodiscard]] BandCuts cuts(std::uint32_t rows, std::uint32_t count) const noexcept;
+  /// What each row cost, by what the jobs noted.
+  void note(std::span<const MeshScratch> drawn, std::uint32_t rows);
+
+private:
+  friend class BandHistory;
+  const OccluderTopology* mesh_ = nullptr;  // only compared
+  glm::dvec3 eye_{}, direction_{};          // in the mesh's space
+  std::vector<std::int64_t> costs_;         // one a row of tiles
+};
+
+/// Of the meshes that jobs drew last into a buffer, what they cost.
+class BandHistory {
+public:
+  /// The one that looked much alike, or one of which nothing is known. `tiles` are in the mesh's space.
+  DrawnMesh& find(const DepthTiles& tiles, const OccluderTopology& mesh);
+
+private:
+  std::array<DrawnMesh, kSharesByCost ? 8 : 1> drawn_;
+  std::size_t oldest_ = 0;
+};
+
 /// Where the tiles lie. What is undefined below is left as it was, so that a frame pays for what it draws.
 struct TileMemory {
   geometry::AlignedVector<float> farthest, nearest, nearness, untouched;
   TilePlanes<geometry::AlignedVector<float>> plane;
   std::vector<MeshScratch> scratch;  ///< one a job that draws; the first is there once a view is begun
-  /// What jobs drew last.
-  struct Banded {
-    const OccluderTopology* mesh = nullptr;  ///< only compared
-    std::uint32_t jobs = 0;
-    Vec3 direction;  ///< of the view
-  };
-  Banded banded;
+  BandHistory history;               ///< of the meshes that jobs draw
 };
 
 struct BoxQuestions;

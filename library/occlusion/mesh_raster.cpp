@@ -107,20 +107,12 @@ HWY_NOINLINE void draw_with_margin(DepthTiles& tiles, const ReadyTriangles& read
   if (known) list_polygon(tiles, shared, range, bands, middle, again, list);
 }
 
-// Of a row of tiles, in tiles that are looked at, what a polygon costs that reaches into it.
-constexpr std::uint32_t kPolygonCost = 16;
-
-HWY_INLINE void note_cost(const TileRange& range, std::vector<std::int32_t>& steps) {
-  const auto cost = static_cast<std::int32_t>(range.end_x - range.begin_x + kPolygonCost);
-  steps[range.begin_y] += cost, steps[range.end_y] -= cost;
-}
-
 HWY_INLINE void draw_piece(DepthTiles& tiles, const ReadyTriangles& ready, const Rim& rim, const Piece& piece,
                            const Convex& polygon, float nearest, MeshBudget* budget, TileList<1>& list) {
   const TileRange range = tiles_of(tiles, polygon.left, polygon.right, polygon.top, polygon.bottom);
   if (hidden_tiles(tiles, range, nearest)) return;
   if (budget && !budget->pay(budget->polygon + range.count() * budget->tile)) return;
-  if (kSharesByCost && !tiles.mesh->cost_steps.empty()) note_cost(range, tiles.mesh->cost_steps);
+  tiles.mesh->note_cost(range.begin_y, range.end_y, range.end_x - range.begin_x);
   if (tiles.margin > 0)
     draw_with_margin(tiles, ready, rim, piece, polygon, range, list);
   else
@@ -329,56 +321,8 @@ void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology&
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
   }
-  if (kSharesByCost) s.cost_steps.clear();
   s.front = tiles.rays.turns_right ? 1.0f : -1.0f;
   if (++s.turn == 0) std::fill(s.known.begin(), s.known.end(), 0), s.turn = 1;
-}
-
-// Where bands begin, and where the last one ends, in rows of tiles.
-using BandCuts = std::array<std::uint32_t, kMaxJobs + 1>;
-
-// Bands of the same height.
-BandCuts even_cuts(std::uint32_t rows, std::uint32_t count) {
-  BandCuts cuts{};
-  for (std::uint32_t i = 0; i <= count; ++i) cuts[i] = i * rows / count;
-  return cuts;
-}
-
-// Bands that would have cost the same when these drew the mesh last.
-BandCuts cuts_by_cost(std::span<const MeshScratch> drawn, std::uint32_t rows) {
-  const auto for_each_row = [&](const auto& visit) {
-    std::int64_t cost = 0;
-    for (std::uint32_t row = 0; row < rows; ++row) {
-      for (const MeshScratch& s : drawn) cost += s.cost_steps[row];
-      visit(row, cost);
-    }
-  };
-  const auto count = static_cast<std::uint32_t>(drawn.size());
-  BandCuts cuts = even_cuts(rows, count);
-  std::int64_t sum = 0, above = 0;
-  for_each_row([&](std::uint32_t, std::int64_t cost) { sum += cost; });
-  if (sum == 0) return cuts;
-  std::uint32_t next = 1;
-  for_each_row([&](std::uint32_t row, std::int64_t cost) {
-    for (above += cost; next < count && above * count >= sum * next; ++next) cuts[next] = row + 1;
-  });
-  for (std::uint32_t i = 1; i < count; ++i)
-    cuts[i] = std::clamp(cuts[i], cuts[i - 1] + 1, rows - (count - i));
-  return cuts;
-}
-
-// A view that looks nearly where the last one did costs much the same, row by row; another may cost anything.
-BandCuts find_cuts(TileMemory::Banded& last, const DepthTiles& tiles, const OccluderTopology& mesh,
-                   std::span<const MeshScratch> scratch) {
-  constexpr double kNearly = 0.99;  // the cosine of 8 degrees
-  const auto noted = [&](const MeshScratch& s) { return s.cost_steps.size() == tiles.rows + 1; };
-  const auto count = static_cast<std::uint32_t>(scratch.size());
-  const TileMemory::Banded now{&mesh, count, view_direction(tiles.view.view)};
-  const double along = glm::dot(geometry::to_double(last.direction), geometry::to_double(now.direction));
-  const bool again =
-      last.mesh == &mesh && last.jobs == count && along > kNearly && std::ranges::all_of(scratch, noted);
-  last = now;
-  return again ? cuts_by_cost(scratch, tiles.rows) : even_cuts(tiles.rows, count);
 }
 
 // A mesh that jobs draw, a band of the image each: no pixel is written by two, and what one holds does not
@@ -392,7 +336,6 @@ struct MeshBands {
   void draw(std::uint32_t job) const {
     DepthTiles band = tiles;
     band.mesh = &scratch[job];
-    if (kSharesByCost) band.mesh->cost_steps.assign(tiles.rows + 1, 0);
     band.first_row = cuts[job] * kTile;
     band.end_row = std::min(tiles.height, cuts[job + 1] * kTile);
     HWY_DYNAMIC_DISPATCH(draw_triangles)(band, mesh, nullptr);
@@ -419,14 +362,18 @@ void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& me
   const std::span scratch = std::span(memory.scratch).first(count);
   std::optional<DepthTiles> there = placed(tiles, placement);
   if (!there) return;
-  const BandCuts cuts = kSharesByCost && count > 1 ? find_cuts(memory.banded, tiles, mesh, scratch)
-                                                   : even_cuts(tiles.rows, count);
   for (MeshScratch& s : scratch) make_ready(s, *there, mesh);
   if (count == 1) return HWY_DYNAMIC_DISPATCH(draw_triangles)(*there, mesh, nullptr);
-  MeshBands bands{*there, scratch, mesh, cuts};
+  DrawnMesh& drawn = memory.history.find(*there, mesh);
+  if (kSharesByCost)
+    for (MeshScratch& s : scratch) s.cost_steps.assign(tiles.rows + 1, 0);
+  MeshBands bands{*there, scratch, mesh, drawn.cuts(tiles.rows, count)};
   jobs.run(
       jobs.user, count, [](void* data, std::uint32_t job) { static_cast<MeshBands*>(data)->draw(job); },
       &bands);
+  if (!kSharesByCost) return;
+  drawn.note(scratch, tiles.rows);
+  for (MeshScratch& s : scratch) s.cost_steps.clear();
 }
 
 }  // namespace sightline::occlusion

@@ -82,6 +82,7 @@ void OccluderTopology::lay_out() {
   neighbour.assign(count * 3 * kGroup, -1);
   box.assign((count + 15) / 16 * 96, 0);
   std::uint32_t first_shared = 0;
+  Bounds all;
   for (std::size_t g = 0; g < count; ++g) {
     Group& group = groups[g];
     Bounds bounds;
@@ -98,7 +99,9 @@ void OccluderTopology::lay_out() {
     beside.erase(std::unique(beside.begin() + group.first_beside, beside.end()), beside.end());
     group.end_beside = static_cast<std::uint32_t>(beside.size());
     store_box(*this, g, bounds);
+    if (kSharesByCost) all.low = glm::min(all.low, bounds.low), all.high = glm::max(all.high, bounds.high);
   }
+  diagonal = kSharesByCost && count > 0 ? glm::distance(all.low, all.high) : 0;
 }
 
 }  // namespace sightline::occlusion

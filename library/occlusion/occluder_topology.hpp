@@ -11,6 +11,14 @@
 
 namespace sightline::occlusion {
 
+/// Whether jobs share a mesh out by what it cost; not where each byte of code is loaded by whoever opens a
+/// web page, and there are no threads.
+#ifdef __wasm__
+inline constexpr bool kSharesByCost = false;
+#else
+inline constexpr bool kSharesByCost = true;
+#endif
+
 struct OccluderTopology {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -82,6 +90,7 @@ struct OccluderTopology {
     std::array<std::uint16_t, kGroup> beside{};
   };
   std::vector<AroundTriangles> around;
+  double diagonal = 0;  ///< of the box around all corners
   /// Per 16 groups the middles of their boxes, x, y, z, and half their sizes: 16 values each.
   geometry::AlignedVector<float> box;
   /// Per group, corner and axis 16 values, and per group and edge 16 neighbours or -1; beyond the last

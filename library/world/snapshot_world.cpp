@@ -91,7 +91,7 @@ Status SnapshotWorld::claim(std::size_t sector, const ChunkMap& map) {
           directory_.first_bytes[sector]};
 }
 
-void SnapshotWorld::read_columns(const SectorPiece& piece, bool came) {
+void SnapshotWorld::read_columns(const SectorPiece& piece) {
   WorldState& s = *state_;
   const SnapshotRows rows(directory_.columns);
   auto* levels = static_cast<WorldLevels*>(s.levels.get());
@@ -103,7 +103,7 @@ void SnapshotWorld::read_columns(const SectorPiece& piece, bool came) {
       const ObjectId id = c.objects[i];
       s.objects[id].generation = at[i];
       s.note_generation(id);
-      if (came) came_.add({id, at[i]});
+      came_.add({id, at[i]});
       s.columns.forget(id);
       if (levels) levels->forget(id);
       if (rows.layers != SnapshotRows::kNone) s.columns.layers[id] = row(rows.layers)[i];
@@ -134,9 +134,8 @@ Status SnapshotWorld::put_in(std::size_t i, SectorPiece& piece) {
   WorldState& s = *state_;
   const auto& [x, y, z] = directory_.sectors[i].cell;
   if (const Status sound = claim(i, *piece.map); !sound) return sound;
-  const bool came = !went_.drop(i);
-  if (came) came_.begin(i);
-  read_columns(piece, came);
+  came_.begin(i);
+  read_columns(piece);
   s.size += piece.map->size();
   const auto begun = s.sector_of_cell.find({x, y, z});
   if (begun != s.sector_of_cell.end()) {

@@ -18,7 +18,7 @@ namespace sightline::world {
 /// Location::slot_and_history of an object that is out, but was in.
 inline constexpr std::uint32_t kGenerationIsKnown = 1;
 
-/// Whose sectors passed one way, in or out, since clear(), and did not come back the other way.
+/// Whose sectors passed one way, in or out, since clear().
 class Passed {
 public:
   void clear() noexcept { handles_.clear(), parts_.clear(); }
@@ -56,7 +56,8 @@ public:
   Status put_in(std::size_t sector, SectorPiece& piece);
   /// Takes out a sector that is in and unchanged.
   void take_out(std::size_t sector);
-  /// Objects that were put in or taken out since begin_turn(), and are not as they were then.
+  /// Objects that were put in or taken out since begin_turn(). Who was put in and then taken out is in
+  /// neither; who went and came is in both, for what he carried is forgotten.
   void begin_turn() noexcept { came_.clear(), went_.clear(); }
   [[nodiscard]] std::span<const Handle> came() const noexcept { return came_.handles(); }
   [[nodiscard]] std::span<const Handle> went() const noexcept { return went_.handles(); }
@@ -67,7 +68,7 @@ public:
 
 private:
   Status claim(std::size_t sector, const ChunkMap& map);
-  void read_columns(const SectorPiece& piece, bool came);
+  void read_columns(const SectorPiece& piece);
   void file_each(const ChunkMap& map, std::uint32_t into);
 
   SnapshotDirectory directory_;

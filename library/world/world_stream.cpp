@@ -229,8 +229,8 @@ bool WorldStream::stands_out(Handle handle) const noexcept {
 }
 
 Result<StreamReport> WorldStream::update(std::span<const CullView> views, const StreamOptions& options) {
-  state_->snapshot.begin_turn();
   if (const Status sound = check_stream(views, options); !sound) return sound;
+  state_->snapshot.begin_turn();
   return state_->update(views, options, 1);
 }
 
@@ -255,8 +255,8 @@ bool WorldStream::work() {
 }
 
 Result<StreamReport> WorldStream::bring_in(std::span<const CullView> views, const StreamOptions& options) {
-  state_->snapshot.begin_turn();
   if (const Status sound = check_stream(views, options); !sound) return sound;
+  state_->snapshot.begin_turn();
   StreamOptions touched = options;
   touched.ahead = 0;
   for (;;) {

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <set>
 #include <thread>
 #include <utility>
@@ -308,7 +309,7 @@ std::set<ObjectId> ids_of(std::span<const Handle> handles, const World& of) {
 }
 
 // A small budget and sectors that become ready late: some are put in that nobody wants any more, and go at
-// once; others go and come back within one bring_in().
+// once.
 TEST(WorldStream, ListsWhoCameAndWhoWent) {
   Streamed streamed(5000);
   auto& [ground, world, stream] = streamed;
@@ -335,10 +336,63 @@ TEST(WorldStream, ListsWhoCameAndWhoWent) {
   }
   EXPECT_GT(came, 5000u);
   EXPECT_GT(went, 5000u);
-  // A call that is refused passes nobody.
+  // A call that is refused changes nothing.
+  const CullView view = looking_from({0, 0, 0}, 0);
+  ASSERT_TRUE(stream->bring_in({&view, 1}));
+  const std::size_t last = stream->came().size();
+  EXPECT_GT(last, 0u);
   EXPECT_FALSE(stream->update({}));
-  EXPECT_TRUE(stream->came().empty());
-  EXPECT_TRUE(stream->went().empty());
+  EXPECT_FALSE(stream->bring_in({&view, 1}, {.ahead = -1}));
+  EXPECT_EQ(stream->came().size(), last);
+}
+
+// Two sectors: a row of boxes along z in the first, and a few in the next.
+struct NearAndFar {
+  static constexpr std::size_t kNear = 3000;
+  std::vector<Handle> handles;
+  FileBytes bytes;
+
+  NearAndFar() {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < kNear; ++i)
+      boxes.push_back(test::box_at({0, 0, -static_cast<float>(i) / 3}, {1, 1, 1}));
+    for (int i = 0; i < 10; ++i) boxes.push_back(test::box_at({0, 0, -4000.0f - i}, {1, 1, 1}));
+    handles.resize(boxes.size());
+    World world;
+    EXPECT_TRUE(world.insert(BoxView(boxes), handles));
+    bytes = test::saved(world);
+  }
+};
+
+// A sector that makes room for one that turns out to be damaged, and is taken in again: its objects carry
+// nothing any more.
+TEST(WorldStream, ListsTwiceWhoWentAndCameAgain) {
+  NearAndFar two;
+  const std::span near = std::span(two.handles).first(NearAndFar::kNear),
+                  far = std::span(two.handles).subspan(NearAndFar::kNear);
+  World world;
+  auto stream = WorldStream::open(two.bytes, world);
+  ASSERT_TRUE(stream && stream->size() == 2);
+  const StreamSector large = stream->sector(stream->sector(0).objects == near.size() ? 0 : 1);
+  ASSERT_EQ(large.objects, near.size());
+  two.bytes[large.first_byte + 1000] ^= std::byte{1};
+  constexpr float kAhead = std::numbers::pi_v<float>;
+  const CullView beyond = looking_from({0, 0, -3900}, kAhead, 500),
+                 both = looking_from({0, 0, 10}, kAhead, 8000);
+  ASSERT_TRUE(stream->bring_in({&beyond, 1}));
+  ASSERT_EQ(stream->came().size(), far.size());
+  const OccluderId occluder = *world.add_occluder(test::kUnitBox);
+  const std::vector<OccluderPlacement> placements(far.size(), OccluderPlacement{occluder});
+  ASSERT_TRUE(world.set_occluders(stream->came(), placements));
+  const auto report = stream->bring_in({&both, 1}, {.budget = large.memory});
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->damaged, 1u);
+  EXPECT_TRUE(world.contains(far[0]) && !world.contains(near[0]));
+  EXPECT_EQ(ids_of(stream->came(), world).size(), far.size());
+  EXPECT_EQ(stream->went().size(), far.size());
+  // Nobody carries it any more, until those that came are given it again.
+  ASSERT_TRUE(world.set_occluders(stream->came(), placements));
+  EXPECT_FALSE(world.remove_occluder(occluder));
 }
 
 // Instances of a streamed world show what those of the whole one show, less what is out; and a cull is

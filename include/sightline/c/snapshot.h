@@ -92,7 +92,7 @@ SIGHTLINE_API int sightline_world_stream_stands_out(const sightline_world_stream
  * sectors in that sightline_world_stream_work() has made ready, wants what the views touch, nearest first,
  * then what is near, as far as the budget goes, and takes others out. `options` and `report` may be NULL.
  * Errors: BAD_ARGUMENT, BAD_VIEW. Cost: some 100 ns a sector and view; 5 to 10 ns an object that comes or
- * goes. Allocates: lists, the first time. */
+ * goes. Allocates: lists, until they were as long once; columns' rows. */
 SIGHTLINE_API sightline_status sightline_world_stream_update(sightline_world_stream* stream,
                                                              const sightline_cull_view* views,
                                                              size_t view_count,
@@ -109,11 +109,12 @@ SIGHTLINE_API sightline_status sightline_world_stream_bring_in(sightline_world_s
                                                                size_t view_count,
                                                                const sightline_stream_options* options,
                                                                sightline_stream_report* report);
-/** Objects that are in since the last update or bring_in and were not before it: to be given what they carry
- * again, occluders and triangles. Valid until the next of these calls. Errors: BAD_ARGUMENT for NULL. */
+/** Objects that came in with the last update or bring_in that was not refused, and are in behind it: to be
+ * given what they carry, occluders and triangles. Valid until the next such call. Errors: BAD_ARGUMENT for
+ * NULL. */
 SIGHTLINE_API sightline_status sightline_world_stream_came(const sightline_world_stream* stream,
                                                            const sightline_handle** handles, size_t* count);
-/** The same of those that were in before it and are out: their handles are stale. */
+/** The same of those that were in before it and went out; one that went and came again is in both. */
 SIGHTLINE_API sightline_status sightline_world_stream_went(const sightline_world_stream* stream,
                                                            const sightline_handle** handles, size_t* count);
 
