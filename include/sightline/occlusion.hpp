@@ -127,8 +127,7 @@ public:
   /// of the image at once, to the same bits; bands take about the same time each where the mesh looks much as
   /// it did when it was last drawn into this buffer. Errors: stale_buffer before begin(); bad_argument for a
   /// transform that is not finite or not affine. Cost: linear in the triangles in view, 10 to 20 ns each and
-  /// 1 ns a tile. Allocates: until it has seen its largest
-  /// mesh and image, for each job.
+  /// 1 ns a tile. Allocates: until it has seen its largest mesh and image, for each job.
   Status draw_mesh(const OccluderMesh& mesh, const Mat4& transform = {}, const JobSystem& jobs = {});
 
   /// Whether some place on the image may see the box, about the view's origin. False is certain; of a box
