@@ -17,6 +17,7 @@
 #include "library/geometry/linear.hpp"
 #include "library/occlusion/convex.hpp"
 #include "library/occlusion/eye_projection.hpp"
+#include "library/occlusion/mesh_bands.hpp"
 #include "library/occlusion/occluder_topology.hpp"
 
 namespace sightline::occlusion {
@@ -40,10 +41,8 @@ struct MeshScratch {
   geometry::AlignedVector<float> slant;
   std::vector<std::uint32_t> known;
   std::uint32_t turn = 0;
-  float front = 1;  ///< which way triangles turn on the image that are seen from their front
-  /// Of each row of tiles, and of one after the last, what it cost more than the row above it, in tiles that
-  /// were looked at; empty where nobody asks.
-  std::vector<std::int64_t> cost_steps;
+  float front = 1;       ///< which way triangles turn on the image that are seen from their front
+  CostSteps cost_steps;  ///< empty where nobody asks
 
   /// Notes a polygon that reaches into so many tiles of these rows.
   void note_cost(std::uint32_t begin_row, std::uint32_t end_row, std::uint32_t columns) noexcept {
@@ -66,37 +65,6 @@ struct TilePlanes {
   [[nodiscard]] TilePlane of(std::size_t tile) const noexcept {
     return {base[tile], across[tile], down[tile]};
   }
-};
-
-/// Where bands of the image begin, and where the last one ends, in rows of tiles: a band a job.
-using BandCuts = std::array<std::uint32_t, kMaxJobs + 1>;
-
-struct DepthTiles;
-
-/// What a mesh cost when jobs drew it.
-class DrawnMesh {
-public:
-  /// Bands that would have cost the same; of the same height where nothing is known.
-  [[nodiscard]] BandCuts cuts(std::uint32_t rows, std::uint32_t count) const noexcept;
-  /// What each row cost, by what the jobs noted.
-  void note(std::span<const MeshScratch> drawn, std::uint32_t rows);
-
-private:
-  friend class BandHistory;
-  const OccluderTopology* mesh_ = nullptr;  // only compared
-  glm::dvec3 eye_{}, direction_{};          // in the mesh's space
-  std::vector<std::int64_t> costs_;         // one a row of tiles
-};
-
-/// Of the meshes that jobs drew last into a buffer, what they cost.
-class BandHistory {
-public:
-  /// The one that looked much alike, or one of which nothing is known. `tiles` are in the mesh's space.
-  DrawnMesh& find(const DepthTiles& tiles, const OccluderTopology& mesh);
-
-private:
-  std::array<DrawnMesh, kSharesByCost ? 8 : 1> drawn_;
-  std::size_t oldest_ = 0;
 };
 
 /// Where the tiles lie. What is undefined below is left as it was, so that a frame pays for what it draws.

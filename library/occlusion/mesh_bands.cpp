@@ -1,7 +1,6 @@
-// Which bands of the image jobs draw of a mesh: such as cost alike, by what it cost when it looked much the
-// same.
+#include "library/occlusion/mesh_bands.hpp"
+
 #include <algorithm>
-#include <cmath>
 
 #include "library/occlusion/depth_tiles.hpp"
 
@@ -19,13 +18,13 @@ BandCuts even_cuts(std::uint32_t rows, std::uint32_t count) noexcept {
 
 BandCuts DrawnMesh::cuts(std::uint32_t rows, std::uint32_t count) const noexcept {
   BandCuts cuts = even_cuts(rows, count);
-  if (!kSharesByCost || costs_.size() != rows) return cuts;
+  if (!kSharesByCost || costs.size() != rows) return cuts;
   double sum = 0, above = 0;
-  for (const std::int64_t cost : costs_) sum += static_cast<double>(cost);
+  for (const std::int64_t cost : costs) sum += static_cast<double>(cost);
   if (sum == 0) return cuts;
   std::uint32_t next = 1;
   for (std::uint32_t row = 0; row < rows; ++row) {
-    above += static_cast<double>(costs_[row]);
+    above += static_cast<double>(costs[row]);
     for (; next < count && above * count >= sum * next; ++next) cuts[next] = row + 1;
   }
   for (std::uint32_t i = 1; i < count; ++i)
@@ -34,11 +33,11 @@ BandCuts DrawnMesh::cuts(std::uint32_t rows, std::uint32_t count) const noexcept
 }
 
 void DrawnMesh::note(std::span<const MeshScratch> drawn, std::uint32_t rows) {
-  costs_.resize(rows);
+  costs.resize(rows);
   std::int64_t cost = 0;
   for (std::uint32_t row = 0; row < rows; ++row) {
     for (const MeshScratch& s : drawn) cost += s.cost_steps[row];
-    costs_[row] = cost;
+    costs[row] = cost;
   }
 }
 
@@ -52,15 +51,15 @@ DrawnMesh& BandHistory::find(const DepthTiles& tiles, const OccluderTopology& me
   const glm::dvec3 direction = glm::normalize(e.orthographic ? glm::dvec3(forward[0], forward[1], forward[2])
                                                              : glm::dvec3(e.w.x, e.w.y, e.w.z));
   const auto looks_alike = [&](const DrawnMesh& d) {
-    return d.mesh_ == &mesh && glm::distance(d.eye_, eye) <= kMoved * mesh.diagonal &&
-           glm::dot(d.direction_, direction) > kTurned;
+    return d.mesh == &mesh && glm::distance(d.eye, eye) <= kMoved * mesh.diagonal &&
+           glm::dot(d.direction, direction) > kTurned;
   };
   auto found = std::ranges::find_if(drawn_, looks_alike);
   if (found == drawn_.end()) {
     found = drawn_.begin() + static_cast<std::ptrdiff_t>(oldest_++ % drawn_.size());
-    found->costs_.clear();
+    found->costs.clear();
   }
-  found->mesh_ = &mesh, found->eye_ = eye, found->direction_ = direction;
+  found->mesh = &mesh, found->eye = eye, found->direction = direction;
   return *found;
 }
 

@@ -5,6 +5,7 @@
 
 #include "library/geometry/error_bounds.hpp"
 #include "library/geometry/linear.hpp"
+#include "library/occlusion/mesh_bands.hpp"
 
 namespace sightline::occlusion {
 

@@ -11,14 +11,6 @@
 
 namespace sightline::occlusion {
 
-/// Whether jobs share a mesh out by what it cost; not where each byte of code is loaded by whoever opens a
-/// web page, and there are no threads.
-#ifdef __wasm__
-inline constexpr bool kSharesByCost = false;
-#else
-inline constexpr bool kSharesByCost = true;
-#endif
-
 struct OccluderTopology {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;

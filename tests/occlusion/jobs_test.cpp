@@ -106,8 +106,7 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThreadOfFlatPieces) {
   EXPECT_GT(covered, 100'000u);
 }
 
-// A camera that turns by `step` degrees a frame towards a low heap, of which the first frames see only a part
-// of the image's rows.
+// A camera that turns by `step` degrees a frame and sees a low heap in some of its image's rows.
 Camera turning(int frame, float step) {
   const float turn = 0.0174533f * step * static_cast<float>(frame);
   return {.forward = {std::sin(turn), -0.3f, -std::cos(turn)}, .near_plane = 0.2f};
@@ -125,7 +124,7 @@ TEST(OcclusionJobs, DrawTheBitsOfOneThreadWhereverBandsBegin) {
   for (const std::uint32_t threads : {2u, 3u, 8u}) {
     OcclusionBuffer buffer;
     for (int frame = 0; frame < 12; ++frame) {
-      // Some images are higher, and others draw in between.
+      // Some images are higher, or by area; one is drawn by a job more.
       const View view = *make_view(turning(frame, 3), 200, frame % 5 == 4 ? 500 : 403);
       const OcclusionOptions options{frame % 4 == 3 ? Coverage::area : Coverage::centres};
       ASSERT_TRUE(buffer.begin({view, {}}, options));

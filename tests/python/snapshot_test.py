@@ -52,14 +52,19 @@ class Snapshots(Case):
         budget = sum(stream.sector(i)["memory"] for i in range(len(stream))) // 4
         self.assertEqual(stream.came().shape, (0, 2))
         here = set()
+
+        def update(view):
+            nonlocal here
+            report = stream.update(view, budget=budget)
+            here = here - set(map(tuple, stream.went())) | set(map(tuple, stream.came()))
+            return report
+
         try:
             for z in range(14000, -14000, -700):
                 view = looking(0, z)
-                report = stream.update(view, budget=budget)
+                report = update(view)
                 while report.coming:
-                    here = here - set(map(tuple, stream.went())) | set(map(tuple, stream.came()))
-                    report = stream.update(view, budget=budget)
-                here = here - set(map(tuple, stream.went())) | set(map(tuple, stream.came()))
+                    report = update(view)
                 self.assertEqual(here, set(map(tuple, handles[part.contains(handles)])))
                 self.assertLessEqual(report.memory, budget)
                 self.assertEqual(report.missing, 0)
