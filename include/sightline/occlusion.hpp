@@ -143,7 +143,8 @@ public:
 
   /// Whether some place on the image may see one of the triangles, three corners each: pixel by pixel, so
   /// closer to the truth than a box, and dearer. False is certain. A triangle with a corner that is not
-  /// finite is seen; corners that make no whole triangle are not looked at. Cost: linear until one is seen.
+  /// finite is seen, one of whose corners two are equal shows nothing; corners that make no whole triangle
+  /// are not looked at. Cost: linear until one is seen.
   [[nodiscard]] bool may_see(std::span<const Vec3> triangles) const noexcept;
   /// The same of one object's triangles; true where there is no such object, false where it has none. Cost:
   /// linear until one is seen.

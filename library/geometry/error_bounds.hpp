@@ -78,6 +78,14 @@ inline constexpr float kAskedFlatEdge = 1.0f / 64;
 /// Twice the area in pixels from which on a triangle, a clipped polygon, is worth drawing. Not a bound: where
 /// rounding turns a thinner one over, its sides change places, and hold nothing between them.
 inline constexpr float kLeastDrawnArea = 0.02f, kLeastClippedArea = 0.5f;
+/// Pixels that a triangle asked for grows by besides what its own numbers ask for: a rasteriser's grid of 8
+/// bits moves a corner by up to 1/256.
+inline constexpr float kAskedSlack = 1.0f / 256;
+/// Pixels: one that would have to grow by more, which is for a corner close to the eye, is clipped first.
+inline constexpr float kMostSlack = 1.0f / 16;
+/// Twice a triangle's area on the image rounds by 8 u of its width times its height: less than this share of
+/// kInsetGrowth times its largest coordinate times the sum of both. Needs 0.3.
+inline constexpr float kAreaRounding = 1.0f / 4;
 /// Pixels from the image's corner: beyond, a triangle asked for is clipped first, as kInsetGrowth asks.
 inline constexpr float kFarthestPlace = 30000;
 

@@ -188,9 +188,10 @@ bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noe
 struct TriangleBlock {
   static constexpr std::size_t kSize = 4;
   alignas(16) std::array<std::array<std::array<float, kSize>, 3>, 3> corners;
-  /// Up to four of the triangles from `first` on, three corners each.
-  void take(std::span<const Vec3> triangles, std::size_t first) noexcept;
 };
+/// Fills blocks with triangles, three corners each, but those that show nothing: two of their corners are
+/// one. Returns how many there are. There are blocks for all.
+std::uint32_t fill_blocks(std::span<const Vec3> corners, std::span<TriangleBlock> blocks) noexcept;
 /// The first `count` triangles of whole blocks, which may be seen from these sides.
 struct TriangleRun {
   const TriangleBlock* blocks = nullptr;

@@ -15,10 +15,6 @@ namespace {
 
 constexpr std::size_t kPerBlock = TriangleBlock::kSize;
 
-void fill(std::span<TriangleBlock> blocks, std::span<const Vec3> corners) noexcept {
-  for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].take(corners, b * kPerBlock);
-}
-
 constexpr Status kExpectedCorners{StatusCode::bad_mesh,
                                   "occludees: expected three corners for each of their triangles"};
 
@@ -28,6 +24,7 @@ struct OccludeeTriangles::State {
   std::vector<TriangleBlock> blocks;       // object by object
   std::vector<std::uint32_t> first_block;  // one an object, and the end
   std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> asked;  // of these, those that may show something
   std::vector<Sides> sides;
 
   [[nodiscard]] std::span<TriangleBlock> of(std::uint32_t object) noexcept {
@@ -36,7 +33,10 @@ struct OccludeeTriangles::State {
   }
   [[nodiscard]] occlusion::TriangleRun run(std::uint32_t object) const noexcept {
     if (object >= triangles.size()) return {};
-    return {blocks.data() + first_block[object], triangles[object], sides[object]};
+    return {blocks.data() + first_block[object], asked[object], sides[object]};
+  }
+  void fill(std::uint32_t object, std::span<const Vec3> corners) noexcept {
+    asked[object] = occlusion::fill_blocks(corners, of(object));
   }
 };
 
@@ -77,9 +77,10 @@ Status OccludeeTriangles::assign(std::span<const Vec3> corners,
     s.first_block.push_back(s.first_block.back() +
                             static_cast<std::uint32_t>((count + kPerBlock - 1) / kPerBlock));
   s.blocks.resize(blocks);
+  s.asked.resize(s.triangles.size());
   for (std::uint32_t o = 0; o < objects(); ++o) {
     const std::size_t count = std::size_t{3} * s.triangles[o];
-    fill(s.of(o), corners.first(count));
+    s.fill(o, corners.first(count));
     corners = corners.subspan(count);
   }
   return {};
@@ -88,7 +89,7 @@ Status OccludeeTriangles::assign(std::span<const Vec3> corners,
 Status OccludeeTriangles::set(std::uint32_t object, std::span<const Vec3> corners) {
   if (object >= objects()) return {StatusCode::bad_argument, "occludees: there is no such object", object};
   if (corners.size() != std::size_t{3} * state_->triangles[object]) return kExpectedCorners;
-  fill(state_->of(object), corners);
+  state_->fill(object, corners);
   return {};
 }
 

@@ -57,7 +57,9 @@ HWY_INLINE void find_planes(const DepthTiles& tiles, const Corners& q, VF reach,
   hn::Store(flat ? none : hn::IfThenElseZero(sure, down), f, out.down.data());
 }
 
-// The sides of triangles on the image, moved outwards by `slack` of rounding and the margin.
+// The sides of triangles on the image, moved outwards by `slack` of rounding and the margin. Which side of
+// one too thin an edge lies on is not certain, so its edges bound it on both, each as far away as the third
+// corner lies.
 HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF slack, float margin,
                            GrownTriangles& out) {
   const F f;
@@ -65,22 +67,26 @@ HWY_INLINE void find_sides(const OnImage& image, const Rectangles& bounds, VF sl
   const VF *x = image.x, *y = image.y;
   const VF area = area_of(image);
   const auto to_right = hn::Gt(area, zero);
-  // Which side of a triangle too thin an edge lies on is not certain.
   const VF girth = hn::Add(hn::Sub(bounds.right, bounds.left), hn::Sub(bounds.bottom, bounds.top));
-  const auto thick = hn::Gt(hn::Abs(area), hn::Mul(slack, girth));
+  const VF least = hn::Mul(slack, girth);
+  const auto thin = hn::Not(hn::Gt(hn::Abs(area), least));
+  const VF height =
+      hn::IfThenElseZero(thin, hn::Add(hn::Abs(area), hn::Mul(hn::Set(f, kAreaRounding), least)));
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const VF rise = hn::Sub(y[next], y[k]), slope = hn::Div(hn::Sub(x[next], x[k]), rise),
              at = hn::Sub(x[k], hn::Mul(y[k], slope));
     const VF outwards =
-        hn::Mul(hn::Add(slack, hn::Set(f, margin)), hn::Add(hn::Set(f, 1.0f), hn::Abs(slope)));
-    const auto steep = hn::And(thick, hn::Ge(hn::Abs(rise), hn::Set(f, kAskedFlatEdge)));
+        hn::Add(hn::Mul(hn::Add(slack, hn::Set(f, margin)), hn::Add(hn::Set(f, 1.0f), hn::Abs(slope))),
+                hn::Div(height, hn::Abs(rise)));
+    const auto steep = hn::Ge(hn::Abs(rise), hn::Set(f, kAskedFlatEdge));
     const auto on_right = hn::Not(hn::Xor(hn::Gt(rise, zero), to_right));
     hn::Store(hn::IfThenElseZero(steep, slope), f, out.slope[k].data());
-    hn::Store(hn::IfThenElse(hn::And(steep, on_right), hn::Add(at, outwards), infinity), f,
+    hn::Store(hn::IfThenElse(hn::And(steep, hn::Or(on_right, thin)), hn::Add(at, outwards), infinity), f,
               out.right_at[k].data());
-    hn::Store(hn::IfThenElse(hn::AndNot(on_right, steep), hn::Sub(at, outwards), hn::Neg(infinity)), f,
-              out.left_at[k].data());
+    hn::Store(hn::IfThenElse(hn::AndNot(hn::AndNot(thin, on_right), steep), hn::Sub(at, outwards),
+                             hn::Neg(infinity)),
+              f, out.left_at[k].data());
   }
 }
 
@@ -183,14 +189,13 @@ HWY_INLINE Projected project(const DepthTiles& tiles, const Corners& q, VF reach
   const VF widest = widest_of(bounds);
   const VF of_rows =
       hn::Mul(hn::Add(hn::Max(out.error.x, out.error.y), hn::Mul(widest, error_w)), over_least);
-  out.slack =
-      hn::Add(of_rows, hn::Add(hn::Set(f, kSubpixelSlack), hn::Mul(hn::Set(f, kInsetGrowth), widest)));
+  out.slack = hn::Add(of_rows, hn::Add(hn::Set(f, kAskedSlack), hn::Mul(hn::Set(f, kInsetGrowth), widest)));
   out.bounds = grown(bounds, hn::Add(out.slack, hn::Set(f, tiles.margin)));
   out.placed = hn::And(out.before, hn::Lt(widest, hn::Set(f, kFarthestPlace)));
   return out;
 }
 
-bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i);
+bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i, bool away);
 
 // Triangles that the eye surely sees from behind, by the side of their planes that it is on. Of one with a
 // corner that is no number nothing is sure.
@@ -255,8 +260,15 @@ HWY_INLINE std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q, co
   find_planes(tiles, whole, reach, p.nearest, t);
   store(p.bounds, t, 0);
   hn::Store(p.nearest, f, t.nearest.data());
-  look(rest, [&](std::size_t i) HWY_ATTR { return seen(tiles, t, i); });
-  if constexpr (kMayClip) look(clipped, [&](std::size_t i) { return clipped_seen(tiles, whole, i); });
+  const std::uint32_t blurred = kMayClip ? rest & bits_of(f, hn::Gt(p.slack, hn::Set(f, kMostSlack))) : 0;
+  look(rest & ~blurred, [&](std::size_t i) HWY_ATTR { return seen(tiles, t, i); });
+  if constexpr (kMayClip) {
+    const auto seen_clipped = [&](std::size_t i) {
+      return clipped_seen(tiles, whole, i, (asked.away >> i & 1) != 0);
+    };
+    look(blurred, [&](std::size_t i) HWY_ATTR { return seen(tiles, t, i) && seen_clipped(i); });
+    look(clipped, seen_clipped);
+  }
   return found;
 }
 
@@ -276,7 +288,7 @@ inline bool clip_one(const DepthTiles& tiles, Polygon& polygon) {
 }
 
 // What of triangle i is left when it is clipped. False is certain.
-bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) {
+bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i, bool away) {
   const F f;
   alignas(64) std::array<std::array<float, 16>, 9> in;
   Polygon polygon;
@@ -309,6 +321,7 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i) 
     const std::size_t count = std::min(hn::Lanes(f), triangles - first);
     Asked asked;
     asked.those = (1u << count) - 1;
+    asked.away = away ? asked.those : 0;
     asked.mates.fill(asked.those);
     if (find_seen<false>(tiles, part, its, asked) != 0) return true;
   }
@@ -402,14 +415,25 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 HWY_EXPORT(query_runs);
 
-void TriangleBlock::take(std::span<const Vec3> triangles, std::size_t first) noexcept {
-  const std::size_t last = triangles.size() / 3 - 1;
-  for (std::size_t i = 0; i < kSize; ++i) {
+std::uint32_t fill_blocks(std::span<const Vec3> corners, std::span<TriangleBlock> blocks) noexcept {
+  constexpr std::size_t kSize = TriangleBlock::kSize;
+  const auto put = [&](std::size_t place, const Vec3* triangle) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& c = triangles[3 * std::min(first + i, last) + k];
-      corners[k][0][i] = c.x, corners[k][1][i] = c.y, corners[k][2][i] = c.z;
+      auto& at = blocks[place / kSize].corners[k];
+      const std::size_t i = place % kSize;
+      at[0][i] = triangle[k].x, at[1][i] = triangle[k].y, at[2][i] = triangle[k].z;
     }
+  };
+  std::size_t count = 0;
+  const Vec3* last = nullptr;
+  for (; corners.size() >= 3; corners = corners.subspan(3)) {
+    const Vec3 &a = corners[0], &b = corners[1], &c = corners[2];
+    if (a == b || b == c || c == a) continue;
+    last = corners.data();
+    put(count++, last);
   }
+  for (std::size_t i = count; i % kSize != 0; ++i) put(i, last);
+  return static_cast<std::uint32_t>(count);
 }
 
 void query_triangles(const DepthTiles& tiles, std::span<const TriangleRun> runs,
@@ -423,9 +447,8 @@ bool query_triangles(const DepthTiles& tiles, std::span<const Vec3> corners) noe
   std::array<TriangleBlock, kAtOnce / TriangleBlock::kSize> blocks;
   for (std::size_t first = 0; first < triangles; first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, triangles - first);
-    for (std::size_t i = 0; i < count; i += TriangleBlock::kSize)
-      blocks[i / TriangleBlock::kSize].take(corners, first + i);
-    const TriangleRun run{blocks.data(), static_cast<std::uint32_t>(count), Sides::both};
+    const TriangleRun run{blocks.data(), fill_blocks(corners.subspan(3 * first, 3 * count), blocks),
+                          Sides::both};
     std::uint8_t seen = 0;
     query_triangles(tiles, {&run, 1}, &seen);
     if (seen) return true;

@@ -196,9 +196,8 @@ void WorldOccluders::set_triangles(const WorldState& world, ObjectId id, std::sp
   if (at == kNothing) at = take_element(triangles, free_triangles);
   constexpr std::size_t kPerBlock = occlusion::TriangleBlock::kSize;
   ObjectTriangles& set = triangles[at];
-  set.count = static_cast<std::uint32_t>(corners.size() / 3);
-  set.blocks.resize((set.count + kPerBlock - 1) / kPerBlock);
-  for (std::size_t b = 0; b < set.blocks.size(); ++b) set.blocks[b].take(corners, b * kPerBlock);
+  set.blocks.resize((corners.size() / 3 + kPerBlock - 1) / kPerBlock);
+  set.count = occlusion::fill_blocks(corners, set.blocks);
   glm::dvec3 low(corners[0].x, corners[0].y, corners[0].z), high = low;
   for (const Vec3& p : corners) {
     low = glm::min(low, geometry::to_double(p)), high = glm::max(high, geometry::to_double(p));

@@ -73,6 +73,26 @@ TEST(ErrorBounds, SubpixelSlack) {
   expect_share(worst(2, part), 0.63);
 }
 
+TEST(ErrorBounds, AreasOnTheImage) {
+  const auto part = [](Draws& d) {
+    std::array<float, 3> x, y;
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k] = d.any_float(1, kFarthestPlace), y[k] = d.any_float(1, kFarthestPlace);
+    const auto area = [&](auto zero) {
+      using T = decltype(zero);
+      const T ux = T{x[1]} - T{x[0]}, uy = T{y[1]} - T{y[0]}, vx = T{x[2]} - T{x[0]}, vy = T{y[2]} - T{y[0]};
+      return static_cast<double>(ux * vy - vx * uy);
+    };
+    double widest = 0;
+    for (std::size_t k = 0; k < 3; ++k) widest = std::max<double>({widest, std::fabs(x[k]), std::fabs(y[k])});
+    const auto [left, right] = std::minmax({x[0], x[1], x[2]});
+    const auto [top, bottom] = std::minmax({y[0], y[1], y[2]});
+    const double girth = (double{right} - left) + (double{bottom} - top);
+    return std::fabs(area(0.0f) - area(0.0)) / (kAreaRounding * kInsetGrowth * widest * girth);
+  };
+  expect_share(worst(6, part), 0.3);
+}
+
 TEST(ErrorBounds, AreaGrowth) {
   const auto part = [](Draws& d) {
     const Seen s = seen(d, 2, 100, 1280, 720);

@@ -145,6 +145,135 @@ TEST(OccludeeTriangles, OfOneSideAlmostEdgeOnMayBeSeenFromBehind) {
   }
 }
 
+// What lies to the lower left of the image's diagonal is hidden, from 5 m on.
+OcclusionBuffer half_hidden(const View& view, Coverage coverage) {
+  OcclusionBuffer buffer;
+  EXPECT_TRUE(buffer.begin({view, {}}, {coverage}));
+  const std::array corners{Vec3{-20, 20, -5}, Vec3{-20, -20, -5}, Vec3{20, -20, -5}};
+  EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(corners, std::array{0u, 1u, 2u})));
+  return buffer;
+}
+
+// Thin ones are where they are, and not in all of the rectangle around them.
+TEST(OccludeeTriangles, ThatAreThinAreHiddenByWhatLiesBeforeThem) {
+  const View view = *make_view(Camera{}, 63, 49);  // whose middle pixel has the view's axis in its centre
+  for (const Coverage coverage : {Coverage::centres, Coverage::area}) {
+    const OcclusionBuffer buffer = half_hidden(view, coverage);
+    for (const float width : {0.0f, 1e-6f, 1e-4f}) {
+      const auto sliver = [&](float beyond) {
+        return std::array{Vec3{beyond - 3, beyond + 3, -10}, Vec3{beyond + 3, beyond - 3, -10},
+                          Vec3{beyond + width, beyond + width, -10}};
+      };
+      EXPECT_FALSE(buffer.may_see(sliver(-0.5f))) << width;
+      EXPECT_TRUE(buffer.may_see(std::array{Vec3{0, 3, -4}, Vec3{0, -3, -4}, Vec3{width, 0, -4}})) << width;
+      if (coverage == Coverage::area) EXPECT_TRUE(buffer.may_see(sliver(0.5f))) << width;
+    }
+  }
+}
+
+// Whether some pixel's centre lies within a triangle on the image.
+bool holds_a_centre(const std::array<glm::dvec2, 3>& p, const View& view) {
+  const auto turn = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
+  const double way = turn(p[0], p[1], p[2]) < 0 ? -1 : 1;
+  for (double y = 0.5; y < view.height; ++y) {
+    for (double x = 0.5; x < view.width; ++x) {
+      bool in = true;
+      for (std::size_t k = 0; k < 3; ++k) in = in && way * turn(p[k], p[(k + 1) % 3], {x, y}) >= 0;
+      if (in) return true;
+    }
+  }
+  return false;
+}
+
+// A rasteriser moves corners by up to 1/256 of a pixel, and what it may draw is seen.
+TEST(OccludeeTriangles, ThatAreThinAreSeenWhereARasteriserMayDrawThem) {
+  Random random(26);
+  const View view = *make_view(Camera{}, 48, 36);
+  const double focal = 0.5 * view.height * double{view.eye_to_clip.m[5]};
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
+  std::size_t seen = 0, drawn = 0, not_seen = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::array<Vec3, 3> corners;
+    std::array<glm::dvec2, 3> at;
+    for (std::size_t k = 0; k < 2; ++k) at[k] = {random.between(-60, 100), random.between(-40, 80)};
+    const glm::dvec2 along = at[1] - at[0];
+    at[2] = at[0] + double{random.between(-0.2f, 1.2f)} * along +
+            std::pow(10.0, random.between(-5, -1)) * glm::dvec2(-along.y, along.x) / glm::length(along);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double depth = random.between(1, 50);
+      corners[k] = {static_cast<float>((at[k].x - 0.5 * view.width) / focal * depth),
+                    static_cast<float>((0.5 * view.height - at[k].y) / focal * depth),
+                    static_cast<float>(-depth)};
+    }
+    const bool may_see = buffer.may_see(corners);
+    bool draws = false;
+    for (int moved = 0; moved < 4; ++moved) {
+      std::array<glm::dvec2, 3> there;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto move = [&] { return (random.below(2) == 0 ? -1 : 1) / 256.0; };
+        there[k] = glm::dvec2(0.5 * view.width - focal * corners[k].x / corners[k].z,
+                              0.5 * view.height + focal * corners[k].y / corners[k].z) +
+                   glm::dvec2(move(), move());
+      }
+      draws = draws || holds_a_centre(there, view);
+    }
+    EXPECT_TRUE(may_see || !draws) << i;
+    seen += may_see, drawn += draws, not_seen += !may_see;
+  }
+  EXPECT_GT(drawn, 200u);
+  EXPECT_LT(seen, 3 * drawn);
+  EXPECT_GT(not_seen, 500u);
+}
+
+TEST(OccludeeTriangles, WithTwoEqualCornersShowNothing) {
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin({*make_view(Camera{}, 64, 48), {}}));
+  const std::array line{Vec3{-1, -1, -4}, Vec3{1, 1, -4}, Vec3{-1, -1, -4}},
+      triangle{Vec3{-1, -1, -4}, Vec3{1, -1, -4}, Vec3{0, 1, -4}};
+  EXPECT_FALSE(buffer.may_see(line));
+  std::vector<Vec3> corners;
+  for (std::size_t i = 0; i < 5; ++i) corners.insert(corners.end(), line.begin(), line.end());
+  OccludeeTriangles occludees;
+  ASSERT_TRUE(occludees.assign(corners, std::array{5u}));
+  EXPECT_FALSE(buffer.may_see(occludees, 0));
+  EXPECT_EQ(occludees.triangles(0), 5u);
+  std::copy(triangle.begin(), triangle.end(), corners.end() - 3);
+  ASSERT_TRUE(occludees.set(0, corners));
+  EXPECT_TRUE(buffer.may_see(occludees, 0));
+}
+
+// A corner close to the eye is uncertain on the image by whole pixels, but far beside it.
+TEST(OccludeeTriangles, ThatReachCloseToTheEyeAreHiddenByWhatLiesBeforeThem) {
+  const View view = *make_view(Camera{}, 640, 480);
+  const OcclusionBuffer buffer = half_hidden(view, Coverage::centres);
+  const auto wedge = [](float beyond) {
+    return std::array{Vec3{-40, -40, -0.2f}, Vec3{beyond - 3, beyond + 3, -40},
+                      Vec3{beyond + 3, beyond - 3, -40}};
+  };
+  const float pixel = 40 / (0.5f * static_cast<float>(view.height) * view.eye_to_clip.m[5]);
+  EXPECT_FALSE(buffer.may_see(wedge(-0.25f * pixel)));
+  EXPECT_TRUE(buffer.may_see(wedge(pixel)));
+}
+
+// What the near plane cuts, too.
+TEST(OccludeeTriangles, OfOneSideThatReachBehindTheEyeAreNotSeenFromBehind) {
+  const View view = *make_view(Camera{}, 64, 49);
+  for (const Coverage coverage : {Coverage::centres, Coverage::area}) {
+    OcclusionBuffer buffer;
+    ASSERT_TRUE(buffer.begin({view, {}}, {coverage}));
+    std::array corners{Vec3{-5, -1, 1}, Vec3{5, -1, 1}, Vec3{0, -1, -40}};
+    OccludeeTriangles floor;
+    ASSERT_TRUE(floor.assign(corners, std::array{1u}, std::array{Sides::front}));
+    EXPECT_TRUE(buffer.may_see(floor, 0));
+    std::swap(corners[0], corners[1]);
+    ASSERT_TRUE(floor.assign(corners, std::array{1u}, std::array{Sides::front}));
+    EXPECT_FALSE(buffer.may_see(floor, 0));
+  }
+}
+
 TEST(OccludeeTriangles, ThatDoNotExistMayBeSeen) {
   Random random(24);
   OcclusionBuffer buffer;
