@@ -151,14 +151,18 @@ void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept;
 /// What drawing may cost of a mesh that is drawn in parts: groups of 16 triangles, near ones first, those
 /// alone that it pays for. In any one unit; counted alike for any width of vectors.
 struct MeshBudget {
-  double look = 0;      ///< a group, whether it is in view
-  double query = 0;     ///< a group in view, whether it is hidden
-  double triangle = 0;  ///< one of a group that is set up
-  double polygon = 0;   ///< one that is drawn: a triangle, or some that are flat together
-  double tile = 0;      ///< a tile of the rectangle around it
-  double left = 0;      ///< what may still be spent
+  double look = 0;       ///< a group, whether it is in view
+  double query = 0;      ///< a group in view, whether it is hidden
+  double triangle = 0;   ///< one of a group that is set up
+  double polygon = 0;    ///< one that is drawn: a triangle, or some that are flat together
+  double tile = 0;       ///< a tile of the rectangle around it
+  double left = 0;       ///< what may still be spent
+  bool refused = false;  ///< whether something was left out for want of it
 
-  [[nodiscard]] bool affords(double cost) const noexcept { return cost <= left; }
+  [[nodiscard]] bool affords(double cost) noexcept {
+    refused |= !(cost <= left);
+    return cost <= left;
+  }
   bool pay(double cost) noexcept {
     if (!affords(cost)) return false;
     left -= cost;

@@ -10,9 +10,11 @@
 
 namespace sightline::world {
 
-/// Tries of what may not pay: each that did not makes the next one rarer, at the worst one time in 32 alike.
+/// Tries of what may not pay: each that did not makes the next one rarer, at the worst one time in 32 alike,
+/// or in so many and one.
 class Tries {
 public:
+  explicit Tries(std::uint32_t longest_pause = 31) noexcept : longest_pause_(longest_pause) {}
   /// Whether to try this time; counts the times that wait. What is far larger than what failed is no like of
   /// it: the camera turned, or a door opened.
   [[nodiscard]] bool begin(double size) noexcept {
@@ -22,14 +24,13 @@ public:
     return false;
   }
   void failed(double size) noexcept {
-    pause_ = waits_ = std::min(2 * pause_ + 1, kLongestPause);
+    pause_ = waits_ = std::min(2 * pause_ + 1, longest_pause_);
     failed_ = size;
   }
   void paid() noexcept { pause_ = waits_ = 0; }
 
 private:
-  static constexpr std::uint32_t kLongestPause = 31;
-  std::uint32_t pause_ = 0, waits_ = 0;
+  std::uint32_t longest_pause_, pause_ = 0, waits_ = 0;
   double failed_ = 0;  // how large the last one was that did not pay
 };
 

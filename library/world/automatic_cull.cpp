@@ -21,14 +21,15 @@ struct Memory {
   std::array<OccluderPicks, kMaxViews> picks;           // by the place of the caller's view
   std::array<const OccluderPicks*, kMaxViews> drawn{};  // what was drawn for each place: equal views share
   std::array<Tries, kMaxViews> tries;                   // of each, where there are several
+  Tries more{3};                                        // of drawing more, which is cheap
   std::vector<std::uint32_t> hidden;                    // of PassInput
   std::vector<std::uint8_t> seen;                       // what the triangles of each object left of its mask
   std::size_t asking = 0;                               // how many objects' triangles are asked, of the first
   std::uint32_t parts = 0;                              // in so many jobs
 };
 
-// One frame's try: look for occluders, draw them, ask for chunks, for objects, for their triangles. Each step
-// is begun only where the purse affords all of it.
+// One frame's try: look for occluders, draw them, ask for chunks, for objects, for their triangles; draw more
+// for what that saved, and ask again. Each step is begun only where the purse affords all of it.
 class Try {
 public:
   Try(CullerState& state, Memory& memory, std::span<const CullView> views, const DifferentViews& different,
@@ -59,6 +60,8 @@ private:
     if (SIGHTLINE_MUTANT(automatic_by_frustum) || !draw_occluders()) return;
     if (cull_again()) {
       ask_triangles();
+      while (draw_and_ask_more()) {
+      }
       remember();
     }
     learn_who_pays();
@@ -118,8 +121,9 @@ private:
       if (!served[i]) draw_for(views[i], purse_.left() - kept_back(with(drawn_views(), views[i])));
   }
 
-  // What asking some views takes: their chunks, and all their objects if that leaves as much for drawing. The
-  // rest is written again in any case. Chunks alone for several are not worth it.
+  // What asking some views takes: their chunks, and all their objects if that leaves as much for drawing; and
+  // what may be too little for all their triangles, but enough to begin with. The rest is written again in
+  // any case. Chunks alone for several are not worth it.
   [[nodiscard]] double kept_back(const Asked& some) const {
     const double views = static_cast<double>(some.views);
     // Of chunks in view, as a rule: those that were tested, and those that were not and so are seen.
@@ -129,7 +133,9 @@ private:
         static_cast<double>(chunks_) * (2 * double{costs_.node} + views * double{costs_.query});
     const double least = chunks + object_views * double{costs_.test};
     const double whole = least + std::min(object_views, some.in_view) * double{costs_.query};
-    if (2 * whole <= purse_.left()) return whole;
+    constexpr double kForTriangles = 0.1;
+    if (2 * whole <= purse_.left())
+      return whole + std::min(triangles_cost(some.in_view), kForTriangles * (purse_.left() - whole));
     return some.views == 1 ? least : std::numeric_limits<double>::infinity();
   }
 
@@ -168,7 +174,7 @@ private:
     return static_cast<double>(tally.saved) / copies * double{costs_.object};
   }
 
-  [[nodiscard]] bool cull_again() {
+  bool cull_again() {
     const Zone zone(state_.zones, "sightline: ask for what is hidden");
     const double nodes = static_cast<double>(chunks_) * double{costs_.node};
     const Asked drawn_for = drawn_views();
@@ -180,13 +186,17 @@ private:
     hidden.resize(state_.entries.size() * different_.count);
     const ChunkTally tally = find_hidden_chunks(state_.input, state_.entries, hidden.data());
     purse_.pay(nodes + static_cast<double>(tally.asked) * double{costs_.query});
-    const double saved = saving(tally);
-    purse_.earn(saved);
+    const double sure = std::max(0.0, saving(tally) - earned_);
+    purse_.earn(sure);
     const double least = nodes + static_cast<double>(tally.left) * double{costs_.test};
     const double whole =
         least + std::min(static_cast<double>(tally.left), drawn_for.in_view) * double{costs_.query};
     const bool objects = purse_.affords(whole);
-    if (!objects && (tally.hidden == 0 || !purse_.affords(least))) return false;
+    // Without them what they hid before would come back.
+    if (!objects && (tally.hidden == 0 || earned_ > 0 || !purse_.affords(least))) {
+      purse_.earn(-sure);
+      return false;
+    }
     if (!objects) set_occluders(false);
     purse_.pay(objects ? whole : least);
     state_.input.hidden = hidden;
@@ -195,12 +205,64 @@ private:
     result_.count = again.count;
     result_.tested += again.tested;
     result_.nodes_visited += again.nodes_visited + chunks_;
-    purse_.earn(static_cast<double>(before_ - drawn()) * double{costs_.object} - saved);
+    purse_.earn(-sure);
+    earn_hidden();
     return true;
+  }
+
+  // What is hidden by now, as far as it was not earned before.
+  void earn_hidden() {
+    const double saved = static_cast<double>(before_ - drawn()) * double{costs_.object};
+    purse_.earn(saved - earned_);
+    earned_ = saved;
+  }
+
+  // A frame of few objects affords few of a large mesh's triangles at first; what these hide pays for more.
+  // Whether that paid.
+  bool draw_and_ask_more() {
+    const double spent = purse_.spent(), earned = earned_, size = static_cast<double>(drawn());
+    const auto worth_more = [&](std::size_t d) {
+      return drawn_[d] && memory_.picks[different_.first[d]].worth_more();
+    };
+    std::size_t count = 0;
+    double drawing = 0;
+    for (std::size_t d = 0; d < different_.count; ++d) count += worth_more(d), drawing += spent_[d];
+    // No more than what that can save, and not for a little more than there was.
+    constexpr double kLeastMore = 1.5, kMostShare = 0.25;
+    const double most =
+        std::min(purse_.left() - kept_back(drawn_views()), kMostShare * size * double{costs_.object});
+    if (count == 0 || !(most > kLeastMore * drawing) || !memory_.more.begin(size)) return false;
+    for (std::size_t d = 0; d < different_.count; ++d) {
+      if (!worth_more(d)) continue;
+      const std::size_t place = different_.first[d];
+      const double before = purse_.left();
+      memory_.picks[place].draw_on(*state_.world, views_[place], state_.distance_eyes[place], costs_,
+                                   most / static_cast<double>(count), purse_);
+      spent_[d] += before - purse_.left();
+    }
+    // What triangles hid would come back with all others of its chunk.
+    if (has_triangles())
+      ask_triangles();
+    else
+      cull_again();
+    const bool paid = earned_ - earned > purse_.spent() - spent;
+    if (paid)
+      memory_.more.paid();
+    else
+      memory_.more.failed(size);
+    return paid;
   }
 
   // --- triangles ---
 
+  [[nodiscard]] bool has_triangles() const { return state_.world->occluders->triangle_count > 0; }
+  // As a rule, of so many objects.
+  [[nodiscard]] double triangles_cost(double objects) const {
+    if (!has_triangles()) return 0;
+    const double each = static_cast<double>(state_.world->occluders->triangle_count) /
+                        static_cast<double>(state_.world->size);
+    return objects * (double{costs_.candidate} + each * double{costs_.occludee});
+  }
   [[nodiscard]] std::uint64_t triangles_of(ObjectId id) const {
     const WorldOccluders& o = *state_.world->occluders;
     const std::uint32_t set = o.triangle_set(id);
@@ -209,9 +271,8 @@ private:
 
   void ask_triangles() {
     const Zone zone(state_.zones, "sightline: ask for triangles");
-    const WorldOccluders& o = *state_.world->occluders;
     const double looking = static_cast<double>(result_.count) * double{costs_.candidate};
-    if (o.triangles.size() == o.free_triangles.size() || !purse_.affords(looking)) return;
+    if (!has_triangles() || !purse_.affords(looking)) return;
     purse_.pay(looking);
     const double each = static_cast<double>(different_.count) * double{costs_.occludee};
     std::size_t count = 0;
@@ -294,6 +355,7 @@ private:
       kept += !asked || memory_.seen[i] != 0;
     }
     result_.count = kept;
+    earn_hidden();
   }
 
   // --- what helps the next frame ---
@@ -341,6 +403,7 @@ private:
   std::uint64_t before_, chunks_ = 0, objects_ = 0;
   std::array<std::uint64_t, kMaxViews> in_view_{};  // what each view sees by frustum
   std::array<double, kMaxViews> spent_{};           // on drawing for it
+  double earned_ = 0;                               // in the purse already, of what is hidden
   std::array<bool, kMaxViews> drawn_{};
   Purse purse_;
 };

@@ -18,8 +18,13 @@ namespace {
 constexpr std::size_t kMostPicks = 1024;
 constexpr float kTileArea = 64, kLeastArea = 16;  // px²
 // A mesh of more triangles is drawn in parts, near ones first, for as much as there is to spend; it is picked
-// for so many at the least, and for no more than its share of what is left for drawing.
-constexpr std::size_t kWhole = 512, kLeastPart = 256;
+// for a few at the least, the cheaper objects are the more, and for no more than its share of what is left
+// for drawing.
+constexpr std::size_t kWhole = 512;
+std::size_t least_part(const CullCosts& costs) noexcept {
+  constexpr float kFewest = 64, kMost = 256;
+  return static_cast<std::size_t>(std::clamp(kFewest * kObjectCost / costs.object, kFewest, kMost));
+}
 constexpr double kPartShare = 0.5;
 // Where all of a pixel counts, what goes on beside a triangle is looked at, too, and much of it is drawn
 // twice.
@@ -106,6 +111,12 @@ struct OccluderPicks::Sight {
     const bool apart = n.max.x < box.min.x || n.min.x > box.max.x || n.max.y < box.min.y ||
                        n.min.y > box.max.y || n.max.z < box.min.z || n.min.z > box.max.z;
     return !apart;
+  }
+
+  // The triangles of a shape to be drawn where it has that box. What lies inside an object would still show a
+  // front to a pixel that looks from inside it.
+  [[nodiscard]] const OccluderMesh& shown(const OccluderShape& shape, const Box& box) const {
+    return cuts(box) ? shape.shown() : shape.all;
   }
 
   // What is drawn whole of a shape.
@@ -212,9 +223,23 @@ OccluderPicks::Drawn OccluderPicks::draw(const WorldState& world, const CullView
   std::sort(picks_.begin(), picks_.end(), [](const Pick& a, const Pick& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.carrier < b.carrier;
   });
-  for (const Pick& pick : picks_) spare = draw_one(sight, pick, spare);
+  options_ = options, coarse_ = options.scale > wanted.scale;
+  for (Pick& pick : picks_) spare = draw_one(sight, pick, spare);
   purse.pay(begin + budget - spare);
   return Drawn::some;
+}
+
+bool OccluderPicks::worth_more() const noexcept {
+  return !coarse_ && std::ranges::any_of(picks_, &Pick::cut);
+}
+
+void OccluderPicks::draw_on(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
+                            const CullCosts& costs, double most, Purse& purse) {
+  const Sight sight(world, view, distance_eye, options_, costs);
+  double left = most;
+  for (Pick& pick : picks_)
+    if (pick.cut) left = draw_parts(sight, pick, left);
+  purse.pay(most - left);
 }
 
 // Those that were seen the last time; all that are in view where most of these are no longer. What comes into
@@ -248,10 +273,10 @@ bool OccluderPicks::look_at(const Sight& sight, std::uint32_t carrier) {
   const bool parts = in_parts(shape), solids = !shape.boxes.empty() || !shape.spheres.empty();
   const double tiles = parts && !solids ? 0 : sight.tile * double{area / kTileArea},
                whole = sight.shape_cost(shape, brief.along_axes) + tiles;
-  const double claim = whole + (parts ? sight.parts_cost(shape, kLeastPart) : 0),
+  const double claim = whole + (parts ? sight.parts_cost(shape, least_part(sight.costs)) : 0),
                most = whole + (parts ? sight.parts_cost(shape, shape.all.triangles()) : 0);
   picks_.push_back({area / static_cast<float>(claim), to.x * to.x + to.y * to.y + to.z * to.z, carrier, parts,
-                    whole, claim, most});
+                    false, whole, claim, most});
   return true;
 }
 
@@ -275,7 +300,7 @@ double OccluderPicks::choose(double budget) {
   return cost;
 }
 
-double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spare) {
+double OccluderPicks::draw_one(const Sight& sight, Pick& pick, double spare) {
   const Carrier& carrier = sight.world.occluders->carriers[pick.carrier];
   const WorldBox stored = stored_box(sight.world, carrier.object);
   const Box box = geometry::relative_box(stored, sight.view.view.origin);
@@ -285,11 +310,11 @@ double OccluderPicks::draw_one(const Sight& sight, const Pick& pick, double spar
   drawn_.push_back(carrier.object);
   const OccluderShape& shape = sight.world.occluders->shapes[carrier.placement.occluder];
   const geometry::ExactAffine placement = placement_about(carrier.placement, sight.view.view.origin);
-  // What lies inside an object would still show a front to a pixel that looks from inside it.
-  const bool cut = sight.cuts(box);
-  const OccluderMesh& mesh = cut ? shape.shown() : shape.all;
-  spare = draw_triangles(sight, mesh, placement, pick, spare);
-  if (cut) return spare;
+  if (pick.parts)
+    spare = draw_parts(sight, pick, pick.claim - pick.whole + spare);
+  else
+    draw_mesh(sight.shown(shape, box), placement);
+  if (sight.cuts(box)) return spare;
   if (!shape.boxes.empty()) draw_boxes(shape, carrier.placement);
   if (shape.turned.triangles() > 0 && boxes_.empty()) draw_mesh(shape.turned, placement);
   draw_spheres(shape, placement);
@@ -301,16 +326,16 @@ void OccluderPicks::draw_mesh(const OccluderMesh& mesh, const geometry::ExactAff
     occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh), placement);
 }
 
-// A large mesh for what was put by for it and the spare, of which it leaves some.
-double OccluderPicks::draw_triangles(const Sight& sight, const OccluderMesh& mesh,
-                                     const geometry::ExactAffine& placement, const Pick& pick, double spare) {
-  if (mesh.triangles() == 0) return spare;
-  if (!pick.parts) {
-    draw_mesh(mesh, placement);
-    return spare;
-  }
-  occlusion::MeshBudget budget = sight.parts_budget(pick.claim - pick.whole + spare);
-  occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh), placement, &budget);
+// A large mesh for what there is, of which it leaves some.
+double OccluderPicks::draw_parts(const Sight& sight, Pick& pick, double left) {
+  const Carrier& carrier = sight.world.occluders->carriers[pick.carrier];
+  const Box box = geometry::relative_box(stored_box(sight.world, carrier.object), sight.view.view.origin);
+  const OccluderMesh& mesh = sight.shown(sight.world.occluders->shapes[carrier.placement.occluder], box);
+  if (mesh.triangles() == 0) return left;
+  occlusion::MeshBudget budget = sight.parts_budget(left);
+  occlusion::draw_mesh(OcclusionAccess::tiles(buffer_), OcclusionAccess::topology(mesh),
+                       placement_about(carrier.placement, sight.view.view.origin), &budget);
+  pick.cut = budget.refused;
   return budget.left;
 }
 

@@ -26,6 +26,12 @@ public:
   Drawn draw(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
              std::span<const ObjectId> in_view, const OcclusionOptions& options, const CullCosts& costs,
              double most, Purse& purse);
+  /// Whether meshes were drawn in parts and not to the end, in a buffer as fine as was asked for: coarse ones
+  /// take more of the time than they hide.
+  [[nodiscard]] bool worth_more() const noexcept;
+  /// Draws on those, for no more than `most` out of the purse; the view is the same.
+  void draw_on(const WorldState& world, const CullView& view, const WorldPoint& distance_eye,
+               const CullCosts& costs, double most, Purse& purse);
   /// The caller's options, or coarser ones where to begin a buffer of theirs would take much of what is left.
   /// Coarse ones hide less, but most of what fine ones do.
   static OcclusionOptions affordable(const CullView& view, const OcclusionOptions& options,
@@ -46,6 +52,7 @@ private:
     float score, distance;
     std::uint32_t carrier;
     bool parts;    // its mesh is drawn in parts
+    bool cut;      // not to the end
     double whole;  // what all else of it costs
     double claim;  // what is put by for it; of parts first the least that is of use
     double most;   // that drawing all of it costs
@@ -55,14 +62,15 @@ private:
   void find(const Sight& sight, std::span<const ObjectId> in_view, Purse& purse);
   bool look_at(const Sight& sight, std::uint32_t carrier);
   double choose(double budget);
-  double draw_one(const Sight& sight, const Pick& pick, double spare);
+  double draw_one(const Sight& sight, Pick& pick, double spare);
   void draw_mesh(const OccluderMesh& mesh, const geometry::ExactAffine& placement);
-  double draw_triangles(const Sight& sight, const OccluderMesh& mesh, const geometry::ExactAffine& placement,
-                        const Pick& pick, double spare);
+  double draw_parts(const Sight& sight, Pick& pick, double left);
   void draw_boxes(const OccluderShape& shape, const OccluderPlacement& placement);
   void draw_spheres(const OccluderShape& shape, const geometry::ExactAffine& placement);
 
   OcclusionBuffer buffer_;
+  OcclusionOptions options_;  // that it was begun with
+  bool coarse_ = false;
   std::vector<std::uint32_t> seen_;  // carriers that were seen the last time
   std::vector<Pick> picks_;
   std::vector<ObjectId> drawn_;

@@ -197,7 +197,9 @@ void WorldOccluders::set_triangles(const WorldState& world, ObjectId id, std::sp
   constexpr std::size_t kPerBlock = occlusion::TriangleBlock::kSize;
   ObjectTriangles& set = triangles[at];
   set.blocks.resize((corners.size() / 3 + kPerBlock - 1) / kPerBlock);
+  triangle_count -= set.count;
   set.count = occlusion::fill_blocks(corners, set.blocks);
+  triangle_count += set.count;
   glm::dvec3 low(corners[0].x, corners[0].y, corners[0].z), high = low;
   for (const Vec3& p : corners) {
     low = glm::min(low, geometry::to_double(p)), high = glm::max(high, geometry::to_double(p));
@@ -209,6 +211,7 @@ void WorldOccluders::set_triangles(const WorldState& world, ObjectId id, std::sp
 void WorldOccluders::take_triangles(ObjectId id) noexcept {
   const std::uint32_t at = triangle_set(id);
   if (at == kNothing) return;
+  triangle_count -= triangles[at].count;
   triangles[at] = {};
   triangles_of[id] = kNothing;
   free_triangles.push_back(at);

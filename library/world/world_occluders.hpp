@@ -73,6 +73,7 @@ struct WorldOccluders {
   std::vector<ObjectTriangles> triangles;
   std::vector<std::uint32_t> free_triangles;
   std::vector<std::uint32_t> triangles_of;  ///< the same
+  std::uint64_t triangle_count = 0;         ///< of all objects
 
   [[nodiscard]] std::uint32_t carrier(ObjectId id) const noexcept {
     return id < carrier_of.size() ? carrier_of[id] : kNothing;

@@ -39,7 +39,7 @@ TEST(Parts, OfALevelAreDrawnAsFarAsTheAccountGoes) {
   // As much as there is to spend: drawing all of the walls would cost more than the dearest frame's
   // twentieth.
   for (const auto& [object, fewer, most_cost] :
-       {Case{300, 1, 1}, Case{1000, 5, 0.25}, Case{3000, 15, 0.1}, Case{10000, 90, 0.02}}) {
+       {Case{300, 3, 0.4}, Case{1000, 40, 0.06}, Case{3000, 60, 0.03}, Case{10000, 90, 0.02}}) {
     Culler culler, plain;
     Random random(6);
     double cost = 0, frustum_cost = 0;
@@ -55,6 +55,54 @@ TEST(Parts, OfALevelAreDrawnAsFarAsTheAccountGoes) {
     }
     EXPECT_LT(fewer * kept, in_view) << object;
     EXPECT_LT(cost, most_cost * frustum_cost) << object;
+  }
+}
+
+// A wall of small triangles before few objects: the twentieth that the frame may spend before it has saved
+// anything draws some of it, what that hides pays for more.
+TEST(Parts, ArePaidForByWhatTheFirstOnesHide) {
+  constexpr int kSide = 40;
+  Occluder wall;
+  for (int y = 0; y <= kSide; ++y) {
+    for (int x = 0; x <= kSide; ++x)
+      wall.positions.push_back({static_cast<float>(x - kSide / 2), static_cast<float>(y - kSide / 2), -10});
+  }
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const std::uint32_t a = y * (kSide + 1) + x, b = a + 1, c = b + kSide + 1, d = c - 1;
+      wall.indices.insert(wall.indices.end(), {a, b, c, a, c, d});
+    }
+  }
+  for (const bool with_triangles : {false, true}) {
+    World world;
+    std::vector<Box> boxes{{{-20, -20, -10}, {20, 20, -10}}};
+    for (int i = 0; i < 80; ++i) {
+      const Vec3 at{static_cast<float>(i % 10) * 3 - 14, static_cast<float>(i / 10) * 3 - 11, -20};
+      boxes.push_back({at, {at.x + 1, at.y + 1, at.z + 1}});
+    }
+    std::vector<Handle> handles(boxes.size());
+    ASSERT_TRUE(world.insert(BoxView(boxes), handles));
+    const Result<OccluderId> occluder = world.add_occluder(wall);
+    ASSERT_TRUE(occluder);
+    const OccluderPlacement placement{*occluder};
+    ASSERT_TRUE(world.set_occluders({handles.data(), 1}, {&placement, 1}));
+    for (std::size_t i = 1; with_triangles && i < boxes.size(); ++i) {
+      const std::array corners{boxes[i].min, Vec3{boxes[i].max.x, boxes[i].min.y, boxes[i].max.z},
+                               boxes[i].max};
+      ASSERT_TRUE(world.set_triangles(handles[i], corners));
+    }
+    Culler culler;
+    const CullView view{.view = {*make_view(Camera{}, 320, 240), {}}};
+    double cost = 0, frustum_cost = 0;
+    std::size_t kept = 0;
+    for (int frame = 0; frame < 20; ++frame) {
+      const Culled seen = cull_with(culler, world, {&view, 1}, for_centres(10000));
+      cost += seen.result.cost, frustum_cost += seen.result.frustum_cost;
+      ASSERT_LE(seen.result.cost, 1.05 * seen.result.frustum_cost);
+      ASSERT_LE(cost, 1.02 * frustum_cost);
+      kept = seen.result.count;
+    }
+    EXPECT_LE(kept, 12u) << with_triangles;
   }
 }
 
