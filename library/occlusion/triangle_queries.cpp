@@ -133,7 +133,7 @@ HWY_INLINE std::uint32_t open_tiles(const DepthTiles& tiles, const GrownTriangle
 }
 
 // Whether some pixel of triangle i lies nearer than the occluders.
-HWY_INLINE bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i) {
+SIGHTLINE_INLINE_IN_BOTH bool seen(const DepthTiles& tiles, const GrownTriangles& t, std::size_t i) {
   const TileRange range = tiles_of(tiles, t.left[i], t.right[i], t.top[i], t.bottom[i]);
   std::array<std::uint64_t, kStepTiles + kWords> pixels;
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ty += kStepRows) {
@@ -228,9 +228,9 @@ struct Asked {
 };
 
 // Which of a vector of triangles, parts of the triangles `whole`, may be seen, together with their mates.
-template <bool kMayClip>
-HWY_INLINE std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q, const Corners& whole,
-                                   const Asked& asked) {
+// What is clipped already is not clipped again.
+SIGHTLINE_INLINE_IN_BOTH std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q,
+                                                 const Corners& whole, const Asked& asked, bool clip) {
   const F f;
   const VF reach = reach_of(whole);
   const Projected p = project(tiles, q, reach);
@@ -250,7 +250,7 @@ HWY_INLINE std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q, co
   };
   std::uint32_t clipped = rest & ~bits_of(f, p.placed);
   if (clipped != 0) {
-    if (!kMayClip) return asked.those;
+    if (!clip) return asked.those;
     rest &= ~clipped;
     clipped &= ~beyond_a_side(tiles, q, p.error);
   }
@@ -260,9 +260,9 @@ HWY_INLINE std::uint32_t find_seen(const DepthTiles& tiles, const Corners& q, co
   find_planes(tiles, whole, reach, p.nearest, t);
   store(p.bounds, t, 0);
   hn::Store(p.nearest, f, t.nearest.data());
-  const std::uint32_t blurred = kMayClip ? rest & bits_of(f, hn::Gt(p.slack, hn::Set(f, kMostSlack))) : 0;
+  const std::uint32_t blurred = clip ? rest & bits_of(f, hn::Gt(p.slack, hn::Set(f, kMostSlack))) : 0;
   look(rest & ~blurred, [&](std::size_t i) HWY_ATTR { return seen(tiles, t, i); });
-  if constexpr (kMayClip) {
+  if (clip) {
     const auto seen_clipped = [&](std::size_t i) {
       return clipped_seen(tiles, whole, i, (asked.away >> i & 1) != 0);
     };
@@ -323,7 +323,7 @@ bool clipped_seen(const DepthTiles& tiles, const Corners& whole, std::size_t i, 
     asked.those = (1u << count) - 1;
     asked.away = away ? asked.those : 0;
     asked.mates.fill(asked.those);
-    if (find_seen<false>(tiles, part, its, asked) != 0) return true;
+    if (find_seen(tiles, part, its, asked, false) != 0) return true;
   }
   return false;
 }
@@ -403,7 +403,7 @@ void query_runs(const DepthTiles& tiles, std::span<const TriangleRun> runs, std:
                        {load_row(pieces, 3 * k), load_row(pieces, 3 * k + 1), load_row(pieces, 3 * k + 2)});
     }
     if (pieces.fronts != 0) pieces.asked.away = pieces.fronts & turned_away(tiles, q);
-    const std::uint32_t found = find_seen<true>(tiles, q, q, pieces.asked);
+    const std::uint32_t found = find_seen(tiles, q, q, pieces.asked, true);
     for (std::size_t i = 0; i < pieces.count; ++i) seen[pieces.run[i]] |= found >> i * kPiece & 1;
   }
 }
