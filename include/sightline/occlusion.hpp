@@ -142,8 +142,8 @@ public:
   Status may_see(const SphereView& spheres, std::span<std::uint8_t> visible) const noexcept;
 
   /// Whether some place on the image may see one of the triangles, three corners each: pixel by pixel, so
-  /// closer to the truth than a box, and dearer. False is certain. A triangle with a corner that is not
-  /// finite is seen, one of whose corners two are equal shows nothing; corners that make no whole triangle
+  /// closer to the truth than a box, and dearer. False is certain. A triangle of whose corners two are equal
+  /// shows nothing, any other with a corner that is not finite is seen; corners that make no whole triangle
   /// are not looked at. Cost: linear until one is seen.
   [[nodiscard]] bool may_see(std::span<const Vec3> triangles) const noexcept;
   /// The same of one object's triangles; true where there is no such object, false where it has none. Cost:

@@ -137,6 +137,11 @@ inline constexpr float kTileRounding = 1e-6f;
 /// The distances in metres are no bounds: they only keep the quotient finite where all coordinates are next
 /// to 0.
 inline constexpr double kEdgeOnSine = 1e-4, kEdgeOnPart = 1e-5, kEdgeOnDistance = 1e-6;
+/// Of a triangle with sides of largest coordinates a and b from a corner on, and corners as far as r, the
+/// product of the normal that they span with that corner rounds, with its terms, by 54 u·abr; and corners
+/// about the eye, off by 2 u·r, turn it by up to 24 u·r²(a + b): of r·(2ab + r(a + b)). Against a direction
+/// it is an r less. Needs 0.23.
+inline constexpr float kSideRounding = 32 * static_cast<float>(kUnit);
 /// The same for a box's faces, whose distance is a coordinate and off by 2 u of it: needs 0.01. Of boxes
 /// nearer than that every face is clipped and drawn by itself, in double precision.
 inline constexpr float kFacePart = 1e-5f, kFaceDistance = 1e-6f, kFaceSine = 1e-5f;
@@ -154,9 +159,9 @@ inline double near_plane_slack(double at_eye, double eye) noexcept {
 inline constexpr double kNearSideways = 1e-6;
 /// In w, where a view has no front plane.
 inline constexpr double kLeastW = 1e-6;
-/// What a triangle asked for keeps before the near plane: a part of the plane's distance from the eye, for
-/// what near_plane_slack() moved (needs 0.01), and of the corners' largest coordinate, for 3 u of Σ that row
-/// and corners round by, and 2 u more of a row of the view (needs 0.15).
+/// What a triangle asked for keeps before the near plane: twice what near_plane_slack() says now, which moved
+/// it, a part of the plane's distance from the eye (needs 0.01), and of the corners' largest coordinate, for
+/// 3 u of Σ that row and corners round by, and 2 u more of a row of the view (needs 0.15).
 inline constexpr double kKeptBeforeNear = 1e-3, kKeptReach = 1e-6;
 
 // --- boxes of groups of triangles ---

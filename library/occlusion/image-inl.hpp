@@ -46,13 +46,18 @@ HWY_INLINE VF reach_of(const Corners& corners) {
 HWY_INLINE VF side_of_planes(const DepthTiles& tiles, const Corners& corners) {
   const F f;
   const bool orthographic = tiles.projection.orthographic;
-  const VPoints normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+  const VPoints a = minus(corners[1], corners[0]), b = minus(corners[2], corners[0]), normal = cross(a, b);
   const VF along = orthographic ? dot(normal, tiles.rays.forward) : dot(normal, corners[0]);
-  const VF least = orthographic
-                       ? hn::Set(f, tiles.rays.edge_on)
-                       : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach_of(corners)),
-                                 hn::Set(f, static_cast<float>(kEdgeOnDistance)));
-  const auto sure = hn::Gt(hn::Abs(along), hn::Mul(least, hn::Sqrt(dot(normal, normal))));
+  const VF reach = reach_of(corners), one_side = largest(a), other = largest(b);
+  const VF least = orthographic ? hn::Set(f, tiles.rays.edge_on)
+                                : hn::Add(hn::Mul(hn::Set(f, static_cast<float>(kEdgeOnPart)), reach),
+                                          hn::Set(f, static_cast<float>(kEdgeOnDistance)));
+  // The thinner or the farther away it is beside its size, the more its corners' rounding turns its plane.
+  const VF twice = hn::Mul(hn::Add(one_side, one_side), other),
+           turned =
+               hn::Mul(hn::Set(f, kSideRounding), hn::Add(twice, hn::Mul(reach, hn::Add(one_side, other)))),
+           rounding = orthographic ? turned : hn::Mul(turned, reach);
+  const auto sure = hn::Gt(hn::Abs(along), hn::Add(hn::Mul(least, hn::Sqrt(dot(normal, normal))), rounding));
   const VF front = hn::Set(f, 1.0f);
   return hn::IfThenElseZero(sure, hn::IfThenElse(hn::Lt(along, hn::Zero(f)), front, hn::Neg(front)));
 }
@@ -179,21 +184,23 @@ HWY_INLINE RowErrors row_errors(const EyeProjection& e, VF reach) {
   return {error_of(e.x, reach), error_of(e.y, reach), error_of(e.w, reach)};
 }
 
-// Triangles that lie wholly to one side of what is in view.
+// Triangles that lie wholly to one side of what is in view, by more than so many pixels.
 HWY_INLINE std::uint32_t beyond_a_side(const DepthTiles& tiles, const Corners& corners,
-                                       const RowErrors& error) {
+                                       const RowErrors& error, float by = 0) {
   const F f;
   const EyeProjection& e = tiles.projection;
-  const VF width = hn::Set(f, static_cast<float>(tiles.width)),
-           height = hn::Set(f, static_cast<float>(tiles.height));
+  const VF width = hn::Set(f, static_cast<float>(tiles.width) + by),
+           height = hn::Set(f, static_cast<float>(tiles.height) + by), more = hn::Set(f, by);
   auto left = hn::FirstN(f, hn::Lanes(f)), right = left, above = left, below = left;
-  const VF right_error = hn::Add(error.x, hn::Mul(width, error.w)),
+  const VF left_error = hn::Add(error.x, hn::Mul(more, error.w)),
+           above_error = hn::Add(error.y, hn::Mul(more, error.w)),
+           right_error = hn::Add(error.x, hn::Mul(width, error.w)),
            below_error = hn::Add(error.y, hn::Mul(height, error.w));
   for (const VPoints& c : corners) {
     const VF x = dot_row(e.x, c), y = dot_row(e.y, c), w = dot_row(e.w, c);
-    left = hn::And(left, hn::Lt(x, hn::Neg(error.x)));
+    left = hn::And(left, hn::Lt(hn::Add(x, hn::Mul(more, w)), hn::Neg(left_error)));
     right = hn::And(right, hn::Gt(hn::Sub(x, hn::Mul(width, w)), right_error));
-    above = hn::And(above, hn::Lt(y, hn::Neg(error.y)));
+    above = hn::And(above, hn::Lt(hn::Add(y, hn::Mul(more, w)), hn::Neg(above_error)));
     below = hn::And(below, hn::Gt(hn::Sub(y, hn::Mul(height, w)), below_error));
   }
   return bits_of(f, hn::Or(hn::Or(left, right), hn::Or(above, below)));

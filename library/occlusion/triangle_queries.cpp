@@ -252,7 +252,7 @@ SIGHTLINE_INLINE_IN_BOTH std::uint32_t find_seen(const DepthTiles& tiles, const 
   if (clipped != 0) {
     if (!clip) return asked.those;
     rest &= ~clipped;
-    clipped &= ~beyond_a_side(tiles, q, p.error);
+    clipped &= ~beyond_a_side(tiles, q, p.error, kAskedSlack);
   }
 
   GrownTriangles t;
@@ -277,7 +277,10 @@ SIGHTLINE_INLINE_IN_BOTH std::uint32_t find_seen(const DepthTiles& tiles, const 
 // orthographic views.
 inline bool clip_one(const DepthTiles& tiles, Polygon& polygon) {
   if (tiles.projection.orthographic) return false;
-  double slack = kKeptBeforeNear * std::fabs(double{tiles.rays.near_plane.w}), sum = 0;
+  const EyeProjection& e = tiles.projection;
+  const double at_eye = std::fabs(double{tiles.rays.near_plane.w}),
+               eye = glm::length(geometry::to_double(e.eye_high) + geometry::to_double(e.eye_low));
+  double slack = kKeptBeforeNear * at_eye + 2 * near_plane_slack(at_eye, eye), sum = 0;
   for (std::size_t k = 0; k < polygon.count; ++k) {
     for (int a = 0; a < 3; ++a) {
       const double side = polygon.points[k][a];

@@ -258,6 +258,34 @@ TEST(OccludeeTriangles, ThatReachCloseToTheEyeAreHiddenByWhatLiesBeforeThem) {
   EXPECT_TRUE(buffer.may_see(wedge(pixel)));
 }
 
+// Rounding turns the plane of one that reaches much farther than it is wide.
+TEST(OccludeeTriangles, OfOneSideAreSeenFromTheirFrontHoweverThinAndFar) {
+  OcclusionBuffer buffer;
+  ASSERT_TRUE(buffer.begin({*make_view(Camera{}, 640, 480), {}}, {Coverage::centres}));
+  for (const std::array<Vec3, 3>& corners :
+       {std::array{Vec3{950.042542f, 1159.05383f, -3000}, Vec3{3.76306963f, -1.442276f, -9.32407379f},
+                   Vec3{3.35636759f, 0.198760986f, -8.88724232f}},
+        std::array{Vec3{-24667.418f, -17656.5391f, -50000}, Vec3{3.89132786f, -0.929787755f, -9.1333189f},
+                   Vec3{-3.60053682f, 2.24720669f, -10.7146978f}}}) {
+    OccludeeTriangles fronts;
+    ASSERT_TRUE(fronts.assign(corners, std::array{1u}, std::array{Sides::front}));
+    EXPECT_TRUE(buffer.may_see(fronts, 0));
+  }
+}
+
+// The prepared near plane lies the farther before the true one the farther away the eye is.
+TEST(OccludeeTriangles, AreSeenJustBeforeTheNearPlaneOfAnEyeFarAway) {
+  for (const float near : {0.01f, 0.1f}) {
+    Camera camera;
+    camera.eye = {1e5f, 0, 0}, camera.near_plane = near;
+    OcclusionBuffer buffer;
+    ASSERT_TRUE(buffer.begin({*make_view(camera, 640, 480), {}}, {Coverage::centres}));
+    const float tip = -1.005f * near;
+    EXPECT_TRUE(buffer.may_see(
+        std::array{Vec3{1e5f, -1, 1}, Vec3{1e5f - 0.0625f, 0, tip}, Vec3{1e5f + 0.0625f, 0, tip}}));
+  }
+}
+
 // What the near plane cuts, too.
 TEST(OccludeeTriangles, OfOneSideThatReachBehindTheEyeAreNotSeenFromBehind) {
   const View view = *make_view(Camera{}, 64, 49);
