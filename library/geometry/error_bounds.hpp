@@ -140,7 +140,7 @@ inline constexpr double kEdgeOnSine = 1e-4, kEdgeOnPart = 1e-5, kEdgeOnDistance 
 /// Of a triangle with sides of largest coordinates a and b from a corner on, and corners as far as r, the
 /// product of the normal that they span with that corner rounds, with its terms, by 54 u·abr; and corners
 /// about the eye, off by 2 u·r, turn it by up to 24 u·r²(a + b): of r·(2ab + r(a + b)). Against a direction
-/// it is an r less. Needs 0.23.
+/// it is an r less. Needs 0.21.
 inline constexpr float kSideRounding = 32 * static_cast<float>(kUnit);
 /// The same for a box's faces, whose distance is a coordinate and off by 2 u of it: needs 0.01. Of boxes
 /// nearer than that every face is clipped and drawn by itself, in double precision.
