@@ -69,13 +69,13 @@ struct Outline {
 Outline outline_of(const EyeProjection& e, const Polygon& polygon) {
   Outline out;
   out.count = polygon.count;
+  out.reach = reach_of(std::span(polygon.points).first(polygon.count));
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const glm::dvec3& q = polygon.points[i];
     const double over_w = 1 / dot(e.w, q);
     const float x = static_cast<float>(dot(e.x, q) * over_w), y = static_cast<float>(dot(e.y, q) * over_w);
     out.x[i] = x, out.y[i] = y;
     out.nearest = std::max(out.nearest, static_cast<float>(e.orthographic ? dot(e.nearness, q) : over_w));
-    out.reach = std::max({out.reach, std::fabs(q.x), std::fabs(q.y), std::fabs(q.z)});
     out.left = std::min(out.left, x), out.right = std::max(out.right, x);
     out.top = std::min(out.top, y), out.bottom = std::max(out.bottom, y);
   }
@@ -151,6 +151,7 @@ void add_edge(const Outline& outline, std::size_t i, bool turns_right, float ins
 std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& plane, float way,
                            const Surroundings& around) {
   const std::array<SeamLine, 3>& seams = around.seams;
+  const double reach = reach_of(std::span(polygon.points).first(polygon.count));
   if (!clip_to_view(tiles, 0, polygon)) return 0;
   if (polygon.count < 3 || polygon.count > Convex::kMaxEdges) return 0;
   const Outline outline = outline_of(tiles.projection, polygon);
@@ -161,14 +162,18 @@ std::uint32_t draw_clipped(DepthTiles& tiles, Polygon polygon, const WidePlane& 
   out.left = outline.left, out.right = outline.right, out.top = outline.top, out.bottom = outline.bottom;
   const float inset =
       kInset + tiles.around() + kInsetGrowth * 2 * static_cast<float>(std::max(tiles.width, tiles.height));
+  const float play =
+      near_edge_play(tiles, reach, tiles.projection.orthographic ? 1 : 1 / double{outline.nearest});
   Convex middle = out;
   for (std::size_t i = 0; i < outline.count; ++i) {
     const std::uint8_t edge = polygon.edge[i];
-    add_edge(outline, i, area > 0, inset, middle);
+    // Of edges beside the image, too, where it does no harm.
+    const float inwards = edge == Polygon::kClipped ? inset + play : inset;
+    add_edge(outline, i, area > 0, inwards, middle);
     if (edge < seams.size() && seams[edge].kind != SeamLine::Kind::none)
       add_line(outline, i, area > 0, seams[edge], out);
     else
-      add_edge(outline, i, area > 0, inset, out);
+      add_edge(outline, i, area > 0, inwards, out);
   }
   return HWY_DYNAMIC_DISPATCH(draw_convex)(tiles, out, middle, around);
 }

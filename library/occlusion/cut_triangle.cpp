@@ -48,9 +48,7 @@ std::optional<double> slant_of(const DepthTiles& tiles, const ExactCorners& corn
   const bool orthographic = tiles.projection.orthographic;
   const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double length = glm::length(normal);
-  double reach = 0;
-  for (const glm::dvec3& q : corners)
-    reach = std::max({reach, std::fabs(q.x), std::fabs(q.y), std::fabs(q.z)});
+  const double reach = reach_of(corners);
   const auto along = [&](const std::array<float, 3>& v) {
     return (normal.x * v[0] + normal.y * v[1] + normal.z * v[2]) / length;
   };
@@ -84,7 +82,7 @@ std::optional<ImageSegment> part_in_image(const DepthTiles& tiles, const glm::dv
     const Homogeneous at = from + (to - from) * share;
     return std::array{static_cast<float>(at.x / at.z), static_cast<float>(at.y / at.z)};
   };
-  return ImageSegment{place(begin), place(end)};
+  return ImageSegment{place(begin), place(end), 0};
 }
 
 }  // namespace
@@ -124,7 +122,10 @@ std::optional<ImageSegment> near_edge(const DepthTiles& tiles, const ExactCorner
   const glm::dvec3 inwards(plane.x, plane.y, plane.z);
   const double least = 1e-9 * (std::fabs(double{plane.w}) + 1e-6);
   for (glm::dvec3& q : ends) q += inwards * ((least - dot(plane, q)) / glm::dot(inwards, inwards));
-  return part_in_image(tiles, ends[0], ends[1], 0, 1);
+  std::optional<ImageSegment> out = part_in_image(tiles, ends[0], ends[1], 0, 1);
+  const double least_w = std::min(dot(tiles.projection.w, ends[0]), dot(tiles.projection.w, ends[1]));
+  if (out) out->play = near_edge_play(tiles, reach_of(corners), least_w);
+  return out;
 }
 
 }  // namespace sightline::occlusion

@@ -25,6 +25,7 @@ CutTriangle cut_triangle(const DepthTiles& tiles, const ExactCorners& corners) n
 /// A segment on the image, in pixels.
 struct ImageSegment {
   std::array<float, 2> from, to;
+  float play = 0;  ///< how far it may lie from there besides
 };
 /// What is before the near plane of a segment, and no farther beyond the image than that is wide or high;
 /// nothing where all of it lies elsewhere.

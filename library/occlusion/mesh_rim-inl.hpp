@@ -45,12 +45,13 @@ struct RimEnds {
   std::size_t count = 0;
 };
 
-// Appends bands around edges on the image, those of `shown` that come near it.
+// Appends bands around edges on the image, those of `shown` that come near it, `play` wider than rounding
+// asks.
 HWY_NOINLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF by, hn::Mask<F> shown,
-                               const std::uint32_t* of, Rim& out) {
+                               float play, const std::uint32_t* of, Rim& out) {
   const F f;
   const VF widest = hn::Max(hn::Max(hn::Abs(ax), hn::Abs(ay)), hn::Max(hn::Abs(bx), hn::Abs(by))),
-           reach = inset_of(tiles, widest),
+           reach = hn::Add(inset_of(tiles, widest), hn::Set(f, play)),
            least = hn::Sub(reach, hn::Mul(hn::Set(f, 0.5f * kInsetGrowth), widest));
   const auto whole = [&](std::uint32_t at) HWY_ATTR { return hn::Set(f, static_cast<float>(at)); };
   const auto apart = [&](VF a, VF b, std::uint32_t end) HWY_ATTR {
@@ -84,10 +85,10 @@ HWY_NOINLINE void append_bands(const DepthTiles& tiles, VF ax, VF ay, VF bx, VF 
 HWY_NOINLINE inline void append_band(const DepthTiles& tiles, const std::optional<ImageSegment>& segment,
                                      std::uint32_t of, Rim& out) {
   if (!segment) return;
-  const auto& [a, b] = *segment;
+  const auto& [a, b, play] = *segment;
   const F f;
   append_bands(tiles, hn::Set(f, a[0]), hn::Set(f, a[1]), hn::Set(f, b[0]), hn::Set(f, b[1]),
-               hn::FirstN(f, 1), &of, out);
+               hn::FirstN(f, 1), play, &of, out);
 }
 
 // Bands of what the image shows of the edges: of those before the near plane first, whatever a vector's
@@ -108,7 +109,7 @@ HWY_NOINLINE void flush_ends(const DepthTiles& tiles, RimEnds& ends, Rim& out) {
     const auto whole = hn::And(before_near(tiles, a), before_near(tiles, b));
     append_bands(tiles, hn::Mul(dot_row(e.x, a), a_over_w), hn::Mul(dot_row(e.y, a), a_over_w),
                  hn::Mul(dot_row(e.x, b), b_over_w), hn::Mul(dot_row(e.y, b), b_over_w),
-                 hn::And(whole, those), &ends.of[first], out);
+                 hn::And(whole, those), 0, &ends.of[first], out);
     cut |= bits_of(f, hn::AndNot(whole, those)) << first;
   }
   for (; cut != 0; cut &= cut - 1) {

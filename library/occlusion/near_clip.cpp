@@ -1,6 +1,10 @@
 #include "library/occlusion/near_clip.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "library/geometry/error_bounds.hpp"
 
 namespace sightline::occlusion {
 
@@ -46,6 +50,23 @@ bool clip_to_view(const DepthTiles& tiles, double slack, Polygon& polygon) noexc
     if (!clip(plane, 0, polygon)) return false;
   }
   return true;
+}
+
+double reach_of(std::span<const glm::dvec3> points) noexcept {
+  double reach = 0;
+  for (const glm::dvec3& q : points)
+    reach = std::max({reach, std::fabs(q.x), std::fabs(q.y), std::fabs(q.z)});
+  return reach;
+}
+
+float near_edge_play(const DepthTiles& tiles, double reach, double least_w) noexcept {
+  const EyeProjection& e = tiles.projection;
+  const auto size = [](const Vec4& row) {
+    return std::fabs(double{row.x}) + std::fabs(double{row.y}) + std::fabs(double{row.z});
+  };
+  const double place = std::max(tiles.width, tiles.height);
+  return static_cast<float>(double{geometry::kRowRounding} * reach *
+                            (std::max(size(e.x), size(e.y)) + place * size(e.w)) / least_w);
 }
 
 }  // namespace sightline::occlusion

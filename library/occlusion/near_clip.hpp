@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "library/occlusion/depth_tiles.hpp"
 
@@ -28,9 +29,16 @@ inline double dot(const Vec4& row, const glm::dvec3& q) noexcept {
   return row.x * q.x + row.y * q.y + row.z * q.z + row.w;
 }
 
+/// The largest coordinate of some points.
+double reach_of(std::span<const glm::dvec3> points) noexcept;
+
 /// Keeps what lies no farther behind the near plane than `slack` and no farther beyond the image than the
 /// image is wide or high; nothing remains where count < 3. False where rounding has bent the polygon so that
 /// it gets more corners than there is room for.
 bool clip_to_view(const DepthTiles& tiles, double slack, Polygon& polygon) noexcept;
+
+/// How far, in pixels, a rasteriser that clips in single precision may move the edge that the near plane
+/// makes of a polygon whose corners reach so far about the eye; `least_w` is of that edge.
+float near_edge_play(const DepthTiles& tiles, double reach, double least_w) noexcept;
 
 }  // namespace sightline::occlusion

@@ -146,5 +146,27 @@ TEST(FarCorners, WhereTheNearPlaneCutsThemTheMeshEnds) {
   EXPECT_GT(hidden, 20u);
 }
 
+// A wall beside the eye, which the near plane cuts at a column of the image: its corners reach 80 times as
+// far as that plane, and a rasteriser's floats may move the edge by hundredths of a pixel.
+TEST(FarCorners, KeepAwayFromTheEdgeThatTheNearPlaneMakes) {
+  const View view = *make_view({.near_plane = 0.05f}, kPixels, kPixels);
+  const double focal = 0.5 * kPixels * double{view.eye_to_clip.m[0]};
+  constexpr std::uint32_t kColumn = 50, kRow = 20;
+  const auto covered = [&](double inside) {
+    // The near edge lies so far to the right of the column's centres.
+    const double edge = kColumn + 0.5 + inside;
+    const auto x = static_cast<float>((edge - 0.5 * kPixels) / focal * 0.05);
+    const std::array corners{Vec3{x, -4, 4}, Vec3{x, -4, -4}, Vec3{x, 4, -4}, Vec3{x, 4, 4}};
+    OcclusionBuffer buffer;
+    EXPECT_TRUE(buffer.begin({view, {}}, {Coverage::centres}));
+    EXPECT_TRUE(buffer.draw_mesh(*OccluderMesh::make(corners, std::array{0u, 1u, 2u, 0u, 2u, 3u})));
+    std::vector<float> nearness(std::size_t{kPixels} * kPixels);
+    EXPECT_TRUE(buffer.read_nearness(nearness));
+    return nearness[kRow * kPixels + kColumn] > 0;
+  };
+  for (const double inside : {0.006, 0.008, 0.01}) EXPECT_FALSE(covered(inside)) << inside;
+  EXPECT_TRUE(covered(0.1));
+}
+
 }  // namespace
 }  // namespace sightline
