@@ -5,6 +5,7 @@ import { get } from 'node:http';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { serve } from '../page/serve.mjs';
+import { perSecond } from '../page/ui/elements.js';
 import { withAddress } from './browser/chromium.mjs';
 
 const pictures = `${import.meta.dirname}/../../build/web/screenshots`;
@@ -174,6 +175,12 @@ test('its three parts work', async () => {
     await goAbout(page);
     await loseWebGL(page);
   }, { width: 1400, height: 900 });
+});
+
+test('it names no number where the clock saw no time go by', () => {
+  assert.equal(perSecond(0), '–');
+  assert.equal(perSecond(16.7), '60 / s');
+  assert.equal(perSecond(5000), '1 / s');
 });
 
 test('its server answers nonsense, and goes on', async () => {

@@ -1,5 +1,5 @@
 // The first part: the five models, their rays, what these keep and lose, and how long it takes.
-import { button, choice, count, element, fit, Graph, isDark, median, ms, percent, readout, slider, toggle, breath } from '../ui/elements.js';
+import { button, choice, count, element, fit, Graph, isDark, median, ms, percent, perSecond, readout, slider, toggle, breath } from '../ui/elements.js';
 import { Fly } from '../ui/fly.js';
 import { Caster, isOnGpu, judge, methods } from './caster.js';
 import { Evidence } from './evidence.js';
@@ -184,8 +184,7 @@ export class ModelsPart {
     this.rested = m;
     const share = m.objectPixels > 0 ? (100 * m.lostPixels) / m.objectPixels : 0;
     this.readouts.lost.set(percent(share), `${count(m.lostObjects)} of ${count(m.visible)} visible`);
-    this.readouts.gain.set(`${Math.max(1, Math.round(1000 / m.without_ms))} / s`,
-      `with: ${Math.max(1, Math.round(1000 / m.with_ms))} / s, ${ms(m.cast_ms)} ms of it rays`);
+    this.readouts.gain.set(perSecond(m.without_ms), `with: ${perSecond(m.with_ms)}, ${ms(m.cast_ms)} ms of it rays`);
   }
 
   /** Every sixtieth of the path, with and without. */

@@ -61,6 +61,8 @@ export function readout(label) {
 const separators = /\B(?=(\d{3})+(?!\d))/g;
 export const count = (x) => String(Math.round(x)).replace(separators, ',');
 export const ms = (x) => (x === undefined || Number.isNaN(x) ? '–' : x >= 100 ? count(x) : x >= 10 ? x.toFixed(1) : x.toFixed(2));
+/** Frames a second of so many milliseconds each; no number where a browser's coarse clock saw none go by. */
+export const perSecond = (each) => (each > 0 ? `${Math.max(1, Math.round(1000 / each))} / s` : '–');
 export const percent = (x) => `${x >= 10 ? x.toFixed(0) : x.toFixed(x >= 1 ? 1 : 2)} %`;
 export const median = (all) => all.toSorted((a, b) => a - b)[Math.floor(all.length / 2)];
 
