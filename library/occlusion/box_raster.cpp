@@ -268,6 +268,7 @@ HWY_EXPORT(draw_all_boxes);
 
 void draw_boxes(DepthTiles& tiles, std::span<const Box> boxes) noexcept {
   HWY_DYNAMIC_DISPATCH(draw_all_boxes)(tiles, boxes);
+  note_drawn(tiles, boxes.size());
 }
 
 }  // namespace sightline::occlusion

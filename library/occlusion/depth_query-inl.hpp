@@ -10,7 +10,7 @@
 #include <bit>
 
 #include "library/geometry/mutant.h"
-#include "library/occlusion/image-inl.hpp"
+#include "library/occlusion/coarse_tiles-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
@@ -148,8 +148,7 @@ HWY_INLINE Glance glance(const DepthTiles& tiles, const Question& q) {
   // Those not asked for look at the first tile.
   Glance out{pixel_ranges(bounds, asked), 0, 0};  // where it stays: copies of many vectors take their time
   const PixelRanges& ranges = out.ranges;
-  const auto behind_all = hn::AndNot(hn::RebindMask(f, ranges.many),
-                                     hn::Lt(q.nearest, least_at_corners(tiles, tiles.farthest, ranges)));
+  const auto behind_all = hn::Lt(q.nearest, farthest_within(tiles, ranges));
   const auto before_some = hn::Gt(q.nearest, least_at_corners(tiles, tiles.nearest, ranges));
   out.seen = bits_of(f, hn::Or(hn::Not(sure), hn::And(asked, before_some)));
   if (SIGHTLINE_MUTANT(unsure_questions_hidden)) out.seen = bits_of(f, hn::And(asked, before_some));

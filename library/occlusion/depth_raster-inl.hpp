@@ -202,7 +202,7 @@ HWY_INLINE bool is_much_deeper(const DepthTiles& tiles, const Convex& polygon, f
 }
 
 // Whether all of the tiles lie nearer than `nearness`; false where one would need a closer look.
-HWY_INLINE bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, float nearness) {
+SIGHTLINE_INLINE_IN_BOTH bool hidden_tiles(const DepthTiles& tiles, const TileRange& range, float nearness) {
   const F f;
   const VF limit = hn::Set(f, nearness);
   for (std::uint32_t ty = range.begin_y; ty < range.end_y; ++ty) {

@@ -30,10 +30,13 @@ inline constexpr std::uint32_t kTile = 8;  ///< pixels a side
 
 /// What a view has found out about a mesh. Reused from mesh to mesh.
 struct MeshScratch {
-  /// The groups in view, and their boxes: min x, y, z, max x, y, z.
-  std::vector<std::uint32_t> group;
+  /// So many groups are in view: their numbers, their boxes (min x, y, z, max x, y, z), and their depths in
+  /// steps. Lists have room for a vector more.
+  std::size_t in_view = 0;
+  std::vector<std::uint32_t> group, step;
   std::array<geometry::AlignedVector<float>, 6> box;
-  std::vector<std::uint64_t> near_first, other;  ///< depth, and place in the lists above
+  static constexpr std::int32_t kSteps = 256;
+  std::vector<std::uint32_t> near_first;  ///< places in these lists
   /// Which way a triangle turns, in groups whose `known` says `turn`.
   geometry::AlignedVector<float> facing;
   /// Beside it, where a pixel's margin counts: how much its nearness changes over a pixel at most; with a
@@ -67,12 +70,20 @@ struct TilePlanes {
   }
 };
 
+/// Tiles of 2^n tiles a side, for queries of rectangles of many tiles.
+inline constexpr std::uint32_t kCoarseLevels = 4;
+struct CoarseTiles {
+  std::uint32_t levels = 0;  ///< that are known; what they say is of some time ago, and safe: tiles only fill
+  std::size_t drawn = 0;     ///< since
+};
+
 /// Where the tiles lie. What is undefined below is left as it was, so that a frame pays for what it draws.
 struct TileMemory {
   geometry::AlignedVector<float> farthest, nearest, nearness, untouched;
   TilePlanes<geometry::AlignedVector<float>> plane;
   std::vector<MeshScratch> scratch;  ///< one a job that draws; the first is there once a view is begun
   BandHistory history;               ///< of the meshes that jobs draw
+  CoarseTiles coarse;
 };
 
 struct BoxQuestions;
@@ -96,7 +107,10 @@ struct DepthTiles {
   /// Rows of pixels that are drawn to and asked for; whole tiles, but at the image's end.
   std::uint32_t first_row = 0, end_row = 0;
   /// One a tile: no pixel of it is farther; -infinity where some pixel has no occluder. Padding: +infinity.
+  /// Behind the last row those of coarser levels.
   float* farthest = nullptr;
+  std::uint32_t level_rows = 0;  ///< the rows as a multiple of 16: of level n there are a 2^n-th
+  CoarseTiles* coarse = nullptr;
   /// One a tile: no pixel of it is nearer; -infinity where nothing was drawn.
   float* nearest = nullptr;
   /// `base` is -infinity where `nearness` has the tile, and undefined where nothing was drawn.
@@ -113,6 +127,10 @@ struct DepthTiles {
   /// one need not link it.
   const BoxQuestions* ask = nullptr;
 
+  /// Where a coarser level begins in `farthest`; 0 is the tiles themselves.
+  [[nodiscard]] std::uint32_t first_row_of(std::uint32_t level) const noexcept {
+    return 2 * level_rows - (2 * level_rows >> level);
+  }
   /// How far from a pixel's centre kInset is not enough to tell what an occluder covers.
   [[nodiscard]] float around() const noexcept { return margin + std::max(0.0f, rounding - geometry::kInset); }
 };
@@ -177,6 +195,9 @@ void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& me
 /// The same by one thread; with a budget what that pays for.
 void draw_mesh(DepthTiles& tiles, const OccluderTopology& mesh, const ExactAffine& placement,
                MeshBudget* budget = nullptr);
+/// To be told that so many boxes, spheres or groups of triangles were drawn: makes the coarser levels where
+/// that pays. Not while others draw.
+void note_drawn(DepthTiles& tiles, std::size_t things) noexcept;
 void query_boxes(const DepthTiles& tiles, const EyeProjection& projection, const BoxSpan& boxes,
                  std::uint8_t* visible) noexcept;
 struct BoxQuestions {

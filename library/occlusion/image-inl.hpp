@@ -13,6 +13,14 @@
 #include "library/geometry/simd-inl.hpp"
 #include "library/occlusion/depth_tiles.hpp"
 
+// What is called from two places is inlined in both, but not in WebAssembly, which a page's readers load.
+#undef SIGHTLINE_INLINE_IN_BOTH
+#if HWY_TARGET == HWY_WASM
+#define SIGHTLINE_INLINE_IN_BOTH HWY_NOINLINE inline
+#else
+#define SIGHTLINE_INLINE_IN_BOTH HWY_INLINE
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
@@ -159,7 +167,7 @@ HWY_INLINE PixelRanges pixel_ranges(const PixelBounds& bounds, hn::Mask<F> asked
 }
 
 // The least value of the tiles at the corners, which are all tiles of a small rectangle.
-HWY_INLINE VF least_at_corners(const DepthTiles& tiles, const float* of, const PixelRanges& r) {
+SIGHTLINE_INLINE_IN_BOTH VF least_at_corners(const DepthTiles& tiles, const float* of, const PixelRanges& r) {
   const VI stride = hn::Set(I(), static_cast<std::int32_t>(tiles.stride));
   const VI row0 = hn::Mul(r.ty0, stride), row1 = hn::Mul(r.ty1, stride);
   const auto at = [&](VI row, VI column) HWY_ATTR { return hn::GatherIndex(F(), of, hn::Add(row, column)); };

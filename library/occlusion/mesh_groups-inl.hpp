@@ -10,9 +10,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
-#include "library/geometry/radix_sort.hpp"
-#include "library/geometry/view_depth.hpp"
 #include "library/occlusion/image-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,38 +47,54 @@ HWY_INLINE VF size_along(const Vec4& row, const VPoints& half) {
   return dot(half, std::array<float, 3>{std::fabs(row.x), std::fabs(row.y), std::fabs(row.z)});
 }
 
+HWY_INLINE const float* sides_of_groups(const OccluderTopology& mesh, std::size_t first) {
+  return &mesh.box[first / 16 * 96 + first % 16];
+}
+
 HWY_INLINE WideBoxes boxes_of_groups(const OccluderTopology& mesh, std::size_t first) {
   const F f;
-  const float* box = &mesh.box[first / 16 * 96 + first % 16];
+  const float* box = sides_of_groups(mesh, first);
   return {{hn::Load(f, box), hn::Load(f, box + 16), hn::Load(f, box + 32)},
           {hn::Load(f, box + 48), hn::Load(f, box + 64), hn::Load(f, box + 80)}};
 }
 
-// A depth in steps of a sixteenth of an octave, fine enough for an order that only saves time.
-HWY_INLINE std::int32_t depth_step(float depth) {
-  return static_cast<std::int32_t>(sortable(depth) >> 19);
+// Depths in steps of a sixteenth of an octave, fine enough for an order that only saves time.
+HWY_INLINE VI depth_steps(VF depths) {
+  const I i32;
+  const VI bits = hn::BitCast(i32, depths);
+  // As whole numbers negative floats fall where they rise.
+  const VI turned = hn::And(hn::BroadcastSignBit(bits), hn::Set(i32, 0x7fffffff));
+  return hn::ShiftRight<19>(hn::Xor(bits, turned));
 }
 
-// Appends those of groups first … whose bits are set. Depths are told apart from step `nearest_step` on.
-HWY_INLINE void append_groups(MeshScratch& s, std::size_t first, const WideBoxes& boxes, VF nearest,
-                              std::int32_t nearest_step, std::uint32_t those) {
+// Appends those of groups first … that are in view, of which `count` are known. Writes up to a vector more.
+// Depths are told apart from `nearest` on. Returns how many they are.
+HWY_INLINE std::size_t append_groups(const OccluderTopology& mesh, std::size_t first, hn::Mask<F> in,
+                                     VF depths, float nearest, std::size_t count, MeshScratch& s) {
   const F f;
-  alignas(64) std::array<std::array<float, 16>, 7> out;
-  hn::Store(hn::Sub(boxes.middle.x, boxes.half.x), f, out[0].data());
-  hn::Store(hn::Sub(boxes.middle.y, boxes.half.y), f, out[1].data());
-  hn::Store(hn::Sub(boxes.middle.z, boxes.half.z), f, out[2].data());
-  hn::Store(hn::Add(boxes.middle.x, boxes.half.x), f, out[3].data());
-  hn::Store(hn::Add(boxes.middle.y, boxes.half.y), f, out[4].data());
-  hn::Store(hn::Add(boxes.middle.z, boxes.half.z), f, out[5].data());
-  hn::Store(nearest, f, out[6].data());
-  for (; those != 0; those &= those - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(those));
-    const std::size_t place = s.group.size();
-    const std::int32_t step = std::clamp(depth_step(out[6][i]) - nearest_step, 0, 255);
-    s.near_first.push_back(static_cast<std::uint64_t>(step) << 56 | place);
-    for (std::size_t side = 0; side < 6; ++side) s.box[side][place] = out[side][i];
-    s.group.push_back(static_cast<std::uint32_t>(first + i));
+  const I i32;
+  const float* box = sides_of_groups(mesh, first);
+  for (std::size_t axis = 0; axis < 3; ++axis, box += 16) {
+    const VF middle = hn::Load(f, box), half = hn::Load(f, box + 48);
+    store_kept(f, hn::Sub(middle, half), in, &s.box[axis][count]);
+    store_kept(f, hn::Add(middle, half), in, &s.box[axis + 3][count]);
   }
+  const VI steps = hn::Sub(depth_steps(depths), depth_steps(hn::Set(f, nearest))),
+           step = hn::Min(hn::Max(steps, hn::Zero(i32)), hn::Set(i32, MeshScratch::kSteps - 1));
+  const hn::RebindToUnsigned<F> u32;
+  const auto these = hn::RebindMask(u32, in);
+  store_kept(u32, hn::BitCast(u32, step), these, &s.step[count]);
+  return store_kept(u32, hn::Iota(u32, static_cast<std::uint32_t>(first)), these, &s.group[count]);
+}
+
+// The order of the groups in view by their steps.
+inline void sort_groups(MeshScratch& s) {
+  std::array<std::uint32_t, MeshScratch::kSteps> place{};
+  for (std::size_t i = 0; i < s.in_view; ++i) ++place[s.step[i]];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& its : place) its = std::exchange(sum, sum + its);
+  for (std::size_t i = 0; i < s.in_view; ++i)
+    s.near_first[place[s.step[i]]++] = static_cast<std::uint32_t>(i);
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
@@ -87,8 +102,7 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh) {
   const F f;
   const ViewRows view = view_rows(tiles);
   MeshScratch& s = *tiles.mesh;
-  const std::int32_t nearest_step = depth_step(std::fabs(tiles.rays.near_plane.w));
-  s.group.clear(), s.near_first.clear();
+  s.in_view = 0;
   for (std::size_t first = 0; first < mesh.groups.size(); first += hn::Lanes(f)) {
     const WideBoxes boxes = boxes_of_groups(mesh, first);
     const VPoints q = about_eye(tiles.projection, boxes.middle);
@@ -98,11 +112,10 @@ HWY_NOINLINE void find_groups(DepthTiles& tiles, const OccluderTopology& mesh) {
       if (hn::AllFalse(f, in)) break;
     }
     if (hn::AllFalse(f, in)) continue;
-    const VF nearest = hn::Sub(dot_row(view.depth, q), size_along(view.depth, boxes.half));
-    if (const std::uint32_t those = bits_of(f, in))
-      append_groups(s, first, boxes, nearest, nearest_step, those);
+    const VF depths = hn::Sub(dot_row(view.depth, q), size_along(view.depth, boxes.half));
+    s.in_view += append_groups(mesh, first, in, depths, std::fabs(tiles.rays.near_plane.w), s.in_view, s);
   }
-  sort_by_high_bits(s.near_first, s.other, 56);
+  sort_groups(s);
 }
 
 }  // namespace sightline::occlusion::HWY_NAMESPACE

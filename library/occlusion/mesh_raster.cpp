@@ -34,9 +34,11 @@ struct Piece {
   // edge(triangle, k) for each edge of the polygon.
   template <class Visit>
   HWY_INLINE void for_edges(const Visit& edge) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::uint32_t outer = bits() & ~inner[k]; outer != 0; outer &= outer - 1)
-        edge(static_cast<std::size_t>(std::countr_zero(outer)), k);
+    std::uint64_t outer = 0;  // one loop, whose end is hard to guess, rather than three
+    for (std::size_t k = 0; k < 3; ++k) outer |= std::uint64_t{bits() & ~inner[k]} << kGroup * k;
+    for (; outer != 0; outer &= outer - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(outer));
+      edge(at % kGroup, at / kGroup);
     }
   }
 };
@@ -266,25 +268,28 @@ void draw_triangles(DepthTiles& tiles, const OccluderTopology& mesh, MeshBudget*
   find_groups(tiles, mesh);
   const MeshScratch& s = *tiles.mesh;
   TileList<1> list;
-
-  for (std::size_t first = 0; first < s.near_first.size(); first += kGroupsAtOnce) {
-    const std::size_t count = std::min(kGroupsAtOnce, s.near_first.size() - first);
+  const bool alone = tiles.first_row == 0 && tiles.end_row == tiles.height;
+  for (std::size_t first = 0; first < s.in_view; first += kGroupsAtOnce) {
+    const std::size_t count = std::min(kGroupsAtOnce, s.in_view - first);
     if (budget && !budget->pay(static_cast<double>(count) * budget->query)) return;
-    const auto place = [&](std::size_t i) { return static_cast<std::uint32_t>(s.near_first[first + i]); };
+    const std::uint32_t* place = &s.near_first[first];
+    const auto group_at = [&](std::size_t i) { return s.group[place[i]]; };
     std::array<std::array<float, kGroupsAtOnce>, 6> box;
     for (std::size_t side = 0; side < 6; ++side) {
-      for (std::size_t i = 0; i < count; ++i) box[side][i] = s.box[side][place(i)];
+      for (std::size_t i = 0; i < count; ++i) box[side][i] = s.box[side][place[i]];
     }
     std::array<std::uint8_t, kGroupsAtOnce> visible;
     query_boxes(tiles, tiles.projection, geometry::span_of(box, count), visible.data());
     for (std::size_t i = 0; i < count; ++i) {
       if (budget && visible[i]) visible[i] = budget->pay(static_cast<double>(kGroup) * budget->triangle);
-      if (visible[i]) prefetch_group(mesh, s.group[place(i)]);
+      if (visible[i]) prefetch_group(mesh, group_at(i));
     }
+    std::size_t drawn = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (visible[i]) draw_group(tiles, mesh, s.group[place(i)], budget, list);
+      if (visible[i]) draw_group(tiles, mesh, group_at(i), budget, list), ++drawn;
     }
     draw_listed(tiles, list);
+    if (alone) note_drawn(tiles, drawn);
   }
 }
 
@@ -315,8 +320,9 @@ std::optional<DepthTiles> placed(const DepthTiles& tiles, const ExactAffine& pla
 void make_ready(MeshScratch& s, const DepthTiles& tiles, const OccluderTopology& mesh) {
   const std::size_t groups = mesh.groups.size();
   if (s.known.size() < groups) {
-    for (auto& side : s.box) side.resize(groups);
-    s.group.reserve(groups), s.near_first.reserve(groups), s.other.reserve(groups);
+    const std::size_t room = groups + OccluderTopology::kGroup;
+    for (auto& side : s.box) side.resize(room);
+    for (auto* list : {&s.group, &s.step, &s.near_first}) list->resize(room, 0);
     s.facing.resize(groups * OccluderTopology::kGroup);
     s.slant.resize(groups * OccluderTopology::kGroup);
     s.known.resize(groups, s.turn);
@@ -371,6 +377,7 @@ void draw_mesh(DepthTiles& tiles, TileMemory& memory, const OccluderTopology& me
   jobs.run(
       jobs.user, count, [](void* data, std::uint32_t job) { static_cast<MeshBands*>(data)->draw(job); },
       &bands);
+  note_drawn(tiles, std::size_t{tiles.columns} * tiles.rows);
   if (!kSharesByCost) return;
   drawn.note(scratch, tiles.rows);
   for (MeshScratch& s : scratch) s.cost_steps.clear();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "library/geometry/mutant.h"
 #include "library/occlusion/depth_tiles.hpp"
 
 namespace sightline {
@@ -29,7 +30,11 @@ void set_size(DepthTiles& t, TileMemory& memory, std::uint32_t width, std::uint3
   t.columns = (t.width + kTile - 1) / kTile, t.rows = (t.height + kTile - 1) / kTile;
   t.stride = (t.columns + 15) / 16 * 16 + 16;
   const std::size_t tiles = std::size_t{t.stride} * t.rows;
-  memory.farthest.assign(tiles, kInfinity);
+  t.level_rows = (t.rows + 15) / 16 * 16;
+  memory.farthest.resize(std::size_t{t.stride} * 2 * t.level_rows);
+  if (!SIGHTLINE_MUTANT(coarse_tiles_kept)) memory.coarse = {};
+  t.coarse = &memory.coarse;
+  std::fill_n(memory.farthest.begin(), tiles, kInfinity);
   for (std::uint32_t row = 0; row < t.rows; ++row) {
     std::fill_n(memory.farthest.begin() + std::size_t{row} * t.stride, t.columns, -kInfinity);
   }

@@ -13,14 +13,6 @@
 #include "library/occlusion/convex.hpp"
 #include "library/occlusion/image-inl.hpp"
 
-// What is called from two places is inlined in both, but not in WebAssembly, which a page's readers load.
-#undef SIGHTLINE_INLINE_IN_BOTH
-#if HWY_TARGET == HWY_WASM
-#define SIGHTLINE_INLINE_IN_BOTH HWY_NOINLINE inline
-#else
-#define SIGHTLINE_INLINE_IN_BOTH HWY_INLINE
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion::HWY_NAMESPACE {
 
@@ -34,7 +26,8 @@ struct TileRange {
 };
 
 // The tiles that hold the pixel centres of a rectangle, in pixels; none where there is no such centre.
-HWY_INLINE TileRange tiles_of(const DepthTiles& tiles, float left, float right, float top, float bottom) {
+SIGHTLINE_INLINE_IN_BOTH TileRange tiles_of(const DepthTiles& tiles, float left, float right, float top,
+                                            float bottom) {
   const auto first = [](float low, std::uint32_t least) {
     return std::ceil(std::max(low, static_cast<float>(least) + 0.5f) - 0.5f);
   };

@@ -167,6 +167,7 @@ HWY_EXPORT(draw_all_spheres);
 
 void draw_spheres(DepthTiles& tiles, std::span<const Sphere> spheres) noexcept {
   HWY_DYNAMIC_DISPATCH(draw_all_spheres)(tiles, spheres);
+  note_drawn(tiles, spheres.size());
 }
 
 }  // namespace sightline::occlusion

@@ -118,6 +118,7 @@ void ReceiverMask::write(OcclusionBuffer& buffer) const {
       t.plane.base[tile] = -kNowhere, t.farthest[tile] = least, t.nearest[tile] = most;
     }
   }
+  occlusion::note_drawn(t, std::size_t{t.columns} * t.rows);
 }
 
 }  // namespace sightline::world
