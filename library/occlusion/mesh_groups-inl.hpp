@@ -87,14 +87,24 @@ HWY_INLINE std::size_t append_groups(const OccluderTopology& mesh, std::size_t f
   return store_kept(u32, hn::Iota(u32, static_cast<std::uint32_t>(first)), these, &s.group[count]);
 }
 
-// The order of the groups in view by their steps.
+// The order of the groups in view by their steps. Most meshes are small, and counting all steps would take
+// longer than drawing them.
 inline void sort_groups(MeshScratch& s) {
+  constexpr std::size_t kFew = 16;
+  if (s.in_view <= kFew) {
+    for (std::uint32_t i = 0; i < s.in_view; ++i) {
+      std::uint32_t at = i;
+      for (; at > 0 && s.step[s.near_first[at - 1]] > s.step[i]; --at)
+        s.near_first[at] = s.near_first[at - 1];
+      s.near_first[at] = i;
+    }
+    return;
+  }
   std::array<std::uint32_t, MeshScratch::kSteps> place{};
   for (std::size_t i = 0; i < s.in_view; ++i) ++place[s.step[i]];
   std::uint32_t sum = 0;
   for (std::uint32_t& its : place) its = std::exchange(sum, sum + its);
-  for (std::size_t i = 0; i < s.in_view; ++i)
-    s.near_first[place[s.step[i]]++] = static_cast<std::uint32_t>(i);
+  for (std::uint32_t i = 0; i < s.in_view; ++i) s.near_first[place[s.step[i]]++] = i;
 }
 
 // The groups that the image may hold, near ones first. A group left out by mistake would only hide less.
