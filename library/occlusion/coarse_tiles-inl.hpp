@@ -29,20 +29,15 @@ SIGHTLINE_INLINE_IN_BOTH VF farthest_within(const DepthTiles& tiles, const Pixel
   if (hn::AllFalse(I(), r.many)) return least_at_corners(tiles, tiles.farthest, r);
   const I i32;
   const VI level = level_of(r), known = hn::Set(i32, static_cast<std::int32_t>(tiles.coarse->levels)),
-           at = hn::Min(level, known), stride = hn::Set(i32, static_cast<std::int32_t>(tiles.stride)),
-           rows = hn::Set(i32, static_cast<std::int32_t>(2 * tiles.level_rows));
+           at = hn::Min(level, known), rows = hn::Set(i32, static_cast<std::int32_t>(2 * tiles.level_rows));
   // Shifts by a number a lane are dear where they are no instruction; floats hold all of these numbers.
   const VF part = hn::BitCast(f, hn::ShiftLeft<23>(hn::Sub(hn::Set(i32, 127), at)));
   const auto of_level = [&](VI of_tiles) HWY_ATTR {
     return hn::ConvertTo(i32, hn::Mul(hn::ConvertTo(f, of_tiles), part));
   };
-  const VI first = hn::Sub(rows, of_level(rows)), column0 = of_level(r.tx0), column1 = of_level(r.tx1),
-           row0 = hn::Mul(hn::Add(first, of_level(r.ty0)), stride),
-           row1 = hn::Mul(hn::Add(first, of_level(r.ty1)), stride);
-  const auto of = [&](VI row, VI column)
-                      HWY_ATTR { return hn::GatherIndex(f, tiles.farthest, hn::Add(row, column)); };
-  const VF least =
-      hn::Min(hn::Min(of(row0, column0), of(row0, column1)), hn::Min(of(row1, column0), of(row1, column1)));
+  const VI first = hn::Sub(rows, of_level(rows));
+  const VF least = least_where_crossed(tiles, tiles.farthest, of_level(r.tx0), of_level(r.tx1),
+                                       hn::Add(first, of_level(r.ty0)), hn::Add(first, of_level(r.ty1)));
   return hn::IfThenElse(hn::RebindMask(f, hn::Gt(level, known)), hn::Set(f, -kInfinity), least);
 }
 

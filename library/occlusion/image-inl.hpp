@@ -166,12 +166,19 @@ HWY_INLINE PixelRanges pixel_ranges(const PixelBounds& bounds, hn::Mask<F> asked
   return out;
 }
 
-// The least value of the tiles at the corners, which are all tiles of a small rectangle.
-SIGHTLINE_INLINE_IN_BOTH VF least_at_corners(const DepthTiles& tiles, const float* of, const PixelRanges& r) {
+// The least value at the places where two columns cross two rows.
+SIGHTLINE_INLINE_IN_BOTH VF least_where_crossed(const DepthTiles& tiles, const float* of, VI column0,
+                                                VI column1, VI row0, VI row1) {
   const VI stride = hn::Set(I(), static_cast<std::int32_t>(tiles.stride));
-  const VI row0 = hn::Mul(r.ty0, stride), row1 = hn::Mul(r.ty1, stride);
+  row0 = hn::Mul(row0, stride), row1 = hn::Mul(row1, stride);
   const auto at = [&](VI row, VI column) HWY_ATTR { return hn::GatherIndex(F(), of, hn::Add(row, column)); };
-  return hn::Min(hn::Min(at(row0, r.tx0), at(row0, r.tx1)), hn::Min(at(row1, r.tx0), at(row1, r.tx1)));
+  return hn::Min(hn::Min(at(row0, column0), at(row0, column1)),
+                 hn::Min(at(row1, column0), at(row1, column1)));
+}
+
+// The least value of the tiles at the corners, which are all tiles of a small rectangle.
+HWY_INLINE VF least_at_corners(const DepthTiles& tiles, const float* of, const PixelRanges& r) {
+  return least_where_crossed(tiles, of, r.tx0, r.tx1, r.ty0, r.ty1);
 }
 
 // Rounding of x, y and w, where it matters on which side of the image a point lies.
