@@ -4,10 +4,10 @@
 # faults planted there that some test must find, what uses threads under ThreadSanitizer, a short run of each fuzz target,
 # the structure, layout, clones (jscpd), the kernels by clang and clang-tidy's findings, what the documents show, the
 # installed packages as their users see them, the npm package, and what the library answers on ARM and WebAssembly. --full
-# adds what takes longer: every test under the sanitizers, a thousand views of more scenes, the library's tests on the
-# ports, and its build on a bare Debian; and writes build/full/RESULTS.csv, a row a line: commit, line, seconds, result.
-# It takes hours. Cut off and begun again, it goes on behind the lines that have passed on this commit; without that file
-# it begins anew.
+# adds what takes longer: every test under the sanitizers, and all rounds of long ones, a thousand views of more scenes, the
+# library's tests on the ports, and its build on a bare Debian; and writes build/full/RESULTS.csv, a row a line: commit,
+# line, seconds, result. It takes hours. Cut off and begun again, it goes on behind the lines that have passed on this
+# commit; without that file it begins anew.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/packages.sh
@@ -104,10 +104,10 @@ stage "sanitizers"
 cmake --preset asan >/dev/null
 cmake --build --preset asan --target tests_of_input fuzzers
 # Of these the ones that are large rather than tricky run there in --full, too: they take minutes, and smaller ones run
-# the same code.
+# the same code; and of tests of many random rounds one round in four, of which a release build ran all above.
 checked='^(geometry|frustum|rays|occlusion|world|snapshots|c|pvs|scene|submission|partition|io|camera|methods)[.]'
 large='AMillionObjects|Conformance.*(forest|irregular|regular)|FiveModels'
-ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
+SIGHTLINE_ONE_ROUND_IN=4 ctest --preset asan -j"$(nproc)" -R "$checked" -E "$large|c[.]abi|c[.]symbols"
 
 joined "installed packages"
 
@@ -116,15 +116,7 @@ scripts/check-mutants.sh build/release build/asan
 ctest --preset asan -j"$(nproc)" -L mutants-in-gate
 
 stage "threads"
-cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target threads_tests
-# Half of the tests on either core.
-export GTEST_TOTAL_SHARDS=2
-GTEST_SHARD_INDEX=1 build/tsan/tests/threads_tests --gtest_brief=1 &
-half=$!
-GTEST_SHARD_INDEX=0 build/tsan/tests/threads_tests --gtest_brief=1
-wait $half
-unset GTEST_TOTAL_SHARDS
+SIGHTLINE_ONE_ROUND_IN=4 scripts/check-threads.sh
 
 stage "fuzzers"
 fuzz/run.sh "${FUZZ_SECONDS:-6}" build/asan

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # check-package.sh BUILD: what users get. Installs BUILD into a scratch root, and builds and runs the examples against it:
-# by find_package and by pkg-config, in C++, C and Python. The same again from the Debian packages that cpack makes, each
-# of which holds what it should and nothing of another. And the tree as a part of another, in a folder whose name has a space.
+# by find_package and by pkg-config, in C++, C and Python. The Debian packages that cpack makes hold the same files, each its
+# own and nothing of another, and what is linked runs by theirs, too. And the tree as a part of another, in a folder whose
+# name has a space.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scratch=$(mktemp -d)
@@ -24,10 +25,9 @@ build_example() {
 export scratch
 export -f build_example
 
-# consume ROOT PYTHON: builds and runs the examples against the installed prefix and the folder of its Python module.
-consume() {
-  local root=$1 python=$2 example pc
-  rm -rf "$scratch/build"
+# build_examples ROOT: against the installed prefix, by find_package and by pkg-config. Runs those that need nothing more.
+build_examples() {
+  local root=$1 pc flags example
   # One file each: as many at once as there are cores.
   printf '%s\n' frustum world my_structs lod instances snapshot ranges shadows shadows_and_stereo own_jobs c c_occluder c_automatic method |
     xargs -P "$(nproc)" -I '{}' bash -c 'build_example "$@"' build_example "$root" '{}'
@@ -41,13 +41,8 @@ consume() {
   says "throw a shadow there" "$scratch/build/shadows/shadows"
   says "for the eyes" "$scratch/build/shadows_and_stereo/shadows_and_stereo"
   says "3 jobs: draw [0-9]* of 100000 boxes" "$scratch/build/own_jobs/own_jobs"
-  says "of 100000 things" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c/my_structs"
-  says "20000 triangles: [1-9][0-9]* occlude" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c_occluder/occluder"
-  says "the gate is shut: draw 1 of 4000" env LD_LIBRARY_PATH="$root/lib" "$scratch/build/c_automatic/automatic"
   says "of 30000 trees in [0-9]* calls" "$scratch/build/method/method"
-
   pc=$(dirname "$(find "$root" -name sightline.pc)")
-  local flags
   flags=$(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs sightline)
   # shellcheck disable=SC2086
   cc -std=c99 -Wall -Wextra -Werror examples/c/main.c $flags -o "$scratch/my_structs"
@@ -55,14 +50,22 @@ consume() {
   for example in frustum world; do
     g++ -std=c++20 -Wall -Wextra -Werror examples/$example/main.cpp $flags -o "$scratch/$example"
   done
-  says "of 100000 things" env LD_LIBRARY_PATH="$pc/.." "$scratch/my_structs"
-  says "of 30000 trees" env LD_LIBRARY_PATH="$pc/.." "$scratch/frustum"
-  says "frame 2: draw [0-9]* of 100000 boxes" env LD_LIBRARY_PATH="$pc/.." "$scratch/world"
+}
 
-  says "frame 2: draw [0-9]* of 100000 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/my_structs.py
-  says "500 m" env PYTHONPATH="$python" /usr/bin/python3 examples/python/flight.py
-  says "its occluder [3-9][0-9]" env PYTHONPATH="$python" /usr/bin/python3 examples/python/occluder.py
-  says "frame 1: draw [0-9]* of 4225 things" env PYTHONPATH="$python" /usr/bin/python3 examples/python/automatic.py
+# run_linked ROOT: what runs by the prefix's shared library, Python module and program.
+run_linked() {
+  local root=$1
+  local linked=(env LD_LIBRARY_PATH="$root/lib") python=(env PYTHONPATH="$root/lib/python3/dist-packages" /usr/bin/python3)
+  says "of 100000 things" "${linked[@]}" "$scratch/build/c/my_structs"
+  says "20000 triangles: [1-9][0-9]* occlude" "${linked[@]}" "$scratch/build/c_occluder/occluder"
+  says "the gate is shut: draw 1 of 4000" "${linked[@]}" "$scratch/build/c_automatic/automatic"
+  says "of 100000 things" "${linked[@]}" "$scratch/my_structs"
+  says "of 30000 trees" "${linked[@]}" "$scratch/frustum"
+  says "frame 2: draw [0-9]* of 100000 boxes" "${linked[@]}" "$scratch/world"
+  says "frame 2: draw [0-9]* of 100000 things" "${python[@]}" examples/python/my_structs.py
+  says "500 m" "${python[@]}" examples/python/flight.py
+  says "its occluder [3-9][0-9]" "${python[@]}" examples/python/occluder.py
+  says "frame 1: draw [0-9]* of 4225 things" "${python[@]}" examples/python/automatic.py
   says "object-frustum" "$root/bin/sightline" methods
 }
 
@@ -81,7 +84,8 @@ holds() {
 }
 
 cmake --install "$1" --prefix "$scratch/root" >/dev/null
-consume "$scratch/root" "$scratch/root/lib/python3/dist-packages"
+build_examples "$scratch/root"
+run_linked "$scratch/root"
 scripts/check-symbols.sh "$(echo "$scratch"/root/lib/libsightline.so.*.*.*)" "$scratch/root/lib/libsightline.a"
 echo "installed tree: the examples build by find_package and by pkg-config and run, in C++, C and Python"
 
@@ -94,7 +98,11 @@ holds python3-sightline 'lib/python3/dist-packages/sightline\.' 'lib/python3/dis
 holds sightline 'bin/sightline$|include/sightline/workbench/|lib/(libsightline_workbench\.a$|cmake/sightline/sightline_workbench_targets)' \
   'bin/sightline' 'include/sightline/workbench/method\.hpp' 'lib/libsightline_workbench\.a'
 for package in "$scratch"/deb/*.deb; do dpkg-deb -x "$package" "$scratch/debian"; done
-consume "$scratch/debian/usr" "$scratch/debian/usr/lib/python3/dist-packages"
+# Byte by byte what was installed, but for what is stripped: of that nobody knows before it runs.
+others=$(diff -rq "$scratch/root" "$scratch/debian/usr" |
+  grep -vE "^Files $scratch/root/(bin/sightline|lib/libsightline\.so[.0-9]*|lib/python3/dist-packages/sightline\.[^/]*\.so) and ") || true
+[ -z "$others" ] || { echo "the Debian packages are other than what is installed: $others"; exit 1; }
+run_linked "$scratch/debian/usr"
 echo "Debian packages: $(cd "$scratch/deb" && echo *.deb): the same"
 
 # Some of it is built: the rest has the same options.

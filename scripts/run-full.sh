@@ -24,6 +24,7 @@ line() {
 
 sanitizers() { cmake --build --preset asan && ctest --preset asan -j"$(nproc)"; }
 line sanitizers sanitizers
+line threads scripts/check-threads.sh
 random_scenes() (
   export SIGHTLINE_RANDOM_SCENES=20000
   build/release/tests/occlusion_tests --gtest_brief=1 --gtest_filter='RandomScenes.*' &&

@@ -15,6 +15,7 @@
 #include "library/geometry/linear.hpp"
 #include "support/exact_rays.hpp"
 #include "support/occluder_meshes.hpp"
+#include "support/rounds.hpp"
 #include "support/small_scenes.hpp"
 #include "workbench/scene/random.hpp"
 
@@ -118,7 +119,7 @@ TEST(Coverage, HidesNothingThatAnyPlaceSees) {
   for (const OcclusionOptions& options : {kArea, kHalf, kHalfCentres}) {
     Random random(32);
     std::size_t hidden = 0, asked = 0;
-    for (int round = 0; round < 24; ++round) {
+    for (std::uint32_t round = 0; round < test::rounds(24); ++round) {
       const View view = test::small_view(random);
       const ExactRays rays(view);
       std::vector<Box> occluders;
@@ -265,7 +266,7 @@ TEST(Coverage, OfMeshesThatTheNearPlaneOpensIsSafeAtAnyPlace) {
   const scene::Shape shapes[] = {scene::sphere(2), test::fine_box({{-1, -1, -1}, {1, 1, 1}}, 3)};
   Random random(37);
   Held held;
-  for (int round = 0; round < 24; ++round) {
+  for (std::uint32_t round = 0; round < test::rounds(24); ++round) {
     const scene::Shape& shape = shapes[round % 2];
     const Vec3 away = random.direction();
     Camera camera;
@@ -306,7 +307,7 @@ TEST(Coverage, OfANarrowBladeThatTheNearPlaneCutsIsSafeAtAnyPlace) {
 
 TEST(Coverage, OfTrianglesThatMeetAnyhowIsSafeAtAnyPlace) {
   Random random(34);
-  for (int round = 0; round < 25; ++round) {
+  for (std::uint32_t round = 0; round < test::rounds(25); ++round) {
     const scene::Shape shape = test::loose_triangles(random, 14, 30);
     share_drawn(shape, round % 2 == 0 ? Sides::both : Sides::front, TJunctions::closed, kArea);
   }
@@ -353,7 +354,7 @@ TEST(Coverage, OfMeshesThatAreSkewedIsNoNearerThanTheyAre) {
   for (const double least : {1.0, 0.6, 0.3, 0.15, 0.07, 1e-3, 1e-5, 0.0}) {
     Random random(41);
     Held held;
-    for (int round = 0; round < 60; ++round) {
+    for (std::uint32_t round = 0; round < test::rounds(60); ++round) {
       const auto turn = [&] {
         const Vec3 axis = random.direction();
         return glm::dmat3(

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "support/random_views.hpp"
+#include "support/rounds.hpp"
 #include "support/snapshots.hpp"
 #include "support/world_twin.hpp"
 
@@ -124,7 +125,7 @@ void expect_like(Saved& played, World& loaded, bool in_order) {
 }
 
 TEST(Snapshot, AWorldThatWasLoadedIsTheWorldThatWasSaved) {
-  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(150); ++seed) {
     SCOPED_TRACE(seed);
     Saved played(seed);
     played.insert(seed % 10 == 0 ? 6000 : 20 + 7 * (seed % 60));

@@ -11,6 +11,7 @@
 #include "library/world/world_state.hpp"
 #include "support/cull.hpp"
 #include "support/random_views.hpp"
+#include "support/rounds.hpp"
 #include "support/run_threads.hpp"
 #include "support/solid_boxes.hpp"
 
@@ -210,7 +211,7 @@ private:
 // Of 1,000 worlds each feature has a third alone, and they have a third together.
 TEST(Distances, AndLayersLeaveWhatBruteForceLeaves) {
   std::size_t kept = 0, could = 0, unknown = 0;
-  for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(1000); ++seed) {
     Twins twins(seed, seed % 3 != 0, seed % 3 != 1);
     twins.insert(seed % 50 == 0 ? 2500 : 20 + seed % 400);
     for (int frame = 0; frame < 3; ++frame) {

@@ -13,6 +13,7 @@
 #include "library/geometry/linear.hpp"
 #include "support/cull.hpp"
 #include "support/random_views.hpp"
+#include "support/rounds.hpp"
 #include "support/solid_boxes.hpp"
 
 namespace sightline {
@@ -63,7 +64,7 @@ std::uint64_t written_for(const World& world, const CullView& view, std::uint64_
 TEST(Inspector, CountsWhatEachTestDropsInAThousandRandomViews) {
   CullInspector inspector;
   ViewStats sum;
-  for (std::uint32_t seed = 0; seed < 350; ++seed) {
+  for (std::uint32_t seed = 0; seed < test::rounds(350); ++seed) {
     Random random(seed);
     const Columned worlds(random, seed % 10 == 0);
     std::vector<CullView> views;

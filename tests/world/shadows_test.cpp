@@ -9,6 +9,7 @@
 
 #include "support/cull.hpp"
 #include "support/random_views.hpp"
+#include "support/rounds.hpp"
 #include "support/run_threads.hpp"
 #include "support/shadow_points.hpp"
 #include "support/solid_boxes.hpp"
@@ -204,7 +205,8 @@ bool visible_point(const Standing& s, const Case& c, std::uint32_t x, std::uint3
 
 TEST(ShadowCasters, LoseNobodyWhoShadesWhatIsVisible) {
   std::size_t casting = 0, by_planes = 0, by_objects = 0, by_depth = 0, unsure = 0;
-  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+  const std::uint32_t cases = test::rounds(400);
+  for (std::uint32_t seed = 0; seed < cases; ++seed) {
     Random random(5000 + seed);
     const Case c = random_case(random);
     const Standing s = standing_about(random, c.camera.origin, 60 + random.below(200));
@@ -237,7 +239,7 @@ TEST(ShadowCasters, LoseNobodyWhoShadesWhatIsVisible) {
           left.contains(s.handles[i].index) != casters.may_cast(s.boxes[i]))
         ++unsure;  // rounding decides
   }
-  EXPECT_GT(casting, 3000u);
+  EXPECT_GT(casting, 7 * cases);
   EXPECT_LT(by_objects, by_planes);
   EXPECT_LT(by_depth, by_objects);
   EXPECT_LT(unsure, by_depth / 100);
