@@ -179,10 +179,14 @@ HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, 
       left_out, list);
 }
 
-HWY_INLINE void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
-                             TileList<1>& list) {
-  constexpr Bands kNoBands{};
-  list_polygon(tiles, polygon, range, kNoBands, kNoPixels, false, list);
+// Lists all of a polygon.
+HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                      TileList<1>& list) {
+  if (!polygon.has_left || !polygon.has_right) return;
+  list_spans(
+      tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
+      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
+      list);
 }
 
 // How far a polygon is moved away for its neighbours' sake, where a pixel's margin counts: what it shares

@@ -98,7 +98,8 @@ HWY_INLINE std::size_t append_places(std::uint32_t first, std::uint32_t bits, st
 // Lists those of a step's tiles, whose pixels the list has at its end, in which its last shape shows, but
 // those that its plane covers.
 template <std::size_t kPlanes>
-HWY_INLINE void take_step(DepthTiles& tiles, const Step& step, const Held& held, TileList<kPlanes>& list) {
+SIGHTLINE_INLINE_IN_BOTH void take_step(DepthTiles& tiles, const Step& step, const Held& held,
+                                        TileList<kPlanes>& list) {
   const F f;
   const auto size = static_cast<std::uint32_t>(list.size);
   const PlaneTile<kPlanes>& of = list.shapes[list.shape_count - 1];
