@@ -4,6 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target threads_tests
+trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
 # Half of the tests on either core.
 export GTEST_TOTAL_SHARDS=2
 GTEST_SHARD_INDEX=1 build/tsan/tests/threads_tests --gtest_brief=1 &

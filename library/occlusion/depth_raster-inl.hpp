@@ -165,6 +165,15 @@ constexpr Convex kNoPixels = [] {
   return out;
 }();
 
+template <class LeftOut>
+HWY_INLINE void list_polygon_but(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
+                                 LeftOut& left_out, TileList<1>& list) {
+  list_spans(
+      tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
+      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
+      left_out, list);
+}
+
 // Lists a polygon, but for the pixels of some bands that are none of `middle`, the part of it that it covers
 // alone; without those of the middle, too, where that is drawn already.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
@@ -173,20 +182,16 @@ HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, 
   if (!polygon.has_left || !polygon.has_right) return;
   BandsLeftOut left_out(tiles, without, middle.has_left && middle.has_right ? middle : kNoPixels,
                         without_middle);
-  list_spans(
-      tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
-      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
-      left_out, list);
+  list_polygon_but(tiles, polygon, range, left_out, list);
 }
 
-// Lists all of a polygon.
+// Lists all of it: where only pixel centres count nothing is left out, and room for bands would take its
+// time in every step.
 HWY_NOINLINE inline void list_polygon(DepthTiles& tiles, const Convex& polygon, const TileRange& range,
                                       TileList<1>& list) {
   if (!polygon.has_left || !polygon.has_right) return;
-  list_spans(
-      tiles, Planes<1>{{polygon.at}, {polygon.across}, {polygon.down}}, range,
-      [&](float first_y) HWY_ATTR { return spans_of(polygon, first_y, static_cast<float>(tiles.width)); },
-      list);
+  NothingLeftOut nothing;
+  list_polygon_but(tiles, polygon, range, nothing, list);
 }
 
 // How far a polygon is moved away for its neighbours' sake, where a pixel's margin counts: what it shares

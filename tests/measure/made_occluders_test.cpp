@@ -17,14 +17,17 @@
 namespace sightline::measure {
 namespace {
 
+std::uint32_t asked(const char* name, std::uint32_t otherwise) {
+  return static_cast<std::uint32_t>(test::number_in(name, otherwise));
+}
+
 // The least and the mean of what the meshes' occluders cover.
 struct Covered {
   double least = 1, mean = 0;
 };
 
 Covered examine_all(const std::vector<test::NamedMesh>& meshes, Sides sides) {
-  const std::uint32_t views = test::number_in("SIGHTLINE_OCCLUDER_VIEWS", 4),
-                      pixels = test::number_in("SIGHTLINE_OCCLUDER_PIXELS", 256);
+  const auto views = asked("SIGHTLINE_OCCLUDER_VIEWS", 4), pixels = asked("SIGHTLINE_OCCLUDER_PIXELS", 256);
   Covered out;
   for (const test::NamedMesh& mesh : meshes) {
     Scene scene;
@@ -94,7 +97,7 @@ scene::Shape mess(scene::Random& random) {
 TEST_P(MadeOccluders, OfMessesCoverNothingBesideThem) {
   scene::Random random(GetParam() == Sides::both ? 5 : 6);
   std::size_t some = 0;
-  for (std::uint32_t round = 0; round < test::number_in("SIGHTLINE_OCCLUDER_VIEWS", 12); ++round) {
+  for (std::uint32_t round = 0; round < asked("SIGHTLINE_OCCLUDER_VIEWS", 12); ++round) {
     Scene scene;
     const scene::Shape shape = mess(random);
     scene.add_object(scene.add_mesh(shape.positions, {}, shape.indices), {}, {Surface::opaque, GetParam()});
@@ -162,8 +165,7 @@ TEST(MadeOccluders, StandInAFileWhereTheirObjectsStand) {
 
 // What files of the readers' tests hold: patches, doors and flares of a level, a lone triangle.
 TEST(MadeOccluders, OfFilesCoverNothingBesideTheirMeshes) {
-  const std::uint32_t views = test::number_in("SIGHTLINE_OCCLUDER_VIEWS", 3),
-                      pixels = test::number_in("SIGHTLINE_OCCLUDER_PIXELS", 128);
+  const auto views = asked("SIGHTLINE_OCCLUDER_VIEWS", 3), pixels = asked("SIGHTLINE_OCCLUDER_PIXELS", 128);
   for (const Scene& scene : {read_bsp(samples::to_bsp(samples::two_rooms()), "two rooms"),
                              read_gltf(samples::to_bytes(samples::one_triangle()), "triangle")}) {
     std::uint64_t covered = 0;

@@ -223,7 +223,7 @@ inline bool shows_front(const View& view, const Corners& t) {
 /// Looks at random scenes until one fails: how many, unless SIGHTLINE_RANDOM_SCENES says, from
 /// SIGHTLINE_RANDOM_SEED on. Returns how many it were to be.
 template <class Look>
-std::uint64_t for_random_scenes(std::uint32_t usual, const Look& look) {
+std::uint64_t for_random_scenes(std::uint64_t usual, const Look& look) {
   const std::uint64_t scenes = number_in("SIGHTLINE_RANDOM_SCENES", usual),
                       first = number_in("SIGHTLINE_RANDOM_SEED", 1);
   for (std::uint64_t seed = first; seed < first + scenes && !testing::Test::HasFailure(); ++seed) {

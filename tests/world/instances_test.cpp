@@ -15,7 +15,6 @@
 #include "library/geometry/linear.hpp"
 #include "support/placed.hpp"
 #include "support/random_views.hpp"
-#include "support/rounds.hpp"
 #include "support/run_threads.hpp"
 
 namespace sightline::placed {
@@ -239,8 +238,7 @@ std::pair<std::size_t, std::size_t> expect_right(const Case& c, const InstanceCu
 TEST(Instances, EqualBruteForceInAThousandRandomWorldsAndViews) {
   std::size_t seen = 0, culled = 0, shared = 0;
   InstanceCuller threaded;
-  const std::uint32_t cases = test::rounds(1000);
-  for (std::uint32_t seed = 0; seed < cases; ++seed) {
+  for (std::uint32_t seed = 0; seed < 1000; ++seed) {
     scene::Random random(seed);
     Case c;
     fill(random, c);
@@ -269,9 +267,9 @@ TEST(Instances, EqualBruteForceInAThousandRandomWorldsAndViews) {
         ASSERT_EQ(values->ids[i], twins.at(result->ids[i]).value);
     }
   }
-  EXPECT_GT(seen, 19 * cases);
-  EXPECT_GT(culled, 20 * cases);
-  EXPECT_GT(shared, cases / 10);
+  EXPECT_GT(seen, 20000u);
+  EXPECT_GT(culled, 20000u);
+  EXPECT_GT(shared, 100u);
 }
 
 }  // namespace
