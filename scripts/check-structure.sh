@@ -43,7 +43,7 @@ web/scenes: web workbench/methods workbench/oracle workbench/camera
 # The public headers that each folder owns. Those of the library everybody above it may include.
 owners="
 library/geometry: jobs.hpp version.hpp types.hpp status.hpp box_view.hpp boxes.hpp view.hpp frustum.hpp projection.hpp
-library/geometry: rays.hpp
+library/geometry: cache_aligned.hpp rays.hpp
 library/occlusion: occlusion.hpp occluder.hpp
 library/world: world.hpp shadows.hpp instances.hpp snapshot.hpp ranges.hpp inspect.hpp tbb.hpp
 library/pvs: pvs.hpp

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <sightline/box_view.hpp>
+#include <sightline/cache_aligned.hpp>
 #include <sightline/types.hpp>
 
 namespace sightline {
@@ -15,7 +16,9 @@ namespace sightline {
 /// Unless a function of it says otherwise: Errors: none. Cost: constant. Threads: many may read at once, or
 /// one write. Allocates: nothing.
 struct Boxes {
-  std::vector<float> min_x, min_y, min_z, max_x, max_y, max_z;  ///< metres
+  /// Begins with a cache line.
+  using Array = std::vector<float, CacheAligned<float>>;
+  Array min_x, min_y, min_z, max_x, max_y, max_z;  ///< metres
 
   /// How many boxes there are.
   [[nodiscard]] std::size_t size() const noexcept { return min_x.size(); }

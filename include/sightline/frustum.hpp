@@ -65,7 +65,8 @@ inline constexpr std::size_t kCullPadding = 64;
 /// count is undefined. Errors: bad_argument for boxes that are not sound or more than 2³² - 2;
 /// buffer_too_small; nothing is written then. Of boxes that are not valid the answer means nothing. Cost:
 /// linear; an array a coordinate without an origin (BoxView::arrays) costs least, for others are laid out so
-/// on the way, 64 at a time. Threads: any. Allocates: nothing.
+/// on the way, 64 at a time, and three quarters of it where all six begin with a cache line, as those of
+/// Boxes do. Threads: any. Allocates: nothing.
 Result<std::size_t> cull_boxes(const Frustum& frustum, const BoxView& boxes,
                                std::span<ObjectId> visible) noexcept;
 

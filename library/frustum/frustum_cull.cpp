@@ -36,7 +36,7 @@ using WidePlane = geometry::HWY_NAMESPACE::WidePlane<VF>;
 // What is looked at together: a cache line of each array.
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kVectors = (kGroup + hn::MaxLanes(F()) - 1) / hn::MaxLanes(F());
-constexpr std::size_t kRun = 8;  // groups
+constexpr std::size_t kRun = 64;  // groups
 
 // The vector from element i on of an array.
 struct Whole {
@@ -59,13 +59,14 @@ struct Part {
 };
 
 // Writes those of a group's indices whose bits are set, and returns how many.
-HWY_INLINE std::size_t store_group(std::uint32_t those, hn::Vec<U> first_ids, ObjectId* HWY_RESTRICT out) {
+HWY_INLINE std::size_t store_group(std::uint32_t those, std::uint32_t first, ObjectId* HWY_RESTRICT out) {
   const U u;
   const std::size_t lanes = hn::Lanes(u);
+  const auto steps = hn::Iota(u, 0);
   std::size_t kept = 0;
   for (std::size_t v = 0; v < kVectors; ++v) {
     const std::uint32_t bits = those >> v * lanes & ((1u << lanes) - 1);
-    const auto ids = hn::Add(first_ids, hn::Set(u, static_cast<std::uint32_t>(v * lanes)));
+    const auto ids = hn::Add(steps, hn::Set(u, first + static_cast<std::uint32_t>(v * lanes)));
     hn::StoreU(packed(u, ids, bits), u, out + kept);
     kept += static_cast<std::size_t>(std::popcount(bits));
   }
@@ -76,7 +77,8 @@ HWY_INLINE std::size_t store_group(std::uint32_t those, hn::Vec<U> first_ids, Ob
 // `at` reads. sides(at, than) and others(at, than) are the lowest() of some planes' distances. A group that
 // the first planes reject is done with: next to none where ids lie anyhow, most where neighbours have
 // neighbouring ids, so that the branch is foreseen. Where an index is written hangs on all before it: of a
-// run of groups it is found first what is kept, none waiting for another, and then written.
+// run of groups those that the first planes leave are listed with what is kept of them, none waiting for
+// another, and then written.
 template <class Deepest, class Sides, class Others>
 HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY_RESTRICT out,
                             const Deepest& deepest, const Sides& sides, const Others& others) {
@@ -95,41 +97,37 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
     }
     return kept;
   };
-  // A bit each of a group that is kept.
-  const auto left_of = [&](std::size_t i) HWY_ATTR -> std::uint32_t {
+  std::array<std::uint32_t, kRun> at, kept_of;  // of groups that are listed: the first index, and a bit each
+  // Lists a group unless the first planes reject it, and returns how many are.
+  const auto list = [&](std::size_t i, std::size_t listed) HWY_ATTR {
     VF low[kVectors], deep[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const Whole at{i + v * lanes};
-      deep[v] = deepest(at);
-      low[v] = sides(at, deep[v]);
+      const Whole from{i + v * lanes};
+      deep[v] = deepest(from);
+      low[v] = sides(from, deep[v]);
     }
     auto gone = hn::Lt(low[0], deep[0]);
     for (std::size_t v = 1; v < kVectors; ++v) gone = hn::And(gone, hn::Lt(low[v], deep[v]));
-    if (hn::AllTrue(f, gone)) return 0;
+    if (hn::AllTrue(f, gone)) return listed;
     std::uint32_t left = 0;
     for (std::size_t v = 0; v < kVectors; ++v) {
       const auto behind = hn::Lt(others(Whole{i + v * lanes}, low[v]), deep[v]);
       left |= bits_of(f, hn::Not(behind)) << v * lanes;
     }
-    return left;
+    at[listed] = static_cast<std::uint32_t>(i);
+    kept_of[listed] = left;
+    return listed + 1;
   };
-  // Large arrays start alike within a cache line: from the next line on no load crosses two.
+  // Arrays of Boxes, and large ones of a heap, start alike within a cache line: from the next one on no load
+  // crosses two.
   const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
   std::size_t i = std::min(count, (lanes - behind_line) % lanes);
   std::size_t kept = some(0, i, 0);
-  auto first_ids = hn::Iota(u, static_cast<std::uint32_t>(i));
-  const auto group = hn::Set(u, static_cast<std::uint32_t>(kGroup));
   while (i + kGroup <= count) {
-    std::array<std::uint16_t, kRun> all;
-    const auto left = std::span(all).first(std::min(kRun, (count - i) / kGroup));
-    for (std::uint16_t& its : left) {
-      its = static_cast<std::uint16_t>(left_of(i));
-      i += kGroup;
-    }
-    for (const std::uint16_t its : left) {
-      if (its != 0) kept += store_group(its, first_ids, out + kept);
-      first_ids = hn::Add(first_ids, group);
-    }
+    const std::size_t end = i + std::min(kRun, (count - i) / kGroup) * kGroup;
+    std::size_t listed = 0;
+    for (; i < end; i += kGroup) listed = list(i, listed);
+    for (std::size_t g = 0; g < listed; ++g) kept += store_group(kept_of[g], at[g], out + kept);
   }
   return some(i, count, kept);
 }

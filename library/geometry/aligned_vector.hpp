@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <sightline/cache_aligned.hpp>
+
 #if defined(__SANITIZE_ADDRESS__)
 #define SIGHTLINE_SEES_NO_MAPS
 #elif defined(__has_feature)
@@ -24,17 +26,6 @@
 
 namespace sightline::geometry {
 
-/// An allocator of whole cache lines.
-template <class T>
-struct CacheAligned {
-  using value_type = T;
-  CacheAligned() = default;
-  template <class U>
-  CacheAligned(const CacheAligned<U>&) noexcept {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{64}); }
-  bool operator==(const CacheAligned&) const = default;
-};
 /// Memory for SIMD loads.
 template <class T>
 using AlignedVector = std::vector<T, CacheAligned<T>>;

@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -67,6 +68,39 @@ TEST(FrustumCull, EqualsTestingOneByOneForEverySimdTarget) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
+// Arrays of somebody else begin with any element of a cache line, each with another.
+TEST(FrustumCull, BeginsAnywhereInACacheLine) {
+  scene::Random random(5);
+  const World world = random_world(random, 300);
+  for (std::size_t first = 0; first <= 16; ++first) {
+    std::array<std::vector<float>, 6> apart;
+    const Boxes::Array* const columns[] = {&world.boxes.min_x, &world.boxes.min_y, &world.boxes.min_z,
+                                           &world.boxes.max_x, &world.boxes.max_y, &world.boxes.max_z};
+    for (std::size_t k = 0; k < 6; ++k) {
+      apart[k].resize(first + k);
+      apart[k].insert(apart[k].end(), columns[k]->begin(), columns[k]->end());
+    }
+    const auto at = [&](std::size_t k) { return apart[k].data() + first + k; };
+    const BoxView moved = BoxView::arrays(at(0), at(1), at(2), at(3), at(4), at(5), 300);
+    const std::size_t whole = 300 - first;
+    const SphereView rest =
+        SphereView::arrays(&world.x[first], &world.y[first], &world.z[first], &world.radius[first], whole);
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      const Frustum frustum = make_frustum(test::random_view(random, test::kAround));
+      std::vector<ObjectId> boxes(300 + kCullPadding), spheres(boxes.size());
+      boxes.resize(*cull_boxes(frustum, moved, boxes));
+      EXPECT_EQ(boxes, boxes_in(frustum, world)) << first << ' ' << hwy::TargetName(target);
+      spheres.resize(*cull_spheres(frustum, rest, spheres));
+      std::vector<ObjectId> expected = spheres_in(frustum, world);
+      std::erase_if(expected, [&](ObjectId id) { return id < first; });
+      for (ObjectId& id : expected) id -= static_cast<ObjectId>(first);
+      EXPECT_EQ(spheres, expected) << first << ' ' << hwy::TargetName(target);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+  }
+}
+
 TEST(FrustumCull, ReadsAnyLayoutAndKeepsWhatIsLargerThanTheView) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
@@ -114,7 +148,7 @@ TEST(FrustumCull, JudgesWhatIsNoNumberAlikeForEverySimdTarget) {
   for (std::size_t i = 0; i < 777; i += 2) {
     const auto some = [&] { return odd[random.below(6)]; };
     Boxes& b = world.boxes;
-    std::vector<float>* const columns[] = {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z};
+    Boxes::Array* const columns[] = {&b.min_x, &b.min_y, &b.min_z, &b.max_x, &b.max_y, &b.max_z};
     for (std::uint32_t n = 1 + random.below(3); n > 0; --n) (*columns[random.below(6)])[i] = some();
     (random.below(2) ? world.x : world.radius)[i] = some();
   }

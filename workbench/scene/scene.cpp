@@ -110,8 +110,8 @@ void Scene::move_object(ObjectId object, const Affine& moved) {
 
 Box extent(const Scene& scene) noexcept {
   if (scene.empty()) return {};
-  const auto smallest = [](const std::vector<float>& v) { return *std::min_element(v.begin(), v.end()); };
-  const auto greatest = [](const std::vector<float>& v) { return *std::max_element(v.begin(), v.end()); };
+  const auto smallest = [](const auto& v) { return *std::min_element(v.begin(), v.end()); };
+  const auto greatest = [](const auto& v) { return *std::max_element(v.begin(), v.end()); };
   const Boxes& b = scene.bounds;
   return {{smallest(b.min_x), smallest(b.min_y), smallest(b.min_z)},
           {greatest(b.max_x), greatest(b.max_y), greatest(b.max_z)}};
@@ -179,12 +179,11 @@ void check(const Scene& s) {
   const std::size_t n = s.size();
   if (n == 0) throw Error("scene '" + s.name + "': it holds no object, expected at least one");
   if (n >= kNoObject) throw Error("scene '" + s.name + "': too many objects for 32-bit ids");
-  for (const auto* array : {&s.bounds.min_x, &s.bounds.min_y, &s.bounds.min_z, &s.bounds.max_x,
-                            &s.bounds.max_y, &s.bounds.max_z, &s.radius}) {
-    if (array->size() != n) throw Error("scene '" + s.name + "': object arrays differ in length");
-  }
-  if (s.transform.size() != n || s.surface.size() != n || s.sides.size() != n) {
-    throw Error("scene '" + s.name + "': object arrays differ in length");
+  const Boxes& b = s.bounds;
+  for (const std::size_t size :
+       {b.min_x.size(), b.min_y.size(), b.min_z.size(), b.max_x.size(), b.max_y.size(), b.max_z.size(),
+        s.radius.size(), s.transform.size(), s.surface.size(), s.sides.size()}) {
+    if (size != n) throw Error("scene '" + s.name + "': object arrays differ in length");
   }
   check_geometry(s);
   scene::check_materials(s);
