@@ -122,14 +122,14 @@ HWY_INLINE std::size_t pack(std::size_t count, const float* array, ObjectId* HWY
   // crosses two.
   const std::size_t behind_line = reinterpret_cast<std::uintptr_t>(array) / sizeof(float) % lanes;
   std::size_t i = std::min(count, (lanes - behind_line) % lanes);
-  std::size_t kept = some(0, i, 0);
+  std::size_t kept = i > 0 ? some(0, i, 0) : 0;
   while (i + kGroup <= count) {
     const std::size_t end = i + std::min(kRun, (count - i) / kGroup) * kGroup;
     std::size_t listed = 0;
     for (; i < end; i += kGroup) listed = list(i, listed);
     for (std::size_t g = 0; g < listed; ++g) kept += store_group(kept_of[g], at[g], out + kept);
   }
-  return some(i, count, kept);
+  return i < count ? some(i, count, kept) : kept;
 }
 
 // The corner of each box that lies farthest along a plane's normal: one choice for all boxes.
