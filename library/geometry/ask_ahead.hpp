@@ -33,13 +33,4 @@ void prefetch_lines(const T& object) noexcept {
     ask_ahead(reinterpret_cast<const char*>(&object) + at);
 }
 
-/// Reads a byte of each line of memory, so that these come. For what is then read in pieces that cross lines:
-/// processors that see such pieces alone do not foresee which lines are next, and wait for twice as long.
-/// Some kilobytes at a time are best.
-inline void read_lines(const void* first, std::size_t bytes) noexcept {
-  constexpr std::size_t kLine = 64;
-  const auto* const at = static_cast<const volatile char*>(first);
-  for (std::size_t i = 0; i < bytes; i += kLine) (void)at[i];
-}
-
 }  // namespace sightline::geometry

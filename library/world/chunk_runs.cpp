@@ -211,71 +211,66 @@ float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
   return reach;
 }
 
-// Six floats a box, and three further on stands what is no less; 48 of them repeat the order in vectors.
+#if HWY_TARGET != HWY_SCALAR
+// What stands three floats further on than a vector that was read from there, of which `next` is the next.
+HWY_INLINE hn::Vec<F> three_on(const float* from, hn::Vec<F> vector, hn::Vec<F> next) {
+  constexpr std::uint32_t kLanes = hn::MaxLanes(F());
+  const F f;
+  const U u;
+  if constexpr (kLanes == 4) return hn::LoadU(f, from + 3);
+  const auto places = hn::IndicesFromVec(f, hn::And(hn::Iota(u, 3), hn::Set(u, kLanes - 1)));
+  return hn::IfThenElse(hn::FirstN(f, kLanes - 3), hn::TableLookupLanes(vector, places),
+                        hn::TableLookupLanes(next, places));
+}
+#endif
+
+// Of so many boxes, how many come before the first that begins with a cache line, or none. From there on no
+// load crosses two lines: processors that see nothing but such as do foresee badly which lines are next.
+HWY_INLINE std::size_t before_line(const float* boxes, std::size_t count) {
+  constexpr std::size_t kLine = 64, kMost = kLine / 8;
+  std::size_t i = 0;
+  while (i < kMost && reinterpret_cast<std::uintptr_t>(boxes + 6 * i) % kLine != 0) ++i;
+  return i < kMost ? std::min(i, count) : 0;
+}
+
+// Six floats a box, and three further on stands what is no less; three vectors repeat the order.
 bool are_sound(const float* values, std::size_t boxes, float reach) {
-  constexpr std::size_t kStep = 48, kBlock = 32 * kStep;
+  const auto one_by_one = [=](std::size_t first, std::size_t end) {
+    bool sound = true;
+    for (std::size_t i = first; i < end; i += 6) {
+      for (std::size_t k = i; k < i + 3; ++k)
+        sound = sound && values[k] <= values[k + 3] && values[k] >= -reach && values[k + 3] <= reach;
+    }
+    return sound;
+  };
+  std::size_t i = ChunkMap::kHasPages ? 6 * before_line(values, boxes) : 0;
+  if (i > 0 && !one_by_one(0, i)) return false;
+#if HWY_TARGET != HWY_SCALAR
+  constexpr std::size_t kVectors = 3, kStep = kVectors * hn::MaxLanes(F());
   const F f;
   const hn::RebindToSigned<F> i32;
-  const std::size_t lanes = hn::Lanes(f), count = 6 * boxes;
+  const std::size_t lanes = hn::Lanes(f);
   alignas(64) std::array<std::int32_t, kStep> minima;
-  for (std::size_t i = 0; i < kStep; ++i) minima[i] = i % 6 < 3 ? -1 : 0;
+  for (std::size_t k = 0; k < kStep; ++k) minima[k] = k % 6 < 3 ? -1 : 0;
   // As whole numbers all that is no number is greater than what is one.
   const auto magnitude = hn::Set(i32, 0x7fffffff);
   auto greatest = hn::Zero(i32);
   auto least = hn::Zero(f);
-  std::size_t i = 0;
-  for (; i + kStep + 3 <= count; i += kStep) {
-    if (ChunkMap::kHasPages && i % kBlock == 0)
-      geometry::read_lines(values + i, std::min(kBlock, count - i) * sizeof(float));
-    for (std::size_t k = 0; k < kStep; k += lanes) {
-      const auto low = hn::LoadU(f, values + i + k), high = hn::LoadU(f, values + i + k + 3);
-      greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low), magnitude));
-      least = hn::Min(least, hn::And(hn::Sub(high, low), hn::BitCast(f, hn::Load(i32, &minima[k]))));
+  for (; i + kStep + 3 <= 6 * boxes; i += kStep) {
+    hn::Vec<F> low[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) low[v] = hn::LoadU(f, values + i + v * lanes);
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const auto high = three_on(values + i + v * lanes, low[v], low[std::min(v + 1, kVectors - 1)]);
+      const auto is_minimum = hn::BitCast(f, hn::Load(i32, &minima[v * lanes]));
+      greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low[v]), magnitude));
+      least = hn::Min(least, hn::And(hn::Sub(high, low[v]), is_minimum));
     }
   }
-  bool rest = true;
-  for (; i < count; i += 6) {
-    for (std::size_t k = i; k < i + 3; ++k)
-      rest = rest && values[k] <= values[k + 3] && values[k] >= -reach && values[k + 3] <= reach;
-  }
-  return rest && hn::GetLane(hn::MaxOfLanes(i32, greatest)) <= std::bit_cast<std::int32_t>(reach) &&
-         hn::GetLane(hn::MinOfLanes(f, least)) >= 0;
-}
-
-// What a table of bytes says of each id, all of which are below `ids`. Where they lie close together, as of
-// those listed by id, a vector holds all that is asked of the table: a gather takes as long as a load an id.
-HWY_INLINE hn::Vec<U> bytes_of(const std::uint8_t* table, std::uint32_t ids, hn::Vec<U> id) {
-  const U u;
-  const hn::RebindToSigned<U> i32;
-  const auto window_bytes = static_cast<std::uint32_t>(sizeof(std::uint32_t) * hn::Lanes(u));
-  const std::uint32_t first = hn::GetLane(id);
-  const auto beyond = hn::Sub(id, hn::Set(u, first));
-  const auto byte = hn::Set(u, 0xff);
-  if (ids - first < window_bytes || !hn::AllTrue(u, hn::Lt(beyond, hn::Set(u, window_bytes))))
-    return hn::And(hn::GatherOffset(u, reinterpret_cast<const std::uint32_t*>(table), hn::BitCast(i32, id)),
-                   byte);
-  const auto window = hn::LoadU(u, reinterpret_cast<const std::uint32_t*>(table + first));
-  const auto word = hn::TableLookupLanes(window, hn::IndicesFromVec(u, hn::ShiftRight<2>(beyond)));
-  return hn::And(hn::Shr(word, hn::ShiftLeft<3>(hn::And(beyond, hn::Set(u, 3)))), byte);
-}
-
-// Of so many pairs of an id and a generation: of how many, from the first on and in whole vectors, the table
-// knows that generation. It is read four bytes at a time.
-std::size_t known_handles(const std::uint32_t* handles, std::size_t count, const std::uint8_t* table,
-                          std::uint32_t ids, std::uint32_t unknown) {
-  const U u;
-  const std::size_t lanes = hn::Lanes(u);
-  if (ids < 4) return 0;
-  const auto limit = hn::Set(u, ids - 3), none = hn::Set(u, unknown);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    hn::Vec<U> id, generation;
-    hn::LoadInterleaved2(u, handles + 2 * i, id, generation);
-    if (!hn::AllTrue(u, hn::Lt(id, limit))) break;
-    const auto known = bytes_of(table, ids, id);
-    if (!hn::AllTrue(u, hn::AndNot(hn::Eq(known, none), hn::Eq(known, generation)))) break;
-  }
-  return i;
+  if (hn::GetLane(hn::MaxOfLanes(i32, greatest)) > std::bit_cast<std::int32_t>(reach) ||
+      !(hn::GetLane(hn::MinOfLanes(f, least)) >= 0))
+    return false;
+#endif
+  return one_by_one(i, 6 * boxes);
 }
 
 }  // namespace sightline::world::HWY_NAMESPACE
@@ -285,7 +280,6 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::world {
 HWY_EXPORT(write_run);
 HWY_EXPORT(are_sound);
-HWY_EXPORT(known_handles);
 HWY_EXPORT(lay_out);
 HWY_EXPORT(take_out);
 HWY_EXPORT(write_in_page);
@@ -305,14 +299,6 @@ bool boxes_are_sound(std::span<const Box> boxes) noexcept {
   constexpr auto kReach = static_cast<float>(kWorldReach);
   static_assert(static_cast<double>(kReach) <= kWorldReach);
   return boxes.empty() || HWY_DYNAMIC_DISPATCH(are_sound)(&boxes[0].min.x, boxes.size(), kReach);
-}
-
-std::size_t known_handles(std::span<const Handle> handles, std::span<const std::uint8_t> table,
-                          std::uint8_t unknown) noexcept {
-  static_assert(sizeof(Handle) == 2 * sizeof(std::uint32_t) && offsetof(Handle, index) == 0);
-  if (handles.empty()) return 0;
-  return HWY_DYNAMIC_DISPATCH(known_handles)(&handles[0].index, handles.size(), table.data(),
-                                             static_cast<std::uint32_t>(table.size()), unknown);
 }
 
 float lay_out_structs(std::span<const Box> boxes, geometry::BoxBlock& out) noexcept {

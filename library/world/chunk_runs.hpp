@@ -49,9 +49,5 @@ bool lay_out_in_sector(const BoxView& boxes, std::size_t first, std::size_t coun
                        geometry::BoxBlock& out) noexcept;
 /// Whether all are valid: min <= max within ±kWorldReach.
 [[nodiscard]] bool boxes_are_sound(std::span<const Box> boxes) noexcept;
-/// Of how many handles, from the first on and some at a time, the table of generations, a byte an id, knows
-/// that it is theirs; where it says `unknown`, it knows none.
-[[nodiscard]] std::size_t known_handles(std::span<const Handle> handles, std::span<const std::uint8_t> table,
-                                        std::uint8_t unknown) noexcept;
 
 }  // namespace sightline::world

@@ -93,13 +93,28 @@ namespace {
 
 constexpr std::size_t kHandlesAtOnce = 128;  // few, for a call of one pays for all copies, too
 
+// Of how many handles, from the first on and some at a time, the table of generations knows that it is
+// theirs.
+std::size_t known_handles(std::span<const Handle> handles,
+                          std::span<const std::uint8_t> generations) noexcept {
+  constexpr std::size_t kAtOnce = 16;
+  std::size_t i = 0;
+  for (; i + kAtOnce <= handles.size(); i += kAtOnce) {
+    bool all = true;
+    for (const Handle& handle : handles.subspan(i, kAtOnce))
+      all = all && handle.index < generations.size() && generations[handle.index] == handle.generation &&
+            handle.generation != WorldState::kUnknown;
+    if (!all) break;
+  }
+  return i;
+}
+
 // How many of the handles from the first on, and of so many at most, name objects.
 std::size_t standing(const World& world, const Strided<const Handle>& handles, std::size_t first,
                      std::size_t count) noexcept {
   std::array<Handle, kHandlesAtOnce> copies;
   const std::span<const Handle> part = side_by_side(handles, first, std::span(copies).first(count));
-  const auto& generations = WorldAccess::state(world).generations;
-  std::size_t i = !ChunkMap::kHasPages ? 0 : known_handles(part, generations, WorldState::kUnknown);
+  std::size_t i = !ChunkMap::kHasPages ? 0 : known_handles(part, WorldAccess::state(world).generations);
   while (i < count && world.contains(part[i])) ++i;
   return i;
 }

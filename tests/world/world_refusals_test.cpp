@@ -64,29 +64,42 @@ TEST(WorldRefusals, RefusesBadBoxesAndChangesNothing) {
   }
 }
 
-// Many are checked at once: what one of them is must show wherever it stands among the others.
+// Many are checked at once: what one of them is must show wherever it stands among the others, and wherever
+// these begin within a cache line.
 TEST(WorldRefusals, FindsTheOneBadBoxOfManyAndWhatIsWrongWithIt) {
-  constexpr std::size_t kBoxes = 41;
-  const Box good{{-1, -2, -3}, {-1, 2, 3}};
-  const auto check = [](const std::vector<Box>& boxes) {
-    World world;
-    std::vector<Handle> handles(boxes.size());
-    return world.insert(boxes, handles);
+  constexpr std::size_t kBoxes = 41, kLine = 16;  // floats
+  using Corners = std::array<float, 6>;
+  const Corners good{-1, -2, -3, -1, 2, 3};
+  alignas(64) std::array<float, kLine + 6 * kBoxes> room{};
+  std::array<Handle, kBoxes> handles;
+  const auto fill = [&](std::size_t start, const Corners& corners) {
+    for (std::size_t i = 0; i < 6 * kBoxes; ++i) room[start + i] = corners[i % 6];
+  };
+  const auto insert = [&](World& world, std::size_t start) {
+    return world.insert(BoxView::min_max(&room[start], sizeof(Corners), kBoxes), handles);
   };
   const float over = 1.1e11f, nan = std::nanf("");
-  for (std::size_t at = 0; at < kBoxes; ++at) {
-    for (std::size_t side = 0; side < 6; ++side) {
+  World untouched;
+  for (std::size_t start = 0; start < kLine; ++start) {
+    fill(start, good);
+    for (std::size_t i = 0; i < 6 * kBoxes; ++i) {
+      const std::size_t side = i % 6;
       for (const float value : {nan, -nan, INFINITY, -INFINITY, over, -over, side < 3 ? 4.0f : -4.0f}) {
-        std::vector<Box> boxes(kBoxes, good);
-        (&boxes[at].min.x)[side] = value;
-        const Status status = check(boxes);
-        EXPECT_EQ(status.code(), StatusCode::bad_box) << at << ' ' << side << ' ' << value;
-        EXPECT_EQ(status.index(), at);
+        room[start + i] = value;
+        const Status status = insert(untouched, start);
+        ASSERT_EQ(status.code(), StatusCode::bad_box) << start << ' ' << i << ' ' << value;
+        ASSERT_EQ(status.index(), i / 6) << start << ' ' << value;
       }
+      room[start + i] = good[side];
     }
+    World world;
+    EXPECT_TRUE(insert(world, start));
+    fill(start, {0, 0, 0, -0.0f, -0.0f, -0.0f});
+    EXPECT_TRUE(insert(world, start)) << "zeros are equal";
+    fill(start, {-9e10f, 0, 0, 9e10f, 0, 0});
+    EXPECT_TRUE(insert(world, start));
   }
-  EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{0, 0, 0}, {-0.0f, -0.0f, -0.0f}}))) << "zeros are equal";
-  EXPECT_TRUE(check(std::vector<Box>(kBoxes, {{-9e10f, 0, 0}, {9e10f, 0, 0}})));
+  EXPECT_EQ(untouched.size(), 0u);
 }
 
 // The same of boxes in structs of the caller's.
