@@ -1,5 +1,6 @@
 // Movers that are listed in the order in which they stand: whole rows of boxes at a time.
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 
@@ -212,15 +213,14 @@ float lay_out(const float* boxes, std::size_t count, geometry::BoxBlock& out) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// What stands three floats further on than a vector that was read from there, of which `next` is the next.
-HWY_INLINE hn::Vec<F> three_on(const float* from, hn::Vec<F> vector, hn::Vec<F> next) {
+// The lanes from the third on of two vectors one behind the other.
+HWY_INLINE hn::Vec<F> three_on(hn::Vec<F> low, hn::Vec<F> high) {
   constexpr std::uint32_t kLanes = hn::MaxLanes(F());
   const F f;
   const U u;
-  if constexpr (kLanes == 4) return hn::LoadU(f, from + 3);
-  const auto places = hn::IndicesFromVec(f, hn::And(hn::Iota(u, 3), hn::Set(u, kLanes - 1)));
-  return hn::IfThenElse(hn::FirstN(f, kLanes - 3), hn::TableLookupLanes(vector, places),
-                        hn::TableLookupLanes(next, places));
+  const auto from = hn::IndicesFromVec(f, hn::And(hn::Iota(u, 3), hn::Set(u, kLanes - 1)));
+  return hn::IfThenElse(hn::FirstN(f, kLanes - 3), hn::TableLookupLanes(low, from),
+                        hn::TableLookupLanes(high, from));
 }
 #endif
 
@@ -259,8 +259,12 @@ bool are_sound(const float* values, std::size_t boxes, float reach) {
   for (; i + kStep + 3 <= 6 * boxes; i += kStep) {
     hn::Vec<F> low[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) low[v] = hn::LoadU(f, values + i + v * lanes);
+    // Or g++ reads them anew wherever they are used, no longer in their order.
+    std::atomic_signal_fence(std::memory_order_acq_rel);
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const auto high = three_on(values + i + v * lanes, low[v], low[std::min(v + 1, kVectors - 1)]);
+      auto high = three_on(low[v], low[std::min(v + 1, kVectors - 1)]);
+      // Short ones are read as quickly.
+      if constexpr (hn::MaxLanes(F()) == 4) high = hn::LoadU(f, values + i + v * lanes + 3);
       const auto is_minimum = hn::BitCast(f, hn::Load(i32, &minima[v * lanes]));
       greatest = hn::Max(greatest, hn::And(hn::BitCast(i32, low[v]), magnitude));
       least = hn::Min(least, hn::And(hn::Sub(high, low[v]), is_minimum));
